@@ -146,7 +146,7 @@ def _of_bearings(demand: Demand, solution: Solution) -> Demand:
     page="Camshaft",
 ).measured("case", value=_with_bearings, remark=_of_bearings, deviation=1e-9)
 def bearing_gap(cam: LoadedCam) -> Array:
-    """Least axial gap between a camshaft bearing of no width and cam, gear or follower, m."""
+    """Least axial gap of a camshaft bearing, taken without width, to cam, gear or follower, m."""
     return np.asarray(_least(_beside_bearings(cam.numbers)))
 
 
@@ -231,7 +231,7 @@ def _of_teeth(demand: Demand, solution: Solution) -> Demand:
     page="Camshaft",
 ).measured("case", allowed=lambda _: Allowed(_RATIO), remark=_of_teeth, deviation=1e-9)
 def tooth_ratio(cam: LoadedCam) -> Array:
-    """Deviation of the ratio of the teeth from that of the mechanism, relative."""
+    """Relative deviation of the tooth ratio from the ratio of the mechanism."""
     gear = gear_of(camshaft_of(cam.numbers.known_case))
     return np.asarray(np.abs(gear.teeth / _teeth_needed(cam.numbers) - 1.0))
 
@@ -276,13 +276,13 @@ def _with_module(demand: Demand, solution: Solution) -> Demand:
     page="Camshaft",
 ).measured("case", worst="least", allowed=_fewest, remark=_with_module, deviation=1e-9)
 def tooth_count(cam: LoadedCam) -> Array:
-    """Fewer of the teeth of gear and pinion."""
+    """Smaller tooth number of gear and pinion."""
     gear = gear_of(camshaft_of(cam.numbers.known_case))
     return np.array([float(min(gear.teeth, gear.pinion_teeth))])
 
 
 def from_follower(numbers: Numbers, below: Value, aside: Value) -> Value:
-    """Distance from a point (m): negative within the follower and all above it.
+    """Distance of a point from the follower (m): negative within it and anywhere above it.
 
     The follower goes on above its roller or face, as wide as it or as the cheeks of the fork.
 
@@ -312,7 +312,7 @@ def _centre_distance(shaft: Camshaft) -> float:
 
 
 def room_beside_shaft(machine: Machine) -> float | None:
-    """Greatest radius of a cam that passes the machine shaft, m; None where it is not known."""
+    """Greatest cam radius that clears the machine shaft, m; None where it is not known."""
     shaft = machine.camshaft
     if shaft is None or shaft.gear is None or not machine.scope.covers("gear"):
         return None

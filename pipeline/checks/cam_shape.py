@@ -1,4 +1,4 @@
-"""Checks of the cam shape, refined between samples."""
+"""Checks of the cam shape, with extremes refined between samples."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def closure(solution: Solution) -> Demand:
     page="Cam",
 )
 def acceleration_step(solution: Solution) -> Demand:
-    """Greatest discontinuity of the acceleration over its range."""
+    """Greatest discontinuity of the acceleration over its range in the turn."""
     lift = solution.contour.pitch.lift
     jump = lift.acceleration_jump
     coarse = "the table is too coarse or too rough to tell a step from a bend of the acceleration"
@@ -126,12 +126,12 @@ def contour_radius(cam: LoadedCam) -> Array:
 
 
 def angle_on_rise(cam: LoadedCam) -> Array:
-    """Magnitude of the pressure angle on the rise, rad; on the return that of a slope of zero."""
+    """Magnitude of the pressure angle on the rise, rad; elsewhere its value at zero slope."""
     return _angle(cam, not_negative(cam.jet.slope))
 
 
 def angle_on_return(cam: LoadedCam) -> Array:
-    """Magnitude of the pressure angle on the return, rad; on the rise that of a slope of zero."""
+    """Magnitude of the pressure angle on the return, rad; elsewhere its value at zero slope."""
     return _angle(cam, -not_negative(-cam.jet.slope))
 
 
@@ -293,7 +293,7 @@ def self_intersection(solution: Solution) -> Demand:
     page="Cam",
 )
 def second_contact(solution: Solution) -> Demand:
-    """Penetration of the follower into the contour outside the contact, m."""
+    """Penetration of the follower into the contour away from the contact, m."""
     nearest = solution.contour.second_contact()
     depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinite clearance is 0
     place, gap = _place(float(nearest.theta)), float(nearest.clearance)
@@ -327,7 +327,7 @@ def second_contact(solution: Solution) -> Demand:
     kept=Kept(_in_hollow, unit="mm"),
 )
 def concave_radius(cam: LoadedCam) -> Array:
-    """Curvature of the pitch curve, 1/m; of the demand, least concave radius of the contour, m."""
+    """Measure: pitch curvature, 1/m; demand: least concave radius of the contour, m."""
     return cam.motion.path_curvature
 
 
@@ -351,7 +351,7 @@ def concave_radius(cam: LoadedCam) -> Array:
     page="Cam",
 )
 def tool_gouge(solution: Solution) -> Demand:
-    """Depth to which the tool cuts the contour outside its contact, m; 0 for a convex cam."""
+    """Depth of the tool in the contour away from its contact, m; 0 for a convex cam."""
     contour, tool = solution.contour, solution.case.workshop_order.tool_radius
     allowed = solution.machine.limits[SECOND_CONTACT_DEPTH]
     concave = contour.concave_radius_min().value
@@ -404,7 +404,7 @@ def least_concave_radius(case: Case) -> float | None:
     kept=Kept(),
 )
 def curvature_rate(cam: LoadedCam) -> Array:
-    """Change of the contour's curvature per length, 1/m^2."""
+    """Derivative of the contour's curvature by arc length, 1/m^2."""
     return magnitude(cam.motion.curvature_slope)
 
 

@@ -107,14 +107,14 @@ class _Shaft:
 
 
 def camshaft_of(machine: Machine | Case) -> Camshaft:
-    """Camshaft of a machine or case; its checks are made only where it is described."""
+    """Camshaft of a machine or case; without one its checks are not made."""
     if machine.camshaft is None:
         raise InputError("camshaft", "missing", "described for its checks")
     return machine.camshaft
 
 
 def gear_of(shaft: Camshaft) -> CamshaftGear:
-    """Gear of the camshaft; its checks are made only where it is described."""
+    """Gear of the camshaft; without one its checks are not made."""
     if shaft.gear is None:
         raise InputError("camshaft.gear", "missing", "described for its checks")
     return shaft.gear
@@ -172,7 +172,7 @@ def _place(section: ShaftSection) -> str:
     scales_with=(NORMAL_FORCE, 1.0),
 )
 def shaft_fatigue(solution: Solution) -> Demand:
-    """Least fatigue safety of the sections of the camshaft in bending and torsion."""
+    """Least fatigue safety factor over the camshaft sections, in bending and torsion."""
     machine, limit = solution.machine, solution.machine.limits[SHAFT_SAFETY]
     shaft = _described(machine)
     if isinstance(shaft, tuple):
@@ -245,7 +245,7 @@ def _at_sections(cycle: Cycle, shaft: _Shaft, sections: Sections) -> tuple[Array
 
 
 def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
-    """Most used fibre of each named section of the camshaft over all load cases, if described."""
+    """Goodman points of each camshaft section: its most utilised fibre over all load cases."""
     machine = solution.machine
     if machine.camshaft is None or isinstance(shaft := _described(machine), tuple):
         return []
@@ -301,7 +301,7 @@ def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
     scales_with=(NORMAL_FORCE, 1.0),
 )
 def shaft_yield(solution: Solution) -> Demand:
-    """Greatest von Mises stress of the sections of the camshaft, Pa."""
+    """Greatest von Mises stress over the camshaft sections, Pa."""
     safety, shaft = solution.machine.limits[SHAFT_YIELD_SAFETY], _described(solution.machine)
     if isinstance(shaft, tuple):
         return Demand(None, None, missing=shaft)
@@ -423,7 +423,7 @@ def shaft_slope(solution: Solution) -> Demand:
     scales_with=(NORMAL_FORCE, 1.0),
 )
 def shaft_bearing_static(solution: Solution) -> Demand:
-    """Static safety factor s0 of the camshaft bearing with the greater load."""
+    """Least static safety factor s0 of the two camshaft bearings."""
     shaft = camshaft_of(solution.machine)
     rating = shaft.bearing_static_rating
 
@@ -466,7 +466,7 @@ def shaft_bearing_static(solution: Solution) -> Demand:
     scales_with=(NORMAL_FORCE, 3.0),
 )
 def shaft_bearing_life(solution: Solution) -> Demand:
-    """Rating life of the camshaft bearing with the greater load, s."""
+    """Rating life of the more heavily loaded camshaft bearing, s."""
     shaft = camshaft_of(solution.machine)
     rating, target = shaft.bearing_rating, solution.machine.limits[SHAFT_BEARING_LIFE]
     missing = lacking(shaft.table, shaft, "bearing_rating")

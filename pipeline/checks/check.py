@@ -1,4 +1,4 @@
-"""Check: demand against limit, with method and source."""
+"""Declarations of checks, and checks: demand against limit, with method and source."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ STATED = "stated"
 
 @dataclass(frozen=True)
 class Waived:
-    """Acceptance of a failed demand up to a value.
+    """Waiver of a failed demand up to a value.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ class Demand:
 
 
 class Allowed(NamedTuple):
-    """Limit of a demand, SI; None: none. missing: dotted keys that the case lacks.
+    """Limit of a demand, SI; None: none stated. missing: dotted keys that the case lacks.
 
     if_exceeded: the value is that of the known parts alone: a demand can only fail by it.
     """
@@ -135,7 +135,7 @@ class Allowed(NamedTuple):
 
 
 def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allowed]:
-    """Limit at a key of the case; share: row of the table of limits whose share of it counts."""
+    """Limit stated at a key of the case, or a `share` of it from the table of limits."""
 
     def allowed(numbers: Numbers) -> Allowed:
         value = numbers.get(key)
@@ -147,7 +147,7 @@ def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allow
 
 
 def of_row(row: AnyLimit | None) -> Callable[[Numbers], Allowed]:
-    """Limit of a row of the table of limits.
+    """Limit stated in a row of the table of limits.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def of_row(row: AnyLimit | None) -> Callable[[Numbers], Allowed]:
 
 
 class Kept(NamedTuple):
-    """How the synthesis keeps a limit.
+    """Form in which the synthesis keeps a limit as a constraint.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ class Kept(NamedTuple):
 
 
 class Stroke(NamedTuple):
-    """A measure of one stroke of the follower, its own limit, and the stroke in words."""
+    """Measure of the rise or of the return alone, with its limit and name."""
 
     measure: Measure
     limit: AnyLimit
@@ -201,7 +201,7 @@ class Stroke(NamedTuple):
 
 
 class Measured(NamedTuple):
-    """How a demand follows from a measure of the loaded cam.
+    """Relation of a demand to a pointwise measure of the loaded cam.
 
     Parameters
     ----------
@@ -267,7 +267,7 @@ class Measured(NamedTuple):
         return self.bound(float(limit), numbers)
 
     def use(self, measure: Measure, cam: LoadedCam, limit: float) -> Array | None:
-        """Utilisation (..., n) of a limit of the measure in a synthesis, see `Kept`.
+        """Constraint utilisation (..., n) of the measure at a limit in a synthesis, see `Kept`.
 
         Where each stroke has a limit, that of the first; the others are constraints of their own.
         """
@@ -280,7 +280,7 @@ class Measured(NamedTuple):
 
 @dataclass(frozen=True)
 class Declaration:
-    """Declaration of a check; calling it checks a solution.
+    """Declaration of a check: title, limit, formula, sources; calling it checks a solution.
 
     Parameters
     ----------
@@ -384,18 +384,18 @@ class Declaration:
         return made if made.status == "fail" or not self.is_bound(solution.tier) else None
 
     def is_bound(self, tier: Tier) -> bool:
-        """Whether its utilisation at a tier is a lower bound, by which it can only fail."""
+        """Whether its utilisation at a tier is a lower bound, which can fail but not pass."""
         return self.fails_from <= tier < self.tier
 
     @property
     def kept_at(self) -> str:
-        """Key of its limit in a synthesis: the group, the row of the limit, or its own id."""
+        """Key of its limit in a synthesis: group, row of the limit, or own id."""
         kept = None if self.measured is None else self.measured.kept
         group, of_part = ("", "") if kept is None else (kept.group, kept.unit)
         return group or (self.id if of_part or self.limit is None else self.limit.id)
 
     def deeper(self, solution: Solution) -> Check | None:
-        """The check, not evaluated, of a solution below its tier; None at or above it."""
+        """The check marked as not evaluated below its tier; None at or above it."""
         if solution.tier >= self.tier or not self.concerns(solution.machine):
             return None
         word = self.tier.word
@@ -413,7 +413,7 @@ class Declaration:
         return not self.part or (machine.scope.covers(self.part) and machine.describes(self.part))
 
     def lacks_left_out(self, machine: Machine, numbers: Numbers) -> bool:
-        """Whether the numbers lack a key of what the scope leaves out."""
+        """Whether a missing key belongs to a part outside the scope."""
         if self.measured is None:
             return False
         needed = (key for key in self.measured.needed if numbers.get(key) is None)
@@ -536,7 +536,7 @@ def check(
 
 
 class Made(Protocol):
-    """Declaration by its demand, or by the measure from which the demand follows."""
+    """Declaration of a check from its demand, or from the measure of the demand."""
 
     def __call__(
         self,
@@ -549,7 +549,7 @@ class Made(Protocol):
 
 @dataclass(frozen=True)
 class Declaring:
-    """Decorator of a demand, or of a measure from which it follows; see `check`."""
+    """Decorator that declares a check by its demand or measure; see `check`."""
 
     made: Made
     limit: AnyLimit | None
@@ -657,12 +657,12 @@ def _missing_words(keys: tuple[str, ...]) -> str:
 
 
 def made_from_others(_: Solution) -> None:
-    """None: the demand follows from other checks."""
+    """Demand of a check that is derived from other checks: None here."""
 
 
 @dataclass(frozen=True, repr=False)
 class Check(Displayed):
-    """Demand and limit of one check, SI.
+    """Check of one solution: demand against limit, SI.
 
     Parameters
     ----------
@@ -720,7 +720,7 @@ class Check(Displayed):
 
     @property
     def facts(self) -> Mapping[str, object]:
-        """Id and statement of the check, with where it is worst and what cures it."""
+        """Id, statement, governing place and remedy of the check."""
         known = {
             "id": self.id,
             "says": str(self),
@@ -746,17 +746,17 @@ class Check(Displayed):
 
     @property
     def evidence(self) -> bool:
-        """Whether it verifies solution or input, not the design; see `Declaration`."""
+        """Whether it verifies solution or input rather than the design; see `Declaration`."""
         return self.declaration.evidence
 
     @property
     def lift_can_help(self) -> bool:
-        """Whether a gentler lift can pass it."""
+        """Whether a gentler lift can turn it to pass."""
         return self.declaration.lift_can_help
 
     @property
     def error(self) -> float | None:
-        """Half of the demand's error bar; None where it is not known."""
+        """Half of the demand's error bar, SI; None if it is not known."""
         demand, share = self.demand, self.error_share
         if demand is None or share is None or not math.isfinite(demand * share):
             return None
@@ -764,12 +764,12 @@ class Check(Displayed):
 
     @property
     def waived_up_to(self) -> float | None:
-        """Worst demand that the waiver accepts; None: not waived."""
+        """Worst demand accepted by a waiver; None: not waived."""
         return None if self.waiver is None else self.waiver.up_to
 
     @property
     def worst(self) -> float | None:
-        """Worse of the demand and that at the governing tolerance corner; it is judged."""
+        """Judged demand: the worse of the nominal and the governing tolerance corner."""
         return worst(self)
 
     @property
@@ -785,17 +785,17 @@ class Check(Displayed):
 
     @property
     def is_bound(self) -> bool:
-        """Whether its demand is a bound within the limit, which says nothing; see `without`."""
+        """Whether its demand is a bound that keeps the limit and so proves nothing."""
         return is_bound(self)
 
     @property
     def utilisation(self) -> float | None:
-        """Worst demand over limit, or limit over it for a least value; None if one is missing."""
+        """Judged demand over limit, its inverse for a least value; None if one is missing."""
         return utilisation(self)
 
     @property
     def upper_utilisation(self) -> float | None:
-        """Utilisation at the end of the error bar towards the limit; None if one is missing."""
+        """Utilisation at the unfavourable end of the error bar; None if one is missing."""
         return upper_utilisation(self)
 
     @property
@@ -805,12 +805,12 @@ class Check(Displayed):
 
     @property
     def not_proven(self) -> bool:
-        """Whether the limit lies within the error bar of a worst demand that is within it."""
+        """Whether a demand within its limit has the limit inside its error bar."""
         return not_proven(self)
 
     @property
     def blocks(self) -> bool:
-        """Whether the verdict is not PASS for it: a must-have check, neither passed nor waived."""
+        """Whether it prevents PASS: a must-have check neither passed nor waived."""
         return blocks(self)
 
     def as_record(self) -> CheckRecord:

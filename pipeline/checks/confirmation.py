@@ -1,4 +1,4 @@
-"""Values on which each check rests, and those of them that no source confirms.
+"""Values on which each check rests, and which of them no source confirms.
 
 A value is confirmed by its source, or by an entry ``[[confirmed]]`` of the case; a tolerance
 tighter than its default, and a value beyond its usual range, by such an entry alone.
@@ -27,7 +27,7 @@ _LIMIT = "limits."
 def with_values_to_confirm(
     checks: Iterable[Check], case: Case, known: Collection[str]
 ) -> tuple[Check, ...]:
-    """The checks with the values on which they rest and which nothing confirms.
+    """Checks with the unconfirmed values on which they rest.
 
     Limits of a check that are weaker than their defaults are named with it, evaluated or not.
     The source that a check declares for its limit counts as a value, ``checks.ID``, where it is

@@ -77,12 +77,12 @@ class LoadCycles(NamedTuple):
     follower: float
 
     def of(self, body: str) -> float:
-        """Load cycles of the cam, or of the other body."""
+        """Load cycles of the cam, or of the follower."""
         return self.cam if body == "cam" else self.follower
 
 
 class LeastLimit(NamedTuple):
-    """Least of the limits of cam and follower.
+    """Smaller limit of cam and follower, with its body and material card.
 
     value, SI; None: of neither body. body and card are those of the least; missing: dotted keys
     that the case lacks.
@@ -95,7 +95,7 @@ class LeastLimit(NamedTuple):
 
     @property
     def source(self) -> str:
-        """Card and its source."""
+        """Name and source of the material card."""
         return f"{self.card.name}: {self.card.source}"
 
 
@@ -104,7 +104,7 @@ def least_of_bodies(
     limit: Callable[[str, Material], float | None],
     lacks: Callable[[str, Material], tuple[str, ...]] = lambda *_: (),
 ) -> LeastLimit:
-    """Least limit of cam and follower.
+    """Smaller limit of cam and follower.
 
     Parameters
     ----------
@@ -121,12 +121,12 @@ def least_of_bodies(
 
 
 def endurance_of(machine: Machine, card: Material) -> Endurance:
-    """Endurance of a body in rolling, or in rolling with sliding under a flat face."""
+    """Endurance pressure of a body in rolling, or with sliding under a flat face."""
     return card.endurance(sliding=machine.follower.slides)
 
 
 def pressure_allowables(machine: Machine, cycles: LoadCycles) -> dict[str, float]:
-    """Estimated plane-strain pressure by check of ends, traction and life, Pa.
+    """Plane-strain pressures, Pa, allowed by the checks of ends, traction and life; estimates.
 
     The least over both bodies; checks without data are left out. A solved cam corrects those of the
     ends. Under traction it is that of full sliding, the greatest traction of a follower: a roller
@@ -212,18 +212,18 @@ def _times(limit: LeastLimit, factor: float, safety: float = 1.0) -> LeastLimit:
 
 
 def shear_yield(machine: Machine) -> LeastLimit:
-    """Shear yield strength Y/sqrt(3) over the shakedown safety, Pa, least of both bodies."""
+    """Shear yield strength Y/sqrt(3) over the shakedown safety, Pa, the lower of both bodies."""
     safety = math.sqrt(3.0) * machine.limits[SHAKEDOWN_SAFETY]
     return least_of_bodies(machine.bodies, lambda _, card: card.yield_strength / safety)
 
 
 def least_poisson(machine: Machine) -> float:
-    """Smaller Poisson ratio of both bodies: it has the lower limit of shakedown in sliding."""
+    """Smaller Poisson ratio of both bodies, which has the lower shakedown limit in sliding."""
     return min(card.nu for card in machine.bodies.values())
 
 
 def estimated_length_factor(machine: Machine) -> float | None:
-    """Signed over plane-strain pressure on the base circle, untilted; None without the ends.
+    """Stated over plane-strain pressure on the base circle, untilted; None without ends.
 
     At the greatest pressure that the endurance allows, or else the yield strength.
     """
@@ -237,7 +237,7 @@ def estimated_length_factor(machine: Machine) -> float | None:
 
 
 def life_turns(machines: tuple[Machine, ...]) -> float:
-    """Cam turns in the target life by the duty, else at the fastest load case; 0 without a life."""
+    """Cam turns in the target life, by the duty or at the fastest load case; 0 without a life."""
     life = machines[0].limits[TARGET_LIFE] or 0.0
     speed = max(machine.cam_speed for machine in machines)
     if all(machine.duty is not None for machine in machines):
@@ -246,7 +246,7 @@ def life_turns(machines: tuple[Machine, ...]) -> float:
 
 
 def load_cycles(machines: tuple[Machine, ...], contour: Contour) -> LoadCycles:
-    """Load cycles in the target life: one per turn of the cam, and one per turn of the roller."""
+    """Load cycles in the target life: cam turns for the cam, passes for the follower."""
     turns, pitch = life_turns(machines), contour.pitch
     path, _ = pitch.speed_and_curvature(uniform_turn(_STATIONS))
     return LoadCycles(turns, turns * passes(machines[0].follower, path))
@@ -263,7 +263,7 @@ def contact_p0(cam: LoadedCam) -> Array:
 
 
 def line_pressure(cam: LoadedCam, allowed: Value) -> Array:
-    """sharpness + R_p / size <= 1, equivalent to p0 <= allowed.
+    """Constraint sharpness + R_p / size <= 1, equivalent to p0 <= allowed.
 
     R_p is the relative radius at which the line contact has the allowed pressure. Pressure and
     undercut depend on the same undercut factor, 1 - sharpness.
@@ -340,7 +340,7 @@ def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
 
 
 def traction_coefficient(cycle: Cycle) -> Array:
-    """Tangential over normal force (n,): full sliding of a face; of a roller what rolling requires.
+    """Tangential over normal force (n,): face sliding fully, roller as rolling requires.
 
     At most the friction coefficient; 0 where unloaded, NaN where it is not known.
     """
@@ -353,7 +353,7 @@ def traction_coefficient(cycle: Cycle) -> Array:
 
 
 def equivalent_pressure(cycle: Cycle) -> Array:
-    """Contact pressure (n,), Pa, of free rolling with the same use of the shakedown limit."""
+    """Free-rolling pressure (n,), Pa, of equal shakedown utilisation."""
     return cycle.surface.p0 * _traction_factor(cycle)
 
 
@@ -369,7 +369,7 @@ def _traction_factor(cycle: Cycle) -> Array:
 
 @lru_cache(maxsize=32)
 def shakedown_factors(friction: float, poisson: float) -> tuple[Array, Array]:
-    """Traction coefficients from 0 to `friction`, and their `shakedown_factor`; kept on disk."""
+    """Traction coefficients from 0 to `friction` with their `shakedown_factor`; cached on disk."""
 
     def compute() -> dict[str, Array]:
         nodes = np.linspace(0.0, friction, _TRACTIONS)
@@ -524,14 +524,14 @@ def contact_pressure_at_life(solution: Solution) -> Demand:
 
 
 def of_elements(solution: Solution, worst: Extreme) -> dict[str, float]:
-    """Ratio of finite elements to half-spaces in the signed pressure where it is greatest."""
+    """Ratio of finite elements to half-spaces in the greatest stated pressure."""
     length = cycle_of(solution.cycles, worst).length
     correction = None if length is None else length.correction
     return {"r": 1.0 if correction is None else correction.signed}
 
 
 def signed_sentence(solution: Solution, worst: Extreme) -> str:
-    """What the signed pressure is where it is greatest; "" where it is not known."""
+    """Kind of the greatest stated pressure, in words; "" where it is not known."""
     for cycle in solution.cycles:
         if cycle.load_case == worst.load_case and cycle.length and worst.cam_angle is not None:
             place = first_least(np.abs(cycle.theta - worst.cam_angle))
@@ -540,7 +540,7 @@ def signed_sentence(solution: Solution, worst: Extreme) -> str:
 
 
 def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: float) -> float:
-    """Endurance limit of the contact pressure at a number of load cycles, Pa.
+    """Endurance pressure at a number of load cycles, Pa.
 
     Parameters
     ----------
@@ -603,7 +603,7 @@ _SIGNED = (
     bounded="line",
 )
 def edge_pressure(cam: LoadedCam) -> Array:
-    """Signed contact pressure, Pa, ends and tilt included."""
+    """Contact pressure along the line, ends and tilt included, Pa."""
     return cam.p0_signed
 
 
@@ -632,7 +632,7 @@ def edge_pressure(cam: LoadedCam) -> Array:
     scales_with=(PRESSURE, 1.0),
 )
 def edge_shakedown(solution: Solution) -> Demand:
-    """Equivalent signed pressure, Pa, against shakedown."""
+    """Contact pressure with ends, tilt and traction equivalent in shakedown, Pa."""
     machine = solution.machine
     worst = greatest(solution.cycles, lambda each: each.signed_pressure * _traction_factor(each))
     limit = _times(shear_yield(machine), SHAKEDOWN)
@@ -718,7 +718,7 @@ def roller_overlap(solution: Solution) -> Demand:
 
 @lru_cache(maxsize=512)
 def shakedown_factor(friction: float, poisson: float = 0.3) -> float:
-    """p0/k at the limit of elastic shakedown of a line contact with traction: 4 without.
+    """Shakedown limit p0/k of a line contact with traction: 4 without traction.
 
     Residual stresses along and across the track depend on the depth alone. Below the surface they
     compensate all but the shear stress along it: the limit is 1/max|tau_xz|. At the surface the

@@ -1,4 +1,4 @@
-"""Demands common to checks and constraints of the synthesis, from motion and forces.
+"""Measures of motion and force shared by checks and synthesis constraints.
 
 The synthesis differentiates them by complex steps. All arrays (...), SI.
 """
@@ -25,7 +25,7 @@ _MARGIN = 0.2  # of the least spring force, where the case keeps no contact forc
 
 
 class FatiguePoint(NamedTuple):
-    """Stress of a part in its Goodman diagram, Pa.
+    """Mean stress and amplitude of a part in its Goodman diagram, Pa.
 
     Amplitude and mean; endurance: amplitude without mean; strength: mean without amplitude.
     """
@@ -38,7 +38,7 @@ class FatiguePoint(NamedTuple):
 
 
 class PerLoad(NamedTuple):
-    """Stress of a part per force, Pa/N, or torque, Pa/(N m), as a function of numbers."""
+    """Stress of a part per force, Pa/N, or torque, Pa/(N m), from the machine's numbers."""
 
     factor: Callable[[Numbers], Value]
 
@@ -73,17 +73,17 @@ def follower_speed(cam: LoadedCam) -> Array:
 
 
 def slope_at(speed: float, numbers: Numbers) -> float:
-    """Lift per radian, m, at a speed of the follower, m/s, in the fastest load case."""
+    """Lift slope, m/rad, at a follower speed, m/s, in the fastest load case."""
     return speed / float(numbers["cam.fastest"])
 
 
 def slope_over(cam: LoadedCam, limit: float) -> Array:
-    """Lift per radian over that at the greatest speed, m/rad, of the fastest load case."""
+    """Lift slope over its value at the greatest follower speed of the fastest load case."""
     return magnitude(cam.jet.slope) / limit
 
 
 def rating_over(rating: Value, worst: Value, unloaded: float) -> Array:
-    """Rating (...) over a load or damage; `unloaded` without one, NaN where it is not known."""
+    """Rating (...) over a load or damage; `unloaded` for none, NaN for an unknown one."""
     load: Array = np.asarray(worst, dtype=float)
     loaded = load > 0.0
     without = np.where(np.isnan(load), np.nan, unloaded)
@@ -91,7 +91,7 @@ def rating_over(rating: Value, worst: Value, unloaded: float) -> Array:
 
 
 def ripple_reduction(before: Array, after: Array) -> Array:
-    """1 - std of the torque (..., n) after over that before (...); NaN without a ripple."""
+    """1 - std(torque after) / std(torque before) over (..., n); NaN without a ripple."""
     ripple, left = np.std(before, axis=-1), np.std(after, axis=-1)
     none = np.full(np.broadcast(ripple, left).shape, np.nan)
     return np.asarray(1.0 - np.divide(left, ripple, out=none, where=ripple > 0))
@@ -100,7 +100,7 @@ def ripple_reduction(before: Array, after: Array) -> Array:
 def common_reduction(
     reduction: float | Array, required: float | Array, common: float | Array
 ) -> Array:
-    """Reduction that leaves the same share of the ripple allowed at another requirement, (...).
+    """Reduction with an equal share of the allowed ripple at another requirement, (...).
 
     1 - (1 - r) (1 - c)/(1 - c_i): it is at least c where r is at least c_i.
     """
@@ -108,23 +108,23 @@ def common_reduction(
 
 
 def unloading(inertia: Array, closing: Array) -> Array:
-    """Unloading inertia force over closing force: -m w^2 s'' / F_c."""
+    """Unloading inertia force -m w^2 s'' over closing force F_c."""
     return -inertia / closing
 
 
 def greatest_unloading(inertia: Array, closing: Array) -> Array:
-    """As `unloading`, >= 0; infinite where no force closes the contact at rest."""
+    """`unloading`, >= 0; infinite where no force closes the contact at rest."""
     closed = np.where(closing == 0.0, np.nan, closing)
     return np.where(np.real(closing) <= 0.0, np.inf, not_negative(unloading(inertia, closed)))
 
 
 def force_left(closing: Array, inertia: Array, least_spring: float | Array) -> Array:
-    """Sum of closing and inertia force over the least spring force, without friction."""
+    """Closing plus inertia force over the least spring force, without friction."""
     return (closing + inertia) / least_spring
 
 
 def over_contact_force(needed: Array, normal: Array, least_spring: Value) -> Array:
-    """A force over the normal force (...), which counts as `CONTACT_FLOOR` at least.
+    """Force over the normal force (...), the latter at least `CONTACT_FLOOR`.
 
     About to lose the contact, no quotient by its force says more than that; infinite without
     contact, NaN where the normal force is.
@@ -137,7 +137,7 @@ def over_contact_force(needed: Array, normal: Array, least_spring: Value) -> Arr
 
 
 def over_normal_force(cam: LoadedCam, needed: Array) -> Array:
-    """Needed over present normal force (n,); 1 plus the shortfall below the contact force margin.
+    """Required over available normal force (n,); 1 plus the shortfall below the margin.
 
     For the synthesis: the quotient has a pole where the search passes through a loss of contact.
     """

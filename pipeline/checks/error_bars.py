@@ -1,4 +1,4 @@
-"""Error bars of the demands: sampling, meshes, difference of the contact tiers."""
+"""Relative error bars of the demands: sampling, meshes, contact tiers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ is on the safe side.
 
 
 def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check, ...]:
-    """The checks with the relative errors of their demands.
+    """Checks with the relative errors of their demands.
 
     A demand on a guide has the discretisation uncertainty of the guide reaction, and one on its
     edges `GUIDE_EDGE_ERROR` besides. One on the contact has the greatest sum of difference and grid
@@ -56,7 +56,7 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
 
 
 def contact_error(solution: Solution, figure: str | None = None) -> float | None:
-    """Greatest difference between cycle and certificate plus its uncertainty, relative.
+    """Greatest relative difference of cycle and certificate plus the certificate's uncertainty.
 
     Of one certified quantity, or of all. None without a certificate, NaN where a certified value
     is not known.
@@ -77,13 +77,13 @@ def contact_error(solution: Solution, figure: str | None = None) -> float | None
 
 
 def centre_error(solution: Solution) -> float:
-    """Greatest relative error of the pressure in the middle of the line over plane strain."""
+    """Greatest relative error of mid-line over plane-strain pressure."""
     errors = [cycle.length.centre_error for cycle in solution.cycles if cycle.length is not None]
     return max(errors, default=0.0)
 
 
 def length_error(solution: Solution) -> float:
-    """Relative error of the factor along the line of contact where the signed pressure is greatest.
+    """Relative error of the axial factor at the greatest stated pressure.
 
     0 where it is not known.
     """

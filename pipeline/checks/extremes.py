@@ -1,4 +1,4 @@
-"""Extreme values over the turns of all load cases, with load case and cam angle."""
+"""Extreme values over the turns of all load cases, with their load case and cam angle."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from camwright.pipeline.cycle.solved_cam import ContourCam, SolvedCam
 
 
 class Extreme(NamedTuple):
-    """Extreme value with load case and cam angle.
+    """Extreme value with its load case and cam angle.
 
     Parameters
     ----------
@@ -43,13 +43,13 @@ _SAFETY = 1.25
 
 
 def cycle_of(cycles: Iterable[Cycle], worst: Extreme) -> Cycle:
-    """Cycle of the load case of an extreme; without one the first."""
+    """Cycle of the load case of an extreme; the first cycle without a load case."""
     every = tuple(cycles)
     return next((each for each in every if each.load_case == worst.load_case), every[0])
 
 
 def row_of(cycles: Iterable[Cycle], worst: Extreme) -> tuple[Cycle, int]:
-    """Cycle of an extreme, and the number of its solved angle."""
+    """Cycle of an extreme, and the index of its solved angle."""
     cycle = cycle_of(cycles, worst)
     return cycle, first_least(np.abs(cycle.theta - (worst.cam_angle or 0.0)))
 
@@ -80,18 +80,18 @@ def _vertex(cycles: Sequence[Cycle], measure: Callable[[Cycle], Array], sign: fl
 
 
 def lasting(cycles: Iterable[Cycle]) -> list[Cycle]:
-    """Cycles with a share of the operating time; those of unknown duty count."""
+    """Cycles with a share of the operating time, those of unknown duty included."""
     return [cycle for cycle in cycles if cycle.machine.duty is None or cycle.machine.duty > 0.0]
 
 
 def steady(solution: Solution) -> list[Cycle]:
-    """Cycles of the load cases of the case: in standstill and over-speed nothing warms up."""
+    """Cycles of the case's own load cases: in standstill and over-speed nothing warms up."""
     declared = {state.name for state in solution.case.load_cases}
     return [cycle for cycle in solution.cycles if cycle.load_case in declared]
 
 
 def fired(solution: Solution) -> list[Cycle]:
-    """Cycles of the load cases of the case that are fired, where the machine has a power."""
+    """Cycles of the fired load cases, where the machine has a power."""
     states = {
         state.name: state for state in solution.case.load_cases if state.fired and state.speed > 0
     }
@@ -141,7 +141,7 @@ def worst_case(
 def over_duty(
     cycles: Iterable[Cycle], measure: Callable[[Cycle], float], *, life: bool = False
 ) -> Extreme:
-    """Mean of one value per turn over the duty of the load cases; of lives by their damage.
+    """Duty-weighted mean of one value per turn; lives combine by their damage.
 
     A mean rate is sum q_i r_i, a life 1/sum(q_i/L_i), q_i: share of the operating time of a load
     case; those of zero do not count. Without a duty the worst load case. The load case is that of
@@ -176,7 +176,7 @@ def over_duty(
 def duty_parts(
     cycles: Iterable[Cycle], measure: Callable[[Cycle], float], *, life: bool = False
 ) -> dict[str, float]:
-    """Part of each load case in the wear or damage per time: q_i r_i, or q_i/L_i."""
+    """Contributions q_i r_i, or q_i/L_i, of the load cases to wear or damage per time."""
     parts = {}
     for cycle in cycles:
         duty = cycle.machine.duty
@@ -291,7 +291,7 @@ def worst_measure(
     at_least: bool,
     order: int,
 ) -> Extreme:
-    """Demand by the worst value of a measure of a solution; NaN if any is.
+    """Demand from the worst value of a measure over a solution; NaN if any is.
 
     The extreme of a contour is kept with it, as checks of the same measure and tolerance corners
     share it: such a measure reads the motion alone.
@@ -350,11 +350,11 @@ def _worst_of_cycles(
 
 
 def mean_of(solution: Solution, measure: Measure, cycle: Cycle) -> float:
-    """Mean of a measure over the turn of a cycle of a solution, or of fewer of its angles."""
+    """Mean of a measure over the turn of a solved cycle, or over some of its angles."""
     return float(np.mean(measure(cam_of(solution, cycle))))
 
 
 def cam_of(solution: Solution, cycle: Cycle) -> SolvedCam:
-    """Loaded cam of a cycle of a solution, or of fewer of its angles."""
+    """Loaded cam of a solved cycle, or of some of its angles."""
     cam = solution.cams.get(cycle)
     return SolvedCam.of(cycle, solution.numbers) if cam is None else cam

@@ -53,7 +53,7 @@ _FLASH = {
     page="Flat face",
 ).measured("angles", allowed=of_key("follower.face.width"), deviation=0.001, kept=Kept(unit="mm"))
 def face_width(cam: LoadedCam) -> Array:
-    """Required width of the face, contact half-width included, m."""
+    """Required face width, contact half-width included, m."""
     return 2.0 * (magnitude(face_of(cam.motion).arm) + cam.half_width)
 
 
@@ -130,7 +130,7 @@ def face_pv(cam: LoadedCam) -> Array:
     page="Flat face",
 )
 def contact_temperature(solution: Solution) -> Demand:
-    """Temperature of the contact nearest to its limit, degC; at standstill that of the oil."""
+    """Contact temperature of greatest utilisation, degC; at standstill that of the oil."""
     oil, missing = solution.machine.lubricant, _heat_missing(solution, *_OF_OIL)
     cold, top, bare = (
         (None,) * 3
@@ -199,7 +199,7 @@ def _film(cycle: Cycle) -> Array:
     page="Flat face",
 )
 def bulk_temperature(solution: Solution) -> Demand:
-    """Greatest bulk temperature of the load cases, degC."""
+    """Greatest bulk temperature over the load cases, degC."""
     machine = solution.machine
     oil, limit = machine.lubricant, machine.limits[SURFACE_TEMPERATURE]
     stated = [card.temperature_limit for card in machine.bodies.values()]

@@ -65,7 +65,7 @@ def guide_of(machine: Machine, side: Side) -> Guide:
 
 
 def table_of(side: Side) -> str:
-    """Table of guide A or B in the case."""
+    """Dotted name of the table of guide A or B."""
     return f"guides.{side.lower()}"
 
 
@@ -108,7 +108,7 @@ def _temperature(side: Side, power: Value, numbers: Numbers) -> Value:
 
 
 def power_at(side: Side, temperature: float | None, numbers: Numbers) -> float | None:
-    """Mean friction power of a guide, W, at a steady temperature, K.
+    """Mean friction power of a guide at which it has a steady temperature (K), W.
 
     None where it is not known, and below the ambient temperature: no lift has it.
     """
@@ -119,7 +119,7 @@ def power_at(side: Side, temperature: float | None, numbers: Numbers) -> float |
 
 
 def hottest(solution: Solution, side: Side) -> Extreme:
-    """Temperature of guide A or B at the greatest friction, K, of the hottest load case.
+    """Temperature of guide A or B at maximum friction in the hottest load case, K.
 
     NaN where ambient or thermal resistance is not known.
     """
@@ -332,7 +332,7 @@ def _guide_pv(side: Side) -> Declaration:
 
 
 def pv_limit(guide: Guide) -> float | None:
-    """PV limit of a guide, or of nylon by its lubrication, Pa m/s."""
+    """PV limit of a guide, for nylon by its lubrication, Pa m/s."""
     state = _graded_state(guide)
     return guide.pv_limit if state is None else NYLON_PV[state]
 
@@ -485,7 +485,7 @@ def _guide_temperature(side: Side) -> Declaration:
 
 
 def heat_path_lacks(machine: Machine, side: Side) -> tuple[str, ...]:
-    """Keys that the temperature of a guide lacks."""
+    """Missing keys for the temperature of a guide."""
     guide, ambient = guide_of(machine, side), "ambient_temperature"
     missing = lacking("guides", machine.guides, ambient)
     if guide.thermal_resistance is not None:
@@ -560,7 +560,7 @@ guide_speed_a, guide_speed_b = _guide_speed("A"), _guide_speed("B")
     deviation=1e-4,
 )
 def guide_length(cam: LoadedCam) -> Array:
-    """Distance of the outer ends of the guides over the overhang."""
+    """Distance between the outer ends of the guides over the overhang."""
     numbers = cam.numbers
     ends = 0.5 * (numbers["guides.a.length"] + numbers["guides.b.length"])
     overhang: Array = numbers["follower.overhang_at_max_lift"] + cam.jet.lift

@@ -118,7 +118,7 @@ def _guide_expansion(side: Side) -> Declaration:
 def closures(
     guide: Guide, of_bush: float, of_stem: float, moisture: float, temperature: float
 ) -> tuple[float, float]:
-    """Loss of clearance of a guide at a temperature, K, m: bush free to lengthen, and held.
+    """Clearance lost by a guide at a temperature (K), m: bush axially free, and restrained.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def closures(
 
 
 def seizure_temperature(guide: Guide, stem: Material) -> float | None:
-    """Temperature of a guide at which the stem binds in it, K; None: not known, or at none."""
+    """Temperature at which the stem binds in a guide, K; None: unknown, or at none."""
     of_bush, moisture = guide.material.expansion, guide.material.moisture_growth
     of_stem = stem.expansion
     if guide.wall is None or of_bush is None or of_stem is None or moisture is None:

@@ -163,7 +163,7 @@ def _on_points(demand: Demand, solution: Solution) -> Demand:
     page="Guides",
 ).measured("angles", remark=_on_points, deviation=0.01, kept=Kept(factor_max=FACTOR_MAX))
 def jam_index(cam: LoadedCam) -> Array:
-    """Friction of the guides over the axial cam force on the rise."""
+    """Guide friction over axial cam force on the rise."""
     return _outward(cam, cam.jam)
 
 
@@ -242,7 +242,7 @@ def _jump_speed_allowed(numbers: Numbers) -> Allowed:
 
 
 def cam_speed_without_jump(numbers: Numbers) -> float:
-    """Least cam speed of the jump, rad/s; without an overspeed by that of the fastest load case."""
+    """Required jump speed of the cam, rad/s: of the overspeed, else of the fastest load case."""
     return float(numbers.limit(JUMP_SPEED) * numbers["cam.fastest"])
 
 
@@ -292,7 +292,7 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     ),
 )
 def jump_speed(cam: LoadedCam) -> Array:
-    """Unloading at a cam speed of 1 rad/s; of the demand, the crank speed of an unloading of 1.
+    """Measure: unloading at 1 rad/s of the cam; demand: crank speed at which it reaches 1.
 
     None for a round cam, which has no jump.
     """
@@ -337,7 +337,7 @@ def _force_at(cam: LoadedCam, speed: Value) -> Array:
     kept=Kept(),
 )
 def contact_at_overspeed(cam: LoadedCam) -> Array:
-    """Contact force at the overspeed over the least spring force, without friction."""
+    """Contact force at overspeed over least spring force, without friction."""
     return _force_at(cam, cam.numbers["cam.fastest"])
 
 
@@ -364,7 +364,7 @@ def contact_at_overspeed(cam: LoadedCam) -> Array:
     page="Follower",
 )
 def contact_over_speed(solution: Solution) -> Demand:
-    """Minimum contact force over the least spring force, surge included, over all speeds."""
+    """Least contact force over least spring force, with surge, over all speeds."""
     swept = _least_over_speed(
         solution,
         lambda sweep: (sweep.contact_force_min, sweep.contact_angle, sweep.contact_error),
@@ -401,7 +401,7 @@ def contact_over_speed(solution: Solution) -> Demand:
     page="Follower",
 )
 def elastic_contact(solution: Solution) -> Demand:
-    """Minimum contact force with an elastic stem over the least spring force."""
+    """Least contact force over least spring force with an elastic stem."""
     worst = least(
         solution.cycles,
         lambda c: c.elastic.response.contact_force / c.least_spring_force,
@@ -473,7 +473,7 @@ _RIGID = 10.0
     page="Follower",
 )
 def rigid_follower(solution: Solution) -> Demand:
-    """Natural frequency of the follower over the greatest speed of the cam."""
+    """Natural frequency of the follower over the greatest rotational speed of the cam."""
     machine, fastest = solution.machine, float(solution.numbers["cam.fastest"])
     frequency = shown(machine.follower_frequency / FULL_TURN, "Hz")
     stem = shown(machine.axial_stiffness, "kN/m")
@@ -496,7 +496,7 @@ def _lifts_off(cycles: Sequence[Cycle], worst: Extreme) -> str:
 
 
 class Swept(NamedTuple):
-    """Least force over that of the spring over the speed; `least_damped`: at the least damping.
+    """Least contact over spring force over the speed; `least_damped`: at least damping.
 
     stated: both forces by their symbol, N
     """
@@ -583,6 +583,6 @@ def _place(angle: float) -> str:
 
 
 def overspeed(machines: Sequence[Machine]) -> float | None:
-    """Overspeed of the crank, rad/s, at least the fastest load case; None: the case has none."""
+    """Overspeed of the crank, rad/s, at least the fastest load case; None if not stated."""
     stated = machines[0].limits[OVERSPEED] is not None
     return highest_speed(machines) if stated else None

@@ -344,7 +344,7 @@ def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
     deviation=1e-4,
 )
 def fit_yield(cam: LoadedCam) -> Array:
-    """Von Mises stress at the bore of the least ring, Pa."""
+    """Von Mises stress at the bore of the cam taken as a ring of its least radius, Pa."""
     ring, greatest = fitted_ring(cam.numbers), greatest_interference(cam.numbers)
     if ring is None or greatest is None:
         return np.asarray(np.nan)
@@ -502,7 +502,7 @@ def _strengths(solution: Solution) -> dict[str, float]:
     deviation=0.003,
 )
 def keyway_root(cam: LoadedCam) -> Array:
-    """Fatigue safety factor of the keyway's root in the cam; NaN of a wall below `WALLS`."""
+    """Fatigue safety factor of the keyway root in the cam; NaN for a wall below `WALLS`."""
     root = keyway_root_of(cam.numbers)
     wall = np.asarray(cam.least_radius - root.held_radius)
     counted = np.where(np.real(wall) < root.thick, wall, root.thick)
@@ -519,7 +519,7 @@ def _no_key_data(cam: CamBody) -> tuple[str, ...]:
 
 
 class KeywayRoot(NamedTuple):
-    """Stress at the root of the keyway in the cam: Pa per N m and, of a thick wall, per N.
+    """Stress at the keyway root per torque, Pa/(N m), and for a thick wall per force, Pa/N.
 
     held_radius: of the floor of the keyway, root_radius: of its corner, thick: greatest wall that
     counts, m; per_stress: use of the fatigue strength, 1/Pa; by_fit: use by the fit alone. Of
@@ -546,7 +546,7 @@ class KeywayRoot(NamedTuple):
 
 
 def keyway_root_of(numbers: Numbers) -> KeywayRoot:
-    """Root of the keyway in the cam; NaN without its data, or outside the scope."""
+    """Stress coefficients of the keyway root; NaN without its data, or outside the scope."""
     keys: tuple[str, ...] = (*_BORE, f"limits.{SHAFT_RELIABILITY.id}")
     if numbers.known_case.cam.fit is not None:
         keys = (*keys, *FIT, *_RING)

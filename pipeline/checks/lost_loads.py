@@ -25,7 +25,7 @@ STALLS = "drives a crank that stalls"
 
 
 class LoadEnd(NamedTuple):
-    """Load case, cam angle, rad, at which its loads end, and why, of the follower."""
+    """Load case, cam angle, rad, and reason at which the loads of a follower end."""
 
     load_case: str
     cam_angle: float
@@ -33,7 +33,7 @@ class LoadEnd(NamedTuple):
 
     @property
     def words(self) -> str:
-        """Such as ``leaves the cam at 150.5 deg (over-speed)``."""
+        """Text such as ``leaves the cam at 150.5 deg (over-speed)``."""
         return f"{self.why} at {shown(self.cam_angle, 'deg')} ({self.load_case})"
 
 
@@ -51,7 +51,7 @@ def _end(cycle: Cycle) -> tuple[float, str] | None:
 def checks_on_sound_loads(
     declarations: Iterable[Declaration], solution: Solution
 ) -> Iterator[Check]:
-    """Checks of a solution, those that rest on lost loads made of the other load cases."""
+    """Checks of a solution, from its load cases with valid loads where they rest on loads."""
     ends = load_ends(solution)
     left = tuple(end for end in ends if end.why != LOCKS)
     parts = {"loads": _Parts.of(solution, ends), "contact": _Parts.of(solution, left)}

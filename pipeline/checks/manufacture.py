@@ -68,7 +68,7 @@ def _gap_left(cam: LoadedCam, limit: float) -> Array:
     kept=Kept(_gap_left, once=True, unit="mm"),
 )
 def guide_gap(cam: LoadedCam) -> Array:
-    """Height of the contour over the reference point of the follower at maximum lift, m.
+    """Measure: height of the contour over the follower's reference point at maximum lift, m.
 
     Of the demand, the gap between guide A and the nearest part of cam and follower.
     """
@@ -146,7 +146,7 @@ def _waves_in_words(demand: Demand, solution: Solution) -> Demand:
     kept=Kept(_force_of_waves),
 )
 def profile_waviness(cam: LoadedCam) -> Array:
-    """Inertia force of the follower on a wavy contour over the contact force."""
+    """Inertia force of the follower by contour waviness over the contact force."""
     return demands.over_contact_force(_wave_force(cam), cam.normal, cam.least_spring)
 
 
@@ -166,7 +166,7 @@ def profile_waviness(cam: LoadedCam) -> Array:
     page="Cam",
 )
 def chord_error(solution: Solution) -> Demand:
-    """Distance of the chords of the contour table from the contour, m."""
+    """Distance of the chords between table points from the contour, m."""
     limits, tolerance = solution.machine.limits, solution.machine.cam.profile_tolerance
     theta, contour = solution.case.workshop_order.theta, solution.contour
     points = contour.points(theta)
@@ -210,7 +210,7 @@ def chord_error(solution: Solution) -> Demand:
     page="Cam",
 )
 def phase_tolerance(solution: Solution) -> Demand | None:
-    """Ripple reduction at the ends of the phase tolerance of key and gear."""
+    """Ripple reduction at both ends of the phase tolerance of key and gear."""
     phase = solution.case.tolerances.phase
     least = least_reduction(solution, lambda cycle: _reduction(cycle, phase))
     if least is None:

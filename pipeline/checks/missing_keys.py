@@ -1,4 +1,4 @@
-"""Dotted keys that the case lacks and a check needs."""
+"""Dotted keys missing in a case that a check needs."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from camwright.pipeline.case.machine import Machine
 
 
 def lacking(table: str, part: object, *keys: str) -> tuple[str, ...]:
-    """Those keys of a table of the case whose value is None in the part that it describes."""
+    """Keys of a table of the case without a value, among given ones."""
     return tuple(f"{table}.{key}" for key in keys if getattr(part, key) is None)
 
 
 def lacking_of_card(card: Material, *keys: str) -> tuple[str, ...]:
-    """Those keys of a material in the case whose value is None."""
+    """Keys of a material of the case without a value, among given ones."""
     return lacking(f"materials.{card.name}", card, *keys)
 
 
 def unset(limits: LimitValues, *rows: AnyLimit) -> tuple[str, ...]:
-    """Keys of the limits that have no value."""
+    """Keys of limits without a value."""
     return tuple(f"limits.{row.id}" for row in rows if limits[row] is None)
 
 
 def no_friction(machine: Machine) -> tuple[str, ...]:
-    """Key of the friction of the follower on the cam where the case lacks it."""
+    """Key of the friction between follower and cam, where it is missing."""
     return lacking(machine.follower.table, machine.follower, "friction")
 
 
 def lacking_along_line(machine: Machine) -> tuple[str, ...]:
-    """Keys of the ends of the contact that the case lacks, and of the slope of its camshaft."""
+    """Missing keys for the pressure along the line: ends, and slope of the camshaft."""
     parts, shaft = (machine.cam, machine.follower), machine.camshaft
     ends = tuple(key for part in parts for key in lacking(part.table, part, "end"))
     return ends if shaft is None else (*ends, *lacking(shaft.table, shaft, "diameter", "material"))

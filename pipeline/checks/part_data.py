@@ -1,4 +1,4 @@
-"""Checks that each part is described whole, or left out of the scope of the sign-off."""
+"""Checks that each part is fully described, or outside the scope of the sign-off."""
 
 from __future__ import annotations
 

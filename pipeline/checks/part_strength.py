@@ -399,7 +399,7 @@ def follower_mass(solution: Solution) -> Demand:
 
 
 def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]]:
-    """Masses of the parts that move with the follower, kg, by name, and the keys that are missing.
+    """Masses by name of the parts that move with the follower, kg; missing keys.
 
     A stem without a length counts up to its far guide. A part outside the scope is left out.
     """
@@ -647,7 +647,7 @@ def torque_reversals(solution: Solution) -> Demand:
     page="Camshaft",
 )
 def cam_unbalance(solution: Solution) -> Demand:
-    """Eccentricity times speed of the rotor, m/s, and the counter-hole for it."""
+    """Balance grade e w of the rotor, m/s, and its counter-hole."""
     balanced, shaft = balance(solution.machine.cam, solution.contour), solution.machine.camshaft
     made, speed = balanced.as_made, max(machine.cam_speed for machine in solution.machines)
     rotor = made.mass if shaft is None else max(made.mass, shaft.rotor_mass or 0.0)

@@ -1,4 +1,4 @@
-"""List of all checks; checks of a solution."""
+"""Registry of all checks; checks of a solution."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ copyreg.pickle(Declaration, _pickled)  # a check from a worker process has the d
 def checks_of(
     solution: Solution, declarations: Iterable[Declaration] = CHECKS
 ) -> tuple[Check, ...]:
-    """Checks of a solution, with error bars and waivers, in the order of `in_order`.
+    """Checks of a solution, with error bars and waivers, sorted as of `in_order`.
 
     Checks that do not apply, such as the torque reduction of a cam without an engine, and those
     above the tier of the solution are left out.
@@ -139,7 +139,7 @@ def checks_of(
 
 
 def all_checks(solution: Solution) -> tuple[Check, ...]:
-    """All checks of a solution with their values to be confirmed, and one for idle waivers.
+    """All checks of a solution with their unconfirmed values, and one for unused waivers.
 
     Those that a deeper solution judges are not evaluated.
     """
@@ -160,7 +160,7 @@ def all_checks(solution: Solution) -> tuple[Check, ...]:
 
 
 def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, ...]:
-    """The checks with the waivers of the case; a check of the solution cannot be waived.
+    """Checks with the waivers of the case; evidence cannot be waived.
 
     Raises
     ------
@@ -177,7 +177,7 @@ def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, .
 
 
 def accepted(waiver: Waiver, unit: str) -> Waived:
-    """Acceptance that a waiver states, its value in SI."""
+    """Demand that a waiver accepts, in SI."""
     text = f"{waiver.name}, {waiver.date}: {waiver.reason}"
     quantity = In("" if unit == "-" else unit)
     try:

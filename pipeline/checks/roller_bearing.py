@@ -498,12 +498,12 @@ roller_static_radial = _outer_ring(
     kept=Kept(_film_kept, power=-1.0, unit="rpm", falls=-1.0),
 )
 def bearing_lubrication(cam: LoadedCam) -> Array:
-    """Speed of the roller on its pin, rad/s; of the demand, viscosity ratio at its mean."""
+    """Measure: roller speed, rad/s; demand: viscosity ratio at its mean."""
     return magnitude(cam.spin)
 
 
 def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
-    """Mean speed of the roller at a viscosity ratio, rad/s; None where every speed has more.
+    """Mean roller speed at which a viscosity ratio is reached, rad/s; None if always exceeded.
 
     Parameters
     ----------
@@ -568,7 +568,7 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     page="Roller",
 )
 def grease_life(solution: Solution) -> Demand | None:
-    """Life of the grease, s; None with oil."""
+    """Life of the grease, s; None for oil."""
     bearing = solution.machine.roller.bearing
     if bearing.lubrication == "oil":
         return None
@@ -603,7 +603,7 @@ def grease_life(solution: Solution) -> Demand | None:
 
 
 def greased(cam: LoadedCam) -> Array:
-    """Estimated life of the grease in a load case (1,) or (m, 1), s.
+    """Estimated grease life in load cases, (1,) or (m, 1), s.
 
     That of the maker where it is stated; NaN without its data or out of its range.
     """
@@ -627,7 +627,7 @@ def _greased_diameter(numbers: Numbers) -> Value:
 
 
 class Grease(NamedTuple):
-    """Grease of the roller bearing: required life, s; C, N; outer diameter, m; temperature, K."""
+    """Data of a grease-life estimate: required life, s; C, N; outer diameter, m; temperature, K."""
 
     life: float
     rating: float
@@ -642,7 +642,7 @@ class Grease(NamedTuple):
 
 
 def grease_of(machine: Machine, numbers: Numbers) -> Grease | None:
-    """Grease whose life is estimated; None where it is stated, without grease or its data."""
+    """Data of a grease-life estimate; None if the life is stated, or data are missing."""
     if not grease_life.concerns(machine):
         return None
     bearing = machine.roller.bearing

@@ -89,7 +89,7 @@ def _terms_of(unit: str) -> dict[str, str]:
     certified_by="half_width",
 )
 def held_distance(solution: Solution) -> Demand:
-    """Minimum distance of the contact from a fixed boundary, in half-widths."""
+    """Least distance of the contact from a fixed boundary over the half-width."""
     machine = solution.machine
     wall = solution.contour.radius_min().value - machine.cam.held_radius
     depth = machine.follower.held_depth
@@ -150,7 +150,7 @@ def excluded_zone(solution: Solution) -> Demand | None:
     page="Cam",
 )
 def bore_stress(solution: Solution) -> Demand | None:
-    """Maximum von Mises stress at bore and keyway without the excluded zones, Pa."""
+    """Maximum von Mises stress at bore and keyway outside the excluded zones, Pa."""
     bores = _bores(solution)
     if not bores:
         return None
@@ -189,7 +189,7 @@ def bore_stress(solution: Solution) -> Demand | None:
     tier=Tier.CYCLE,
 )
 def subsurface_depth(solution: Solution) -> Demand:
-    """Minimum depth of the maximum von Mises stress, in half-widths."""
+    """Least depth of the maximum von Mises stress over the half-width."""
 
     def share(cycle: Cycle) -> Array:
         half = cycle.contact.half_width
@@ -304,7 +304,7 @@ RESIDUALS = tuple(
     tier=Tier.CYCLE,
 )
 def hertz_difference(solution: Solution) -> Demand:
-    """Maximum difference of the contact pressure from Hertz, relative."""
+    """Greatest relative difference of the contact pressure from Hertz."""
     worst = greatest(solution.cycles, lambda cycle: np.abs(cycle.contact.p0_difference))
     return Demand(worst.value, HERTZ_DIFFERENCE, worst)
 
@@ -322,7 +322,7 @@ def hertz_difference(solution: Solution) -> Demand:
     tier=Tier.PREVIEW,
 )
 def synthesis_converged(solution: Solution) -> Demand | None:
-    """Gain that another step of the synthesis foresees, over the ripple of the engine."""
+    """Decrease of the objective that another step foresees, over the engine's ripple."""
     gain = solution.synthesis_gain
     return None if gain is None else Demand(gain, SYNTHESIS_GAIN, stated={"d": gain})
 
@@ -360,7 +360,7 @@ def _certified(
     tier=Tier.CERTIFIED,
 )
 def certificate_spread(solution: Solution) -> Demand:
-    """Difference of the contact between cycle and certificate, relative."""
+    """Greatest relative difference of the contact between cycle and certificate."""
 
     def method(point: CertificatePoint) -> str:
         return (
@@ -390,7 +390,7 @@ def certificate_spread(solution: Solution) -> Demand:
     tier=Tier.CERTIFIED,
 )
 def certificate_gci(solution: Solution) -> Demand:
-    """Grid convergence index of the certificate, relative."""
+    """Greatest relative grid convergence index of the certificate."""
     allowed = solution.machine.limits[MESH_UNCERTAINTY]
 
     def method(point: CertificatePoint) -> str:
@@ -530,7 +530,7 @@ mesh_tau_max = _uncertainty("tau_max", lambda point: point.tau_max)
     tier=Tier.CYCLE,
 )
 def mesh_reaction(solution: Solution) -> Demand:
-    """Discretisation uncertainty of the guide reaction, relative."""
+    """Relative discretisation uncertainty of the guide reaction."""
     reactions = [np.abs(cycle.guides.reaction_a) for cycle in solution.cycles]
     worst = first_greatest([each.max() for each in reactions])
     cycle, k = solution.cycles[worst], first_greatest(reactions[worst])

@@ -148,7 +148,7 @@ def _surge_over_speed(demand: Demand, solution: Solution) -> Demand:
 
 
 class OverSpeed(NamedTuple):
-    """Greatest value over the speed, the same at the least damping of the surge, the speed.
+    """Greatest value over the speed, its value at least surge damping, and its speed.
 
     low, high: least and greatest force, N, at the end of the spring with that value
     """
@@ -274,7 +274,7 @@ spring_fatigue = check(
 
 
 def spring_fatigue_points(solution: Solution) -> list[FatiguePoint]:
-    """Stress of the wire where it is fatigued most over the speed range; none without a design."""
+    """Goodman point of the wire at its worst speed; none without a spring design."""
     design, sweep = solution.machine.spring.design, solution.hardest_spring
     if design is None or sweep is None or not np.isfinite(sweep.greatest).all():
         return []
@@ -462,7 +462,7 @@ spring_buckling = check(
     page="Spring",
 ).measured("case", allowed=of_key("spring.rate_tolerance"), remark=_of_wire, deviation=1e-4)
 def spring_rate(cam: LoadedCam) -> Array:
-    """Deviation of the rate of the spring design from that of the case, relative."""
+    """Relative deviation of the spring design's rate from the stated rate."""
     return np.asarray(cam.wire.rate_error(cam.numbers["spring.rate"]))
 
 
@@ -493,7 +493,7 @@ def spring_rate(cam: LoadedCam) -> Array:
     page="Spring",
 ).measured("case", worst="least", remark=_surge_over_speed, deviation=1e-4)
 def spring_surge(cam: LoadedCam) -> Array:
-    """First natural frequency of the spring over the highest cam frequency."""
+    """Lowest natural frequency of the spring over the highest cam frequency."""
     return np.asarray(cam.wire.surge_ratio(cam.numbers["cam.fastest"]))
 
 

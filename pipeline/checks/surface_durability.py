@@ -162,7 +162,7 @@ traction_reserve = check(
     page="Contact",
 )
 def film_ratio(solution: Solution) -> Demand:
-    """Minimum film thickness over roughness; at standstill there is none to judge."""
+    """Least film thickness over composite roughness; not judged at standstill."""
     machine = solution.machine
     oil, kind = machine.lubricant, machine.follower
     running = [cycle for cycle in solution.cycles if cycle.machine.speed > 0]
@@ -237,7 +237,7 @@ def _crossland(swept: Envelope) -> dict[str, float]:
     page="Contact",
 )
 def surface_fatigue(solution: Solution) -> Demand:
-    """Maximum Crossland stress of a passage of the contact, Pa."""
+    """Maximum Crossland stress over a passage of the contact, Pa."""
     return _torsion_demand(solution, lambda swept: _greatest_of(swept.crossland), _crossland)
 
 
@@ -264,7 +264,7 @@ def surface_fatigue(solution: Solution) -> Demand:
     page="Contact",
 )
 def dang_van(solution: Solution) -> Demand:
-    """Maximum Dang Van stress of a passage of the contact, Pa."""
+    """Maximum Dang Van stress over a passage of the contact, Pa."""
     return _torsion_demand(
         solution,
         lambda swept: _greatest_of(swept.dang_van),
@@ -360,7 +360,7 @@ def case_shear(solution: Solution) -> Demand | None:
 
 
 def hardened_bodies(solution: Solution) -> dict[str, Material]:
-    """Materials of cam and follower with a hardened case, or of no stated treatment, by body."""
+    """Materials by body with a hardened case, or of unstated treatment."""
     bodies = solution.machine.bodies
     return {body: card for body, card in bodies.items() if card.surface_hardened is not False}
 
@@ -491,7 +491,7 @@ def case_depth(solution: Solution) -> Demand | None:
     certified_by="p0",
 )
 def pressure_by_hardness(solution: Solution) -> Demand | None:
-    """Maximum contact pressure, Pa, against the Buckingham estimate of the softer bodies.
+    """Maximum contact pressure, Pa, against Buckingham's estimate of the softer body.
 
     None if the cam is surface-hardened and the follower has no hardness within the estimate.
     """
@@ -599,7 +599,7 @@ def _estimate(
     values=given.bodies("*endurance_pressure", "hardness*"),
 )
 def endurance_rules(solution: Solution) -> Demand:
-    """Greatest ratio of the endurance rules for the material of cam or follower."""
+    """Greatest ratio of two hardness-based endurance rules for cam or follower."""
     machine = solution.machine
     spread, notes, stated = None, [], dict[str, float]()
     for body, card in machine.bodies.items():

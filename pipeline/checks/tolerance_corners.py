@@ -1,4 +1,4 @@
-"""Checks of the final cam at its tolerance corners, by closed forms; governing corner of a check.
+"""Tolerance corners of the final cam by closed forms, and the governing corner of a check.
 
 Each tolerance is at both ends in turn; then a seeded sample varies all at once. The lift is the
 nominal one; friction, spring, masses, phase and contour are those of the corner. The demand at a
@@ -39,7 +39,7 @@ POSITIONS = 90
 
 @dataclass(frozen=True, repr=False)
 class Outcome(Displayed):
-    """Demands by check id at one corner, or the refusal in words.
+    """Demands by check id at one corner, or the reason for its refusal.
 
     `bounds` are the ids of checks that rest on loads lost there, `lost` in words: their demand is
     that of the other load cases, if there are any.
@@ -53,7 +53,7 @@ class Outcome(Displayed):
 
 
 def corners_of(case: Case) -> tuple[Corner, ...]:
-    """Corners of one tolerance at a time, then the seeded sample of all."""
+    """Corners with one tolerance at its limit each, then a seeded sample of all together."""
     ranges = _ranges(case)
     alone = []
     for label, bounds in ranges.items():
@@ -72,7 +72,7 @@ def corners_of(case: Case) -> tuple[Corner, ...]:
 
 
 def spring_corners(case: Case) -> tuple[Corner, ...]:
-    """Corners of all tolerances at once at which a spring holds its follower the least, and most.
+    """Corners at which the spring closes the contact with the least and the greatest force.
 
     Weakest spring and lowest contour with each end of the masses and of the friction; strongest
     spring and highest contour.
@@ -105,7 +105,7 @@ def outcomes(
     corners: Sequence[Corner] | None = None,
     declarations: Sequence[Declaration] = TOLERANCED,
 ) -> tuple[Outcome, ...]:
-    """Outcomes at each corner.
+    """Outcome of each corner.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def checks_at(
     corners: Sequence[Corner],
     declarations: Sequence[Declaration],
 ) -> tuple[tuple[Check, ...], ...]:
-    """Checks at each corner by the coarse closed forms, for ratios of demands.
+    """Checks at each corner by coarse closed forms, for ratios to their nominal demands.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def checks_at(
 
 
 def governed(checks: Sequence[Check], tried: Sequence[Outcome]) -> tuple[Check, ...]:
-    """The checks with the governing corner and the demand there, by which they are judged.
+    """Checks with their governing corner and the demand there, by which they are judged.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def governed(checks: Sequence[Check], tried: Sequence[Outcome]) -> tuple[Check, 
 
 
 def unsolved(machine: Machine, tried: Sequence[Outcome]) -> Check:
-    """Check of the number of corners that could not be solved."""
+    """Check of the number of corners without a solution."""
     refused = [f"{one.corner.name}: {one.refused}" for one in tried if one.refused]
     demand = Demand(
         float(len(refused)),
@@ -164,7 +164,7 @@ def unsolved(machine: Machine, tried: Sequence[Outcome]) -> Check:
 
 
 def corners_record(case: Case, tried: Sequence[Outcome]) -> CornersDocument:
-    """Contents of ``corners.json``."""
+    """Record of ``corners.json``."""
     return {
         "seed": case.tolerances.seed,
         "tried": len(tried) - 1,

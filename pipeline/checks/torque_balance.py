@@ -85,7 +85,7 @@ def torque_reduction(solution: Solution) -> Demand | None:
 def least_reduction(
     solution: Solution, reduction: Callable[[Cycle], float]
 ) -> tuple[Extreme, float] | None:
-    """Least reduction of the torque ripple by the greatest requirement, and that requirement.
+    """Least torque ripple reduction, converted to the greatest requirement; that requirement.
 
     Of load cases with other requirements it is the `common_reduction`. None where no load case
     requires one.
@@ -226,7 +226,7 @@ def _reduction(cycle: Cycle) -> float:
     " shows in no other balance.",
 )
 def contact_torque(solution: Solution) -> Demand:
-    """Greatest difference of the cam torque by pressures and by forces, over its greatest."""
+    """Greatest difference of the cam torque from pressures to that from forces, relative."""
 
     def share(cycle: Cycle) -> Array:
         torque = cycle.loads.cam_torque
@@ -264,7 +264,7 @@ def _greatest_torque(cycle: Cycle) -> float:
     reason="Energy must not appear or vanish between the contact and the guides.",
 )
 def contact_work(solution: Solution) -> Demand:
-    """Difference of the cam work by pressures from the friction heat, over the work exchanged."""
+    """Cam work by pressures less friction heat, over the work exchanged."""
 
     def works(cycle: Cycle) -> tuple[float, float, float]:
         """Work of the pressures, heat, and work exchanged, J."""
@@ -283,7 +283,7 @@ def contact_work(solution: Solution) -> Demand:
 
 
 def pressure_torque(cycle: Cycle) -> Array:
-    """Torque (n,) that the contact pressures and the friction of a face require of the cam, N m.
+    """Cam torque (n,) from contact pressures and the friction of a face, N m.
 
     The normal of the contour is that of its points. The pressure of a position acts along one
     normal: its change over the contact is of the order of half-width over radius.
@@ -326,7 +326,7 @@ def _integral(values: Array, at: Array) -> Array:
     moved_by_tolerance=False,
 )
 def friction_balance(solution: Solution) -> Demand:
-    """Difference of friction work from heat of guides and face, relative."""
+    """Relative difference of friction work and heat of guides and face."""
     worst = worst_case(solution.cycles, _heat_mismatch, integral=False)
     allowed = solution.machine.limits[FRICTION_BALANCE]
     words = (*map(_loss, solution.cycles), *_applied_work(solution.cycles))
@@ -357,7 +357,7 @@ def friction_balance(solution: Solution) -> Demand:
     page="Torque",
 )
 def friction_power(solution: Solution) -> Demand | None:
-    """Greatest share of the friction in the power of the machine; None if it has no torque."""
+    """Greatest friction power over the power of the machine; None without a torque."""
     states = {state.name: state for state in solution.case.load_cases}
     running = fired(solution)
     if not running:
@@ -422,7 +422,7 @@ _STATED = (
     page="Torque",
 )
 def mechanism_temperature(solution: Solution) -> Demand | None:
-    """Steady temperature of the mechanism, degC; None where none is stated for a part."""
+    """Steady temperature of the mechanism, degC; None without a temperature of any part."""
     machine, contour = solution.machine, solution.contour
     numbers, cooling = solution.numbers, machine.cooling
     named = {key: numbers.get(key) for key in _STATED}

@@ -1,4 +1,4 @@
-"""Loads, contact, rolling and part loads over one cam turn.
+"""Cycle: loads, contact, rolling and part loads over one cam turn.
 
 In the order of the calculation:
 

@@ -29,7 +29,7 @@ AXIAL_ARRAYS = (
 
 
 def axial_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
-    """Arrays of ``5_length.npz``, by half-spaces; None without an end or a contact.
+    """Arrays of ``5_length.npz``, by half-spaces; None without body ends or contact.
 
     At a corner the pressure of the last cell is the mean over the stated length: the peak there
     depends on the cells. With an axial offset each half of the line is that of its own end.
@@ -98,6 +98,6 @@ def _cells(
 
 
 def with_end_cells(edges: Array, length: float) -> Array:
-    """Edges, m, of which the first and last cell have a length, m."""
+    """Cell edges, m, with first and last cells of a given length, m."""
     inner = edges[np.abs(edges) < edges[-1] - length - 1e-9]
     return np.concatenate([[edges[0], edges[0] + length], inner, [edges[-1] - length, edges[-1]]])

@@ -1,4 +1,4 @@
-"""Unbalance of the cam, the counter-hole that balances it, and its force on the shaft."""
+"""Unbalance of the cam, its counter-hole, and the centrifugal force on the shaft."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _GRAM_MILLIMETRE = 1e-6  # kg m
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """A cam's unbalance and its counter-hole.
+    """Unbalance of a cam, and its counter-hole.
 
     hole balances the cam, or reduces the unbalance as far as it can where `missed` states why none
     balances it; None where none fits or none is necessary. density is per area, kg/m2.
@@ -46,7 +46,7 @@ class Balance:
 
     @property
     def left(self) -> Unbalance:
-        """Residual unbalance with the hole; the whole unbalance without one."""
+        """Residual unbalance with the counter-hole; without one the full unbalance."""
         if self.hole is None:
             return self.unbalance
         area = np.pi * self.hole.radius**2
@@ -99,7 +99,7 @@ def _unbalance(cam: CamBody, contour: Contour) -> Unbalance:
 def camshaft_loads(
     loads: Loads, shaft: Camshaft, cam: CamBody, contour: Contour, cam_speed: float
 ) -> ShaftLoads:
-    """Loads of the camshaft over a turn, with the centrifugal forces of cam and counterweight."""
+    """Camshaft loads over a turn, with the centrifugal forces of cam and counterweight."""
     made, weight = _as_made(cam, contour), shaft.counterweight
     thrown = rotating_force(made.product, made.angle, cam_speed, loads.theta)
     held = np.zeros_like(thrown)
@@ -126,5 +126,5 @@ def _as_made(cam: CamBody, contour: Contour) -> Unbalance:
 
 
 def drilled_hole(cam: CamBody, contour: Contour) -> CounterHole | None:
-    """The counter-hole as drilled; None where the case states none, or none fits."""
+    """Counter-hole to drill; None where the case requests none, or none fits."""
     return None if cam.counter_hole is None else balance(cam, contour).hole

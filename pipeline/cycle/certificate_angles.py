@@ -1,4 +1,4 @@
-"""Angles of the certificate, and their solution in worker processes."""
+"""Choice of the certified angles, and their solution in worker processes."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int
 
 
 def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[LengthLoad, ...]:
-    """Contacts of the bodies with ends to be solved by finite elements.
+    """Contacts with body ends to be certified by finite elements.
 
     The greatest signed pressure of all load cases; that of each other load case whose contact is
     about as wide, so that the same blocks serve; those of the first load case nearest to cam angles
@@ -145,7 +145,7 @@ _EXTREMES: tuple[Callable[[ContactHistory], Array], ...] = (
 def finest_positions(
     cycles: Sequence[Cycle], chosen: Sequence[tuple[int, int]]
 ) -> tuple[tuple[int, int], ...]:
-    """Of chosen (load case, position) the two of the greatest contact pressure."""
+    """The two of the chosen (load case, position) with the greatest contact pressure."""
     left, taken = list(chosen), list[tuple[int, int]]()
     while left and len(taken) < FINEST:
         pressures = [cycles[case].contact.p0[k] for case, k in left]
@@ -155,7 +155,7 @@ def finest_positions(
 
 @dataclass(frozen=True, eq=False)
 class BegunCertificate:
-    """Certificate whose meshes are being solved.
+    """Certificate whose meshes are being solved in worker processes.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def begun(
     observed: tuple[CertificatePoint, ...] = (),
     store: ContactStore = NOT_STORED,
 ) -> BegunCertificate:
-    """Certificate at chosen (load case, position), its meshes handed to worker processes.
+    """Certificate at chosen (load case, position), its meshes submitted to worker processes.
 
     The finest mesh is solved at `finest_positions` alone; nowhere with the points `observed` on
     three meshes, whose orders then hold. Figures that the store has are not

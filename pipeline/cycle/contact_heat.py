@@ -22,7 +22,7 @@ def flash_history(
     contact: ContactHistory,
     sliding: FaceSliding,
 ) -> Array | None:
-    """Rise of the temperature in the contact (n,), K; None without friction or thermal data.
+    """Flash temperature rise (n,), K; None without friction or thermal data.
 
     Where the face reverses its motion through the contact it takes no heat: the cusp between two
     angles is that of the nearer.

@@ -1,4 +1,4 @@
-"""Cam and follower of a machine as a contact pair."""
+"""Contact pair of cam and follower of a machine."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from camwright.pipeline.cycle.cam_balance import drilled_hole
 
 
 def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
-    """Contour, bodies and materials of the contact; every load case has the same."""
+    """Contour, bodies and materials of the contact, the same in every load case."""
     cam, width = machine.cam, machine.contact_width
     return ContactPair(
         contour=contour,

@@ -1,4 +1,4 @@
-"""Solved pieces of the contact in a store, to resume an interrupted run."""
+"""Store of solved pieces of the contact, to resume an interrupted run."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOT_STORED: ContactStore = Store(None, PACKED)
 def kept_piece(
     store: ContactStore, load_case: str, index: int, key: str, compute: Callable[[], Arrays]
 ) -> Arrays:
-    """Arrays of a piece by name, from the store or computed and stored.
+    """Arrays of a piece by name, from the store, or computed and stored.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def kept_piece(
 
 
 def piece_key(pair: ContactPair, normal_force: Array, *inputs: float) -> str:
-    """SHA-256 of the inputs of a piece: the pair, its normal forces, N, and all others."""
+    """SHA-256 of all inputs of a piece: pair, normal forces, N, and options."""
     digest = hashlib.sha256(pair.contour.pitch.lift.values.tobytes())
     digest.update(normal_force.tobytes())
     size = pair.width, pair.bore_radius

@@ -1,4 +1,4 @@
-"""Crank speed with and without the mechanism, and consistency of the inputs."""
+"""Crank speed with and without the mechanism; consistency of the inputs."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ POSITIONS = 720
 
 @dataclass(frozen=True, eq=False)
 class SpeedStudy:
-    """Three motions of the crank under the same torque.
+    """Crank motions under one engine torque: alone, with the follower's inertia, with the cam.
 
     Parameters
     ----------
@@ -77,12 +77,12 @@ class SpeedStudy:
         }
 
     def flywheel_masses(self, outer_radius: float) -> tuple[float, float]:
-        """Mass (kg) of that flywheel as a plain disc and as a thin rim of an outer radius (m)."""
+        """Mass (kg) of the equivalent flywheel as disc and as thin rim of an outer radius (m)."""
         return 2.0 * self.added_inertia / outer_radius**2, self.added_inertia / outer_radius**2
 
 
 def follower_inertia(pitch: FollowerPath, mass: float, gear_ratio: float, count: int) -> Array:
-    """Inertia of the follower at the crank, m (ds/dtheta_crank)^2, at equal cam angles, kg m2."""
+    """Inertia of the follower at the crank, m (ds/dtheta_crank)^2, kg m2, at equal cam angles."""
     slope = pitch.lift(uniform_turn(count), 1) / gear_ratio
     return np.asarray(mass * slope**2)
 
@@ -166,7 +166,7 @@ def _motion_with_cam(
 def study_of(
     machine: Machine, pitch: FollowerPath, rubbing: Rubbing | None = None
 ) -> SpeedStudy | None:
-    """Crank speed of one load case; None without a crankshaft or a torque.
+    """Crank speed study of one load case; None without a crankshaft or torque.
 
     Guide friction follows from `rubbing`, without it from point supports. Reciprocating masses that
     the engine states are part of J(theta); their inertia torque at constant speed is subtracted.
@@ -197,14 +197,14 @@ def _driving(torque: Torque, constant: float) -> tuple[Array, Inertia]:
 
 
 class DrivenCam(NamedTuple):
-    """Speed of the cam (n,), rad/s; cam angle at which its crank stalls, rad, None: it turns."""
+    """Cam speed (n,), rad/s, and cam angle of a stall, rad; None: the crank turns."""
 
     speed: Array
     stall: float | None = None
 
 
 def driven_cam(machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> DrivenCam:
-    """Cam at the angles of `rubbing`, equal parts of a turn.
+    """Cam speed at equal angles of the turn, driven through the crank's inertia.
 
     With a torque and a crankshaft the speed is that of the crank with the cam; constant without
     them, and where the crank stalls, whose loads no check may rest on.
@@ -294,7 +294,7 @@ def consistency(
     rubbing: Rubbing | None = None,
     measured: bool = False,
 ) -> tuple[Implied, ...]:
-    """Inertia, power, energy and work against the values that the other inputs imply.
+    """Findings on inertia, power, energy and work against the values implied by other inputs.
 
     Empty without a torque.
 

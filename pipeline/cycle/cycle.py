@@ -1,4 +1,4 @@
-"""Loads, contact, rolling and part loads over one cam turn."""
+"""Cycle: loads, contact, rolling and part loads over one cam turn."""
 
 from __future__ import annotations
 
@@ -60,8 +60,7 @@ def least_spring_force(spring: Spring, contour: Contour) -> float:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Cycle(Tabled):
-    """A turn with its contact; rolling, part loads and the response of an elastic follower are
-    computed from both on first use.
+    """Turn of a load case with its contact; rolling, part loads, elastic response on demand.
 
     bodies are the meshed bodies of the contact; None in a preview, where the contact is that of
     half-planes, and for a contour that encloses no body, where it is unknown. None inside rolling
@@ -93,7 +92,7 @@ class Cycle(Tabled):
         return cycle
 
     def adopt(self, other: Cycle) -> None:
-        """Take over what another cycle of the same loads and contact has computed from them."""
+        """Take over results computed by another cycle of the same loads and contact."""
         self.results.update(other.results)
 
     @property
@@ -130,7 +129,7 @@ class Cycle(Tabled):
 
     @cached_property
     def loads_between(self) -> Loads:
-        """Forces at `BETWEEN` times the angles, for extremes between those that are solved.
+        """Forces on a grid `BETWEEN` times finer, for extremes between the solved angles.
 
         The closed forms with the rubbing load of the guides linear between the angles, and linear
         between them too what the solved forces of `_ALONG` differ by.
@@ -422,7 +421,7 @@ class Cycle(Tabled):
 
 
 def turn_of_line(cycle: Cycle) -> TurnOfLine:
-    """What the pressure along the line of contact of a cycle follows from."""
+    """Inputs of the pressure along the line of contact of a cycle."""
     force = cycle.loads.normal_force
     return TurnOfLine(cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt)
 
@@ -437,7 +436,7 @@ def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:
 
 
 def solve_lengths(cycles: Iterable[Cycle]) -> None:
-    """Solve the pressure along the line of contact of many cycles at once.
+    """Solve the pressure along the line of contact of several cycles together.
 
     Raises
     ------

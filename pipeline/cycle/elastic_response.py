@@ -1,4 +1,4 @@
-"""Follower on its elastic train over a turn, at the computed cam speed."""
+"""Response of the elastic follower over a turn at the computed cam speed."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _BEFORE = 0.1  # of a turn before a loss of contact, from where the motion is in
 
 @dataclass(frozen=True, eq=False)
 class ElasticHistory:
-    """One turn; arrays (n,) SI.
+    """Response of the elastic follower over one turn; arrays (n,), SI.
 
     response is the periodic one with the contact kept, deflection the shortening of the train.
     flights are the losses of contact in one turn, which begins with the state of that response in
@@ -45,7 +45,7 @@ class ElasticHistory:
 
 
 def elastic_follower(machine: Machine, lift: Array | None = None) -> ElasticFollower:
-    """The follower's mass on bearing, pin, fork, stem and camshaft in series.
+    """Follower mass on bearing, pin, fork, stem and camshaft in series.
 
     Parameters
     ----------

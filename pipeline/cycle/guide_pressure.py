@@ -1,4 +1,4 @@
-"""Line load of both guides over the turn, and pressure around the bore at its maximum."""
+"""Line load of both guides over the turn, and bore pressure at its maximum."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def guide_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike]:
 
 
 def loaded_length(knots: Array, line: Array) -> Array:
-    """Equal steps, m, over the loaded knots (k,) and their neighbours."""
+    """Evenly spaced positions, m, over the loaded knots (k,) and their neighbours."""
     on = np.flatnonzero(line)
     if not on.size:
         return np.linspace(knots[0], knots[-1], SLICES)
@@ -88,7 +88,7 @@ def loaded_length(knots: Array, line: Array) -> Array:
 
 
 def bore_pressure(machine: Machine, guide: Guide, line_load: Array) -> Array:
-    """Pressure (k, m), Pa, around the bore under line loads (k,), N/m, of a guide on its stem.
+    """Pressure (k, m), Pa, around a guide's bore under line loads (k,), N/m.
 
     Each slice of the guide is an independent pin in a hole; a negative load acts on the other side
     of the bore. Solved at `_LOADS` loads, interpolated between them at equal shares of the contact

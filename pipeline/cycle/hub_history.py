@@ -1,4 +1,4 @@
-"""Stress at the keyway's root over the turns, the cam on its shaft, and its fatigue safety.
+"""Fatigue of the keyway root over the turns, cam on shaft by finite elements.
 
 At the least and at the greatest interference, over all load cases: a place of the root passes from
 its least to its greatest stress.
@@ -26,7 +26,7 @@ ANGLES = 180
 
 @dataclass(frozen=True)
 class RootFatigue:
-    """Fatigue of the keyway's root at one interference.
+    """Fatigue of the keyway root at one interference.
 
     goodman, fkm: safety factors by two methods; greatest, least: stress of the place that governs,
     Pa, with load case and cam angle, rad, of the greatest; opened: share of the angles at which a
@@ -51,19 +51,19 @@ class RootFatigue:
 
 @dataclass(frozen=True)
 class HubFatigue:
-    """Fatigue of the keyway's root at the least and at the greatest interference."""
+    """Fatigue of the keyway root at least and greatest interference."""
 
     loose: RootFatigue
     tight: RootFatigue
 
     @property
     def governing(self) -> RootFatigue:
-        """That of the lower safety factor."""
+        """Result of the lower safety factor."""
         return min(self.tight, self.loose, key=lambda one: one.safety)
 
 
 def seated_cam(contour: Contour, numbers: Numbers, refinement: float = 1.0) -> SeatedCam | None:
-    """The cam on its shaft; None without fit, key, root radius or the material of the shaft."""
+    """Cam on its shaft; None without fit, key, root radius or shaft material."""
     case = numbers.known_case
     cam, shaft = case.cam, None if case.camshaft is None else case.camshaft.material
     keyway, flanks, radius = cam.keyway, cam.key_flanks, cam.keyway_root_radius
@@ -81,7 +81,7 @@ def seated_cam(contour: Contour, numbers: Numbers, refinement: float = 1.0) -> S
 def hub_fatigue(
     contour: Contour, cycles: Sequence[Cycle], numbers: Numbers, refinement: float = 1.0
 ) -> HubFatigue | None:
-    """Fatigue of the keyway's root by finite elements; None without the data, or unknown loads.
+    """Fatigue of the keyway root by finite elements; None without data, or with unknown loads.
 
     Raises
     ------

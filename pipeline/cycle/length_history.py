@@ -1,4 +1,4 @@
-"""Pressure along the line of contact over the turn: ends, crown and tilt, and what is signed."""
+"""Pressure along the line of contact over the turn, with ends, crown and tilt."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ at a corner, of a bounded peak."""
 
 @dataclass(frozen=True, eq=False)
 class LengthHistory:
-    """Pressure along the line of contact over the peak of plane strain, arrays (n,).
+    """Pressure along the line of contact over plane-strain peak pressure, arrays (n,).
 
     centre: in the middle, untilted; level, tilted: signed, without a moment and at the greatest
     one, `moment` (N m); at_corner: whether the greater of both is the mean over `mean_length` (m)
@@ -116,7 +116,7 @@ class LengthHistory:
         )
 
     def sentence(self, place: int) -> str:
-        """What the signed pressure is at one of the angles."""
+        """Kind of the stated pressure at one angle, in words."""
         mean = shown(self.mean_length, "mm")
         what = "greatest pressure along the line, which is bounded"
         if self.at_corner[place]:
@@ -136,7 +136,7 @@ class LengthHistory:
         )
 
     def tier(self, place: int) -> str:
-        """By which tier the factor and its error bar are at one of the angles."""
+        """Tier of the factor and its error bar at one angle."""
         bar = f"error bar {100.0 * self.error[place]:.2g} %"
         if self.correction is None:
             return f"by half-spaces with mirrored ends, {bar} as stated, finite elements not solved"
@@ -146,7 +146,7 @@ class LengthHistory:
         )
 
     def in_the_middle(self, plane: ContactHistory) -> ContactHistory:
-        """Contact in the middle of the line, that of the line load there; of a straight one as is.
+        """Contact scaled to the line load in the middle; unchanged for a straight line.
 
         Pressures, widths and depths of a line contact grow with the root of its line load.
         """
@@ -160,7 +160,7 @@ class LengthHistory:
 
 
 class TurnOfLine(NamedTuple):
-    """A turn of which the pressure along the line is sought.
+    """Inputs of the pressure along the line over one turn.
 
     force (n,): normal force, N; shaft (n,): slope of the camshaft at the cam, rad, as of
     `Cycle.shaft_tilt`.
@@ -205,7 +205,7 @@ class TurnOfLine(NamedTuple):
 
     @property
     def couple(self) -> Array:
-        """Greatest couple (n,), N m, that friction of the guides and axial offset can hold."""
+        """Greatest couple (n,), N m, of guide friction and axial offset."""
         machine = self.machine
         return held_couple(machine, self.guides) + self.force * machine.stem_offset
 
@@ -231,7 +231,7 @@ class TurnOfLine(NamedTuple):
 
 
 def length_histories(turns: Sequence[TurnOfLine]) -> tuple[LengthHistory | None, ...]:
-    """Pressure along the line of contact of each turn; None where the case lacks an end.
+    """Pressure along the line of contact of each turn; None where body ends are missing.
 
     The moment lies between zero and `greatest_moment`. Contacts of the same bodies are evaluated at
     once.
@@ -282,7 +282,7 @@ def _together(machine: Machine, loads: Sequence[ContactLoads]) -> FactorRange:
 
 
 class ContactLoads(NamedTuple):
-    """Contacts, all (count,).
+    """Curvature, force and moment of contacts, all (count,).
 
     curvature, 1/m, > 0; force, N, > 0; tilt, forced: greatest and forced, rad, see `LineTilt`;
     compliance: of stem and shaft, see `moment_compliance`; couple: greatest that friction and axial
@@ -299,7 +299,7 @@ class ContactLoads(NamedTuple):
 
 
 class FactorRange(NamedTuple):
-    """Factors of contacts (count,) over the range of their moment; see `LengthHistory`."""
+    """Axial factors of contacts (count,) over the range of their moment; see `LengthHistory`."""
 
     centre: Array
     level: Array
@@ -309,7 +309,7 @@ class FactorRange(NamedTuple):
 
 
 def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> FactorRange:
-    """Factors of contacts without a moment and under the greatest one, of either direction.
+    """Axial factors of contacts at zero and greatest moment of either direction.
 
     Parameters
     ----------
@@ -333,7 +333,7 @@ def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> F
 
 
 def moment_compliance(machine: Machine, overhang: Value, spacing: Value) -> Value:
-    """Slope of stem and camshaft together under the moment of the contact (...), rad/(N m).
+    """Slope of stem and camshaft per moment of the contact (...), rad/(N m).
 
     Parameters
     ----------
@@ -346,7 +346,7 @@ def moment_compliance(machine: Machine, overhang: Value, spacing: Value) -> Valu
 
 
 class TiltedPair(Protocol):
-    """A pair of bodies whose moment under a tilt is known."""
+    """Pair of bodies with the moment of the contact as a function of the tilt."""
 
     @property
     def pair(self) -> FinitePair: ...
@@ -361,7 +361,7 @@ class TiltedPair(Protocol):
 
 
 def greatest_moment(lines: TiltedPair, loads: ContactLoads) -> Array:
-    """Greatest moment (count,), N m, >= 0, about the middle of contacts, their loads raised.
+    """Greatest moment about the middle of contacts (count,), N m, >= 0, at raised loads.
 
     Within the clearances of the guides the stem aligns itself with the cam but for the couple that
     friction and axial offset hold: the moment is the lesser of it and of that of the greatest tilt.
@@ -386,7 +386,7 @@ def greatest_moment(lines: TiltedPair, loads: ContactLoads) -> Array:
 
 
 def raised_load(force: Array) -> Array:
-    """Factors (count,) >= 1 that raise vanishing loads to the lightest one solved.
+    """Factors (count,) >= 1 that raise vanishing loads to the lightest solved load.
 
     A vanishing load, of no pressure that counts, has the factor of pressure of that one.
     """
@@ -394,7 +394,7 @@ def raised_load(force: Array) -> Array:
 
 
 def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:
-    """The worse of the contacts at both ends, at each place; the greater pressure of the middle."""
+    """Worse contact of both ends at each position, with the greater pressure in the middle."""
     worst = ranges[0]
     for other in ranges[1:]:
         least = np.maximum(worst.level, worst.tilted) * (1.0 + TIE)
@@ -405,7 +405,7 @@ def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:
 
 
 def factor_at_pressure(pair: FinitePair, pressure: float, mean_length: float) -> float:
-    """Signed factor of an untilted contact of a plane-strain pressure, Pa, at its curvature."""
+    """Stated-pressure factor of an untilted contact at a plane-strain pressure, Pa."""
     half_width = 2.0 * pressure / (pair.contact_modulus * pair.curvature)
     force = 0.5 * np.pi * half_width * pressure * pair.contact_length
     edges, line = length_table(pair, mean_length).of_one(pair.curvature, force)
@@ -415,14 +415,14 @@ def factor_at_pressure(pair: FinitePair, pressure: float, mean_length: float) ->
 
 
 def held_couple(machine: Machine, guides: GuideReactions) -> Array:
-    """Couple (n,), N m, in the plane of stem and cam axis that friction of the guides can hold."""
+    """Couple (n,), N m, that guide friction can hold in the plane of stem and cam axis."""
     friction_a, friction_b = machine.friction.greatest
     held = np.minimum(friction_a * guides.rubbing_load_a, friction_b * guides.rubbing_load_b)
     return np.asarray(held * machine.guides.spacing)
 
 
 class AxialPressures(Protocol):
-    """Axial pressure of a pair, tabulated or solved; mean_length (m) of the mean at a corner."""
+    """Axial pressure of a pair, tabulated or solved; mean_length (m) of a corner mean."""
 
     @property
     def pair(self) -> FinitePair: ...
@@ -439,14 +439,14 @@ class AxialPressures(Protocol):
 def signed_factor(
     table: AxialPressures, curvature: Array, force: Array, moment: Array
 ) -> SignedPressure:
-    """Signed pressure of contacts over that of plane strain; see `signed_pressure`."""
+    """Stated pressure of contacts over plane strain; see `signed_pressure`."""
     edges, line = table.axial_pressure(curvature, force, moment)
     flat, corner = table.pair.contact_length, table.pair.has_singular_end
     return signed_pressure(edges, line, flat, table.mean_length, has_corner=corner)
 
 
 def length_table(pair: FinitePair, mean_length: float) -> FactorTable:
-    """Table of the pressure along the line of a pair of bodies, of any curvature; kept.
+    """Cached table of the axial pressure of a pair of bodies, of any curvature.
 
     mean_length : float   of the mean at a corner, m
     """

@@ -1,4 +1,4 @@
-"""Records of contacts of finite length: factors by tier, pressure over y, subsurface stress."""
+"""Records of finite-length contacts: factors by tier, pressure over y, subsurface stress."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _DIGITS = 7
 def length_record(
     certificate: LengthCertificate | None, bodies: Sequence[str]
 ) -> list[LengthPointRecord]:
-    """Contact of bodies with ends by both tiers at each angle, over plane-strain p0.
+    """Record of finite-length contact by both tiers at each angle, over plane-strain p0.
 
     bodies : sequence   names of both bodies
     """
@@ -71,7 +71,7 @@ def _tier(tier: TierResult) -> LengthTier:
 
 
 def factors(tier: TierResult) -> LengthFactors:
-    """Factors of a tier over plane-strain p0 by name."""
+    """Axial factors of a tier by name, over plane-strain p0."""
     return _by_name(tier.factors.all[0])
 
 

@@ -1,4 +1,4 @@
-"""Tilt of the line of contact: its parts, and what of it the guides do not take up."""
+"""Tilt of the line of contact: its parts, and the tilt that the guides force on it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from camwright.pipeline.base.units import in_unit
 
 @dataclass(frozen=True, eq=False)
 class LineTilt:
-    """Parts of the tilt of the line of contact, rad, in the plane of its normal and the cam axis.
+    """Parts of the tilt of the contact line, rad, in the plane of its normal and the cam axis.
 
     shaft (n,): slope of the camshaft at the cam, signed; parallelism: of the axes of cam and
     follower as made; run_out: of the cam on its shaft; roller: of the roller in the clearance of
@@ -35,21 +35,21 @@ class LineTilt:
 
     @property
     def imposed(self) -> Array:
-        """Greatest angle (n,) between cam and guides: the shaft's with the worst of the others."""
+        """Greatest angle (n,) between cam and guides: shaft slope and worst tolerances."""
         return np.asarray(np.abs(self.shaft) + self.parallelism + self.run_out)
 
     @property
     def forced(self) -> Array:
-        """Tilt (n,), >= 0, that is left where the stem has used up the clearances of its guides."""
+        """Tilt (n,), >= 0, beyond the clearances of the stem in its guides."""
         return np.asarray(np.maximum(self.imposed - self.guides, 0.0))
 
     @property
     def greatest(self) -> Array:
-        """Greatest tilt (n,): all parts, as far as friction of the guides can hold it."""
+        """Greatest tilt (n,): all parts, limited by the couple of guide friction."""
         return np.asarray(self.imposed + self.roller + self.guides)
 
     def parts(self, place: int) -> Iterator[tuple[str, float]]:
-        """Parts by their names at one of the angles, rad."""
+        """Parts of the tilt by name at one angle, rad."""
         yield "camshaft", abs(float(self.shaft[place]))
         yield "parallelism", float(self.parallelism)
         yield "run-out", float(self.run_out)
@@ -57,7 +57,7 @@ class LineTilt:
         yield "roller bearing", float(self.roller)
 
     def sentence(self, place: int) -> str:
-        """The tilt and its parts at one of the angles."""
+        """Tilt and its parts at one angle, in words."""
         parts = ", ".join(
             f"{name} {in_unit(angle, 'mrad'):.3g}" for name, angle in self.parts(place)
         )
@@ -77,7 +77,7 @@ def line_tilt(
     bearing_length: Value | None,
     guides: Value,
 ) -> LineTilt:
-    """Tilt of a line of contact from the slope of the shaft and the tolerances.
+    """Tilt of a line of contact from shaft slope and tolerances.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ from camwright.pipeline.follower.spring_kinds import SpringShape, rise
 
 
 def motion_of(jet: Jet, numbers: Numbers) -> Motion:
-    """Motion of the translating follower of the numbers; see `PitchCurve` and `FacePath`."""
+    """Kinematics of the follower from its numbers; see `PitchCurve` and `FacePath`."""
     prime, offset = numbers["cam.prime_radius"], numbers["cam.offset"]
     if numbers.get("follower.face.width") is not None:
         friction = numbers.get("follower.face.friction")
@@ -39,7 +39,7 @@ def motion_of(jet: Jet, numbers: Numbers) -> Motion:
 
 
 def roller_of(path: Motion) -> RollerMotion:
-    """The motion of a roller.
+    """Kinematics of a roller; refused for a face.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def roller_of(path: Motion) -> RollerMotion:
 
 
 def face_of(path: Motion) -> FaceMotion:
-    """The motion of a flat face.
+    """Kinematics of a flat face; refused for a roller.
 
     Raises
     ------
@@ -65,25 +65,25 @@ def face_of(path: Motion) -> FaceMotion:
 
 
 def not_negative(values: Array) -> Array:
-    """Values, and zero where they are negative; complex."""
+    """Positive part of real or complex values, for complex steps."""
     return np.where(np.real(values) > 0.0, values, 0.0 * values)
 
 
 class OfGuides(NamedTuple):
-    """A quantity of guides A and B."""
+    """Pair of values of guides A and B."""
 
     a: Array
     b: Array
 
 
 def greatest_friction(numbers: Numbers) -> OfGuides | None:
-    """Maximum friction coefficients of the guides; None where they are not known."""
+    """Maximum friction coefficients of both guides; None where not known."""
     on_a, on_b = (numbers.get(f"guides.{side}.friction_greatest") for side in "ab")
     return None if on_a is None or on_b is None else OfGuides(np.asarray(on_a), np.asarray(on_b))
 
 
 def wire_of(numbers: Numbers) -> WoundWire[Value]:
-    """Wire of the spring as wound.
+    """Wound spring of the machine.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def wire_of(numbers: Numbers) -> WoundWire[Value]:
 
 @dataclass(frozen=True, eq=False)
 class LoadedCam:
-    """A cam at n cam angles under the loads of its follower; arrays (..., n), SI.
+    """Cam at n angles under the loads of its follower: measures of the checks, (..., n), SI.
 
     The forces are not clipped at loss of contact and at jamming: a search needs their slope beyond
     both. Leading axes are those of load cases, tolerance corners or designs; pairs of one and a cam
@@ -133,13 +133,13 @@ class LoadedCam:
 
     @property
     def spring_shape(self) -> SpringShape | None:
-        """Rise of the force of a spring that is not linear; None: linear."""
+        """Force rise of a nonlinear spring; None for a linear one."""
         case = self.numbers.case
         return None if case is None else case.spring.shape
 
     @property
     def drag(self) -> Drag | None:
-        """Inertia and drag of the roller; None without one."""
+        """Inertia and bearing drag of the roller; None without one."""
         case = self.numbers.case
         return None if case is None else case.facing.drag
 
@@ -156,7 +156,7 @@ class LoadedCam:
 
     @property
     def slope(self) -> Array:
-        """Slope of the lift, m/rad; its sign is that of the motion."""
+        """Slope of the lift, m/rad, > 0 on the rise."""
         return self.jet.slope
 
     @cached_property
@@ -166,12 +166,12 @@ class LoadedCam:
 
     @cached_property
     def spin(self) -> Array:
-        """Speed of the roller on its pin, rad/s."""
+        """Angular speed of the roller on its pin, rad/s."""
         return np.asarray(self.speed * self.motion.rolling)
 
     @property
     def spin_mean(self) -> Array:
-        """Mean speed of the roller over the turn (..., 1), rad/s: of one on the prime circle."""
+        """Mean angular speed of the roller over the turn (..., 1), rad/s, on the prime circle."""
         numbers = self.numbers
         rolling = rolling_share(np.asarray(numbers["cam.prime_radius"]), numbers["roller.radius"])
         return np.asarray(self.speed * rolling)
@@ -227,12 +227,12 @@ class LoadedCam:
 
     @property
     def stressed(self) -> SpringWork[Value]:
-        """Work of the hardest spring with the greatest force, surge included where it is known."""
+        """Operating range of the hardest spring at greatest force, with surge where known."""
         return self.hardest
 
     @property
     def fatigued(self) -> SpringWork[Value]:
-        """Work of the hardest spring where it is fatigued most; as `stressed`."""
+        """Operating range of the hardest spring at worst fatigue, with surge where known."""
         return self.hardest
 
     @cached_property
@@ -258,7 +258,7 @@ class LoadedCam:
 
     @cached_property
     def required(self) -> Array:
-        """Axial force without guide friction, N; negative: of a cam that would have to pull."""
+        """Axial force without guide friction, N; negative where the cam would have to pull."""
         return self.closing + self.inertia + self.viscous
 
     @cached_property
@@ -276,7 +276,7 @@ class LoadedCam:
 
     @property
     def jam_worst(self) -> Array | None:
-        """Jam index at the maximum friction of the guides; None where that is not known."""
+        """Jam index at maximum guide friction; None where that is not known."""
         most = greatest_friction(self.numbers)
         if most is None:
             return None
@@ -337,17 +337,17 @@ class LoadedCam:
 
     @cached_property
     def bearing(self) -> OfGuides:
-        """Greater push on one side of a guide over the loaded share of its length, N."""
+        """Load on the loaded side of a guide over its loaded share of length, N."""
         return OfGuides(*(self.axial * each.on_points for each in self.reactions))
 
     @property
     def hot_share(self) -> OfGuides:
-        """As `rubbing_share`, at the maximum friction."""
+        """`rubbing_share` at maximum friction."""
         return OfGuides(*(each.on_points for each in self.reactions))
 
     @cached_property
     def hot(self) -> OfGuides | None:
-        """Friction of the guides at the maximum friction, N; None where that is not known."""
+        """Friction force of the guides at maximum friction, N; None where not known."""
         friction, jam = greatest_friction(self.numbers), self.jam_worst
         if friction is None or jam is None:
             return None
@@ -357,13 +357,13 @@ class LoadedCam:
 
     @property
     def heat(self) -> OfGuides | None:
-        """Friction power of the guides at the maximum friction, W; None where it is not known."""
+        """Friction power of the guides at maximum friction, W; None where not known."""
         hot = self.hot
         return None if hot is None else OfGuides(*(magnitude(each * self.velocity) for each in hot))
 
     @property
     def pressure_factor(self) -> Value:
-        """Contact pressure over that of half-planes in plane strain."""
+        """Contact pressure over that of plane-strain half-planes."""
         return 1.0
 
     @cached_property
@@ -380,12 +380,12 @@ class LoadedCam:
 
     @property
     def p0_signed(self) -> Array:
-        """Contact pressure with ends and tilt, Pa; here that of a line without ends."""
+        """Contact pressure with ends and tilt, Pa; here of a line without ends."""
         return self.p0
 
     @property
     def half_width(self) -> Array:
-        """Half-width of the contact, m: at the same force it falls as the pressure rises."""
+        """Half-width of the contact, m, inverse to the pressure at equal force."""
         numbers, radius = self.numbers, self.motion.size * (1.0 - self.motion.sharpness)
         force = np.where(np.real(self.normal) < _LEAST_FORCE, _LEAST_FORCE, self.normal)
         radius = np.where(np.real(radius) < _LEAST_RADIUS, _LEAST_RADIUS, radius)

@@ -1,4 +1,4 @@
-"""Sizes of the mechanism of a case, and its envelope over the whole turn."""
+"""Dimensions of the mechanism of a case, and its envelope over the turn."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from camwright.pipeline.cycle.numbers import Numbers
 
 
 def stem_layout(lift: Value, numbers: Numbers, preload: Value) -> StemLayout:
-    """Guides, stem and coil spring at a maximum lift and a preload; parts left out have no size.
+    """Layout of guides, stem and coil spring at a maximum lift and preload.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def stem_layout(lift: Value, numbers: Numbers, preload: Value) -> StemLayout:
 
 
 def sizes_of(case: Case, cam_radius: float, lift: float) -> MechanismSizes:
-    """Sizes of a case under a cam of a maximum radius and lift, m; of a wound spring alone."""
+    """Dimensions of a case's mechanism at a maximum cam radius and lift, m."""
     numbers, state = Numbers({}, case), machine(case, case.load_cases[0])
 
     def number(key: str, other: float = 0.0) -> float:

@@ -1,4 +1,4 @@
-"""Fatigue at the root of a notch by its local elastic stress, by two methods."""
+"""Fatigue of a notch by its local elastic stress: Goodman with Marin, and FKM."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LEAST_STRENGTH = 400.0  # MPa, of the roughness factor of steel: verify
 
 
 class NotchStrength(NamedTuple):
-    """Strength of a notch without mean stress and the weights of a mean stress.
+    """Fatigue strength of a notch at zero mean stress, and mean-stress sensitivities.
 
     endurance: S_e of the modified Goodman line, k_a k_e S_e', tensile: R_m; local: amplitude at
     R = -1 of the local stress, sensitivity: M of a mean stress, by the FKM guideline; Pa.
@@ -56,13 +56,13 @@ class NotchStrength(NamedTuple):
 
     @property
     def bound(self) -> tuple[float, float]:
-        """Use per amplitude and per mean, 1/Pa, not below that of either method."""
+        """Utilisation per amplitude and per mean, 1/Pa, bounding both methods from above."""
         per_mean = max(1.0 / self.tensile, self.sensitivity / self.local)
         return 1.0 / min(self.endurance, self.local), per_mean
 
 
 def notch_strength(card: Material, root_radius: float, reliability: float) -> NotchStrength | None:
-    """Strength of a machined notch; None without tensile or fatigue strength.
+    """Fatigue strength of a machined notch; None without tensile or fatigue strength.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ _CORNER = 0.3
 
 
 class FittedRoot(NamedTuple):
-    """Bound of the stress at the root of a keyway in a ring on its shaft, Pa.
+    """Bound of the keyway-root stress in a ring on its shaft, Pa.
 
     Tension and compression are per contact force over width and depth of the keyway, 2 t b, and per
     pressure of the key; all with the factor (t/r)^0.3 of the root.
@@ -123,7 +123,7 @@ class FittedRoot(NamedTuple):
 
 
 def fitted_root(hoop: Value, keyway_depth: float, root_radius: float) -> FittedRoot:
-    """Bound of the stress at the root of a keyway in a cam on its shaft.
+    """Bound of the keyway-root stress in a cam on its shaft.
 
     The factors are not below those of finite elements of rings on solid shafts (bores of 12 to
     50 mm with keyways of DIN 6885-1, outer radius 1.75 to 4 times that of the keyway's floor, root

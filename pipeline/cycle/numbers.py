@@ -1,4 +1,4 @@
-"""Numbers of a machine by dotted key: of a case, its corners and load cases, or of many designs."""
+"""Numbers of a machine by dotted key: nominal, at corners, by load case, or of many designs."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Numbers:
     )
 
     def get(self, key: str) -> Value | None:
-        """Value at a key; None where the case leaves it out."""
+        """Value at a key; None where the case omits it."""
         if key in self.changed:
             return self.changed[key]
         if key in DERIVED:
@@ -87,7 +87,7 @@ class Numbers:
     def each(
         self, figures: Callable[[Numbers], Sequence[Value]], keys: Sequence[str], most: int = 0
     ) -> tuple[Value, ...]:
-        """Figures of a part, of designs those with each of their numbers at some keys.
+        """Figures of a part; for designs evaluated with each of their numbers at some keys.
 
         They depend on the case and on these numbers alone, and are made once for all designs of the
         same numbers, load cases and checks; NaN of more than `most` different ones, if not 0.
@@ -222,7 +222,7 @@ def base_radius(numbers: Numbers) -> Value:
 
 
 def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
-    """The cam on its shaft as a ring, of its least or greatest radius; None without a fit.
+    """Cam on its shaft as a ring of its least or greatest radius; None without a fit.
 
     None without the material of the camshaft, too. The least radius has the lower pressure and,
     of one interference, the greater hoop stress.
@@ -239,17 +239,17 @@ def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
 
 
 def least_interference(numbers: Numbers) -> Value | None:
-    """Least interference of the radii at rest, m, cold or in operation; None without a fit."""
+    """Least radial interference at rest, m, cold or in operation; None without a fit."""
     return _interference(numbers, "least")
 
 
 def greatest_interference(numbers: Numbers) -> Value | None:
-    """Greatest interference of the radii at rest, m, cold or in operation; None without a fit."""
+    """Greatest radial interference at rest, m, cold or in operation; None without a fit."""
     return _interference(numbers, "greatest")
 
 
 def presses(numbers: Numbers) -> bool:
-    """Whether the cam may press on its shaft: its greatest interference is one."""
+    """Whether the fit can have an interference."""
     greatest = greatest_interference(numbers)
     return greatest is not None and bool(np.any(np.asarray(greatest) > 0.0))
 

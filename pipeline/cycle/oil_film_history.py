@@ -25,7 +25,7 @@ _UM = 1e6
 
 @dataclass(frozen=True, eq=False)
 class FilmHistory:
-    """Minimum film thickness (n,), m, of smooth surfaces, over a turn.
+    """Minimum film thickness (n,), m, of smooth surfaces over a turn, and a mixed film.
 
     ratio (n,) is film thickness over combined roughness; None if a roughness is unknown. mixed is
     the film of rough surfaces by a regression of unverified source, NaN outside its range; None if

@@ -34,7 +34,7 @@ from camwright.pipeline.follower.spring import natural_frequency, surge_force
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PartLoads(Displayed):
-    """One turn; arrays (n,) SI, None where the case does not describe the part.
+    """Loads of the parts over one turn; arrays (n,), SI, None for a part not described.
 
     guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest;
     heat_* is the friction power of the guides, heat_max_* that at the greatest friction of both.
@@ -71,7 +71,7 @@ class PartLoads(Displayed):
                 freeze(self, **{name: getattr(self, name)})
 
     def columns(self, elastic: ElasticHistory) -> dict[Column, Array]:
-        """Columns of ``5_cycle.csv``, of the parts that the machine has."""
+        """Columns of ``5_cycle.csv`` for the parts of the machine."""
         friction = self.friction
         columns = {
             Column(
@@ -177,7 +177,7 @@ def part_loads(
 
 
 def spring_surge(machine: Machine, lift: Array) -> Array | None:
-    """Force of the surge on the follower (n,), N, from the lift at equal angles of a turn, m.
+    """Surge force of the spring on the follower (n,), N, by the lift at equal angles, m.
 
     None without a spring design.
     """
@@ -189,7 +189,7 @@ def spring_surge(machine: Machine, lift: Array) -> Array | None:
 
 
 def guide_bodies(machine: Machine, guide: Guide) -> tuple[SolidBar, Bush]:
-    """Stem and bore of a guide as pin and hole."""
+    """Stem and bush of a guide as pin and hole."""
     stem, bush = machine.stem, guide.material
     return SolidBar(stem.elastic_modulus, stem.poisson_ratio), Bush(
         bush.E, bush.nu, 2.0 * guide.wall_share
@@ -197,7 +197,7 @@ def guide_bodies(machine: Machine, guide: Guide) -> tuple[SolidBar, Bush]:
 
 
 def edge_pressure_of(machine: Machine, guide: Guide) -> Callable[[Array], Array]:
-    """Pressure of the stem in the bore of a guide (...), Pa, by its line load, N/m."""
+    """Pressure of the stem in a guide's bore (...), Pa, by its line load, N/m."""
     radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
     bodies = guide_bodies(machine, guide)
     return lambda line_load: peak_pressure(line_load, radius, clearance, *bodies)[0]
@@ -213,7 +213,7 @@ def _key_pressure(machine: Machine, loads: Loads) -> Array | None:
 
 
 def shaft_of(turn: Turn, contour: Contour) -> ShaftLoads | None:
-    """Loads of the camshaft over a turn; None where the case does not describe one."""
+    """Camshaft loads over a turn; None where the case describes no camshaft."""
     machine = turn.machine
     if machine.camshaft is None:
         return None

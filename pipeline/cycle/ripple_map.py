@@ -1,4 +1,4 @@
-"""Ripple map: torque ripple with the cam over that of the engine, by speed and engine load."""
+"""Ripple map: torque ripple with the cam over that without, by speed and engine load."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _FIXED = "Torque of the load case at every speed: its inertia is not separated."
 
 @dataclass(frozen=True, eq=False)
 class RippleMap:
-    """Crank-torque ripple (std) without and with the cam.
+    """Standard deviation of the crank torque without and with the cam, by speed and load.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class RippleMap:
 
     @property
     def ratio(self) -> Array:
-        """Ripple with the cam over that of the engine, (k, m)."""
+        """Torque ripple with the cam over that without, (k, m)."""
         return self.after / self.before
 
     def as_record(self) -> RippleMapRecord:
@@ -81,7 +81,7 @@ class RippleMap:
 def ripple_map(
     case: Case, states: Sequence[Machine], pitch: FollowerPath, rubbing: Rubbing
 ) -> RippleMap | None:
-    """Ripple from the slowest load case to over-speed; None without a running engine.
+    """Ripple map from slowest load case to over-speed; None without a running engine.
 
     The cam torque is quasi-static at constant speed, with follower inertia, viscous drag and guide
     friction, without surge. Of a cylinder model the load varies from that of the first running

@@ -53,7 +53,7 @@ ENVELOPE_ARRAYS = (
 
 
 class SweptStress:
-    """Map of the maximum stresses of a turn, computed on first use.
+    """Envelope of the subsurface stresses of a turn, computed on first use.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class SweptStress:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RollingHistory(Displayed):
-    """One turn; arrays (n,) SI. None where the case lacks the data.
+    """Rolling over one turn; arrays (n,), SI, None where the case lacks data.
 
     shear_range, Pa, of the orthogonal shear stress in the cam; bore, None in a preview; swept, map
     of the maximum stresses; traction_demand, tangential over normal force of rolling without slip,
@@ -117,7 +117,7 @@ class RollingHistory(Displayed):
         return cls(np.full(count, np.nan), None, SweptStress(Envelope.unknown))
 
     def columns(self) -> dict[Column, Array]:
-        """Columns of ``5_cycle.csv``; a contour that encloses no body leaves them unknown."""
+        """Columns of ``5_cycle.csv``; unknown for a contour that encloses no body."""
 
         def column(name: str, unit: str, meaning: str) -> Column:
             return Column(name, unit, meaning, unknown=True)
@@ -242,7 +242,7 @@ def _envelope(
 
 
 def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load: Array) -> Array:
-    """Stress (n,) along the contour, Pa, that the real cam adds under loads (n,) N/m.
+    """Stress along the contour (n,), Pa, of the real cam beyond the half-plane, by line loads.
 
     Interpolated between every few angles: the effect of a wall is smooth.
     """
@@ -267,7 +267,7 @@ def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
 
 
 def rolling_record(turns: Mapping[str, RollingHistory]) -> dict[str, RollingRecord]:
-    """Maxima of the turn and their places by load case, mm and MPa, for ``trial.json``."""
+    """Record of the maxima of the turn and their places by load case, mm and MPa."""
     return {name: _worst_record(turn) for name, turn in turns.items()}
 
 

@@ -1,4 +1,4 @@
-"""Solution: turns, contact and cycles of a cam in every load case, by one tier."""
+"""Solution: turns, contact and cycles of a cam in every load case, at one depth."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ CERTIFICATE, BENCHMARKS, ENDS = "certificate", "benchmarks", "ends"
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ContactMesh(Displayed):
-    """Cam and follower meshed for the contact at their worst angle, rad.
+    """Meshes of cam and follower for the contact at the worst angle, rad.
 
     `name` is that of the follower's body: roller or face.
     """
@@ -146,7 +146,7 @@ class Solution(Displayed):
         return {each: ForcesCam.between(each, self.numbers) for each in self.cycles}
 
     def adopt(self, other: Solution) -> None:
-        """Take over what another solution of the same loads has computed; not the crank speed."""
+        """Take over results of another solution of the same loads, but for the crank speed."""
         for cycle, same in zip(self.cycles, other.cycles, strict=True):
             cycle.adopt(same)
         self.results.update(other.results)
@@ -189,7 +189,7 @@ class Solution(Displayed):
 
     @KeptResult
     def hub_fatigue(self) -> HubFatigue | None:
-        """Fatigue of the keyway's root, the cam on its shaft by finite elements.
+        """Fatigue of the keyway root by finite elements.
 
         None in a preview, without a press fit or its data, and if the contour encloses no body.
         """
@@ -222,7 +222,7 @@ def solution(
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
 ) -> Solution:
-    """Solve a cam in every load case of a case.
+    """Solution of a cam in every load case of a case.
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ def solved_turns(
     body: bool | None = None,
     error_bars: bool = True,
 ) -> Solution:
-    """Contact and crank speed of turns whose loads are known.
+    """Contact and crank speed of turns whose loads are solved.
 
     Parameters
     ----------
@@ -327,7 +327,7 @@ def certified_solution(
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
 ) -> Solution:
-    """The solution with certificate and benchmarks.
+    """Solution with certificate and benchmarks added.
 
     Parameters
     ----------
@@ -395,7 +395,7 @@ def _with_ends(
 
 
 def bore_error(pair: ContactPair, cycles: tuple[Cycle, ...]) -> float | None:
-    """Relative error bar of the greatest bore stress by a mesh of half the element size.
+    """Relative error of the greatest bore stress, by a mesh of half the element size.
 
     3 times the change at the worst cam angle, under the same excluded zone: the grid convergence
     index of two meshes at the order 1. None where no bore is solved.
@@ -427,7 +427,7 @@ def bore_error(pair: ContactPair, cycles: tuple[Cycle, ...]) -> float | None:
 
 
 def is_body(contour: Contour) -> bool:
-    """Whether the contour encloses a body: no undercut, no crossing."""
+    """Whether the contour encloses a body: no undercut, no self-intersection."""
     return not contour.undercut().present and not contour.self_intersections()
 
 

@@ -1,4 +1,4 @@
-"""Loaded cams of a solution: the unloaded contour at any cam angles, forces and solved cycles."""
+"""Loaded cams of a solution: unloaded contour, solved forces, solved cycle."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from camwright.pipeline.follower.follower_forces import Loads, share_left
 
 
 def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
-    """Numbers of machines, one a load case, which at a tolerance corner are not those of the case.
+    """Numbers of the machines, one per load case, tolerance corner included.
 
     Those of the first, the greatest cam speed, the extreme preloads; see `in_load_case`.
     """
@@ -38,7 +38,7 @@ def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
 
 
 def in_load_case(numbers: Numbers, machine: Machine) -> Numbers:
-    """With those of the machine in its load case."""
+    """Numbers with those of the machine in its load case added."""
     spring = {"spring.preload": machine.spring.preload, "spring.rate": machine.spring.rate}
     return numbers | numbers_in(machine) | spring
 
@@ -61,7 +61,7 @@ def numbers_in(machine: Machine) -> dict[str, float | None]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ContourCam(LoadedCam):
-    """The unloaded cam of a contour, which at a tolerance corner is not that of the case."""
+    """Unloaded cam of a contour, tolerance corner included."""
 
     contour: Contour
 
@@ -76,7 +76,7 @@ class ContourCam(LoadedCam):
 
     @classmethod
     def at(cls, contour: Contour, numbers: Numbers, theta: Array, order: int) -> ContourCam:
-        """At cam angles (...), rad; order: of its jet."""
+        """Unloaded cam at cam angles (...), rad; order: of the derivatives of its lift."""
         lift = contour.lift
         return cls(lift.jet(theta, order), numbers, lift.highest.value, contour=contour)
 
@@ -90,7 +90,7 @@ class ContourCam(LoadedCam):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ForcesCam(ContourCam):
-    """A cam under the solved forces of a load case; arrays (n,).
+    """Cam under the solved forces of a load case; arrays (n,).
 
     The loads are clipped by `Loads`: no axial force where the follower has left the cam, and a
     finite one where it locks. Guides and contact, which are solved at fewer angles, are those of
@@ -167,7 +167,7 @@ class ForcesCam(ContourCam):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolvedCam(ForcesCam):
-    """A solved cycle: guides of finite length, contact by its tier, surge of the spring."""
+    """Cam of a solved cycle: guides of finite length, contact by its tier, spring surge."""
 
     cycle: Cycle
 

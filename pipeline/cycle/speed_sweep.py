@@ -1,4 +1,4 @@
-"""Sweep over the speed from standstill to over-speed: surge, contact forces, cam torque."""
+"""Speed sweep from standstill to over-speed: surge, contact forces, cam torque."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class SpeedSweep:
 
 @dataclass(frozen=True, eq=False)
 class SpringSweep:
-    """Least and greatest force (2, m), N, at moving and fixed end of the hardest spring.
+    """Least and greatest force (2, m), N, at both ends of the hardest spring over the speed.
 
     crank_speed (m,), rad/s: at which a spring of the nominal rate meets the same harmonics.
     """
@@ -113,7 +113,7 @@ def highest_speed(machines: Sequence[Machine]) -> float:
 def speed_sweep(
     machine: Machine, contour: Contour, rubbing: Rubbing, speeds: Sequence[float]
 ) -> SpeedSweep:
-    """Extremes over the turn from standstill to the greatest of some speeds.
+    """Extremes over the turn at speeds from standstill to the greatest of some speeds.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def speed_sweep(
 
 
 class SweptForces(NamedTuple):
-    """Forces over a turn at one speed, (n,), N, at n equal cam angles.
+    """Contact forces over a turn at one speed, (n,), N, at n equal cam angles.
 
     surge: change of the spring force by its surge; elastic: axial contact force with an elastic
     stem, without friction, less that of a rigid follower without surge.
@@ -154,7 +154,7 @@ class SweptForces(NamedTuple):
 def swept_forces(
     machine: Machine, contour: Contour, rubbing: Rubbing, cam_speed: float
 ) -> SweptForces:
-    """Forces of a sweep at one cam speed, rad/s; see `speed_sweep`."""
+    """Contact forces at one cam speed, rad/s, with surge and elastic stem; see `speed_sweep`."""
     follower = _Follower.of(machine, contour.pitch, rubbing)
     speed = np.array([cam_speed])
     moving = follower.resonant.stiffness(speed).moving
@@ -170,7 +170,7 @@ def spring_sweep(
     preload: float,
     speeds: Sequence[float],
 ) -> SpringSweep:
-    """Forces at both ends of the hardest spring from standstill to the greatest of some speeds.
+    """Forces at both ends of the hardest spring, standstill to the greatest of some speeds.
 
     The forces are those of the highest rate and preload in tolerance; the sweep extends to the
     speed at which the softest spring meets the same harmonics as at the greatest one.

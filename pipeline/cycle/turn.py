@@ -1,4 +1,4 @@
-"""Loads on cam, follower and guides over one turn, before the contact is solved."""
+"""Turn: loads on cam, follower and guides over one turn, before the contact."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Turn(Displayed):
 
 
 class TurnInput(NamedTuple):
-    """Machine in a load case, and its cam."""
+    """Machine in a load case with its cam."""
 
     machine: Machine
     contour: Contour
@@ -84,7 +84,7 @@ def turn(machine: Machine, contour: Contour, positions: int, *, coarse: bool = F
 def turns(
     inputs: Sequence[TurnInput], positions: int, *, coarse: bool = False, bounds: bool = True
 ) -> tuple[Turn, ...]:
-    """As `turn` of each load case; those in the same guides are solved at once.
+    """Turns of several load cases; those in the same guides are solved together.
 
     Parameters
     ----------

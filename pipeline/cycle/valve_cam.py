@@ -1,4 +1,4 @@
-"""Machine motion of a valve cam: uneven shaft speed, elastic follower, shape index.
+"""Valve cam: machine motion with uneven shaft speed, elastic follower, shape index.
 
 Equation numbers refer to Petrescu and Petrescu (2015): equations 6.1 to 6.20 of the roller follower
 as printed; of systems 1 to 15 only 11 and 15 are available, the others are standard mechanics and
@@ -75,7 +75,7 @@ class ValveCam:
         return np.arctan2(self.motion(phi, 1) - self.offset, self.height_base + self.motion(phi))
 
     def contour_radius_square(self, phi: ArrayLike, derivative: int = 0) -> Array:
-        """Square of the contact radius r_A (eq. 6.6), m^2, or its first derivative, m^2/rad.
+        """Square r_A^2 of the contact radius (eq. 6.6), m^2, or its derivative, m^2/rad.
 
         For a flat follower (r0 + s)^2 + s'^2.
         """
@@ -152,21 +152,21 @@ class ValveCam:
 
 
 def rise_efficiency(loads: Loads) -> float:
-    """Efficiency of the rise: work on spring and mass over work of the cam; 1 without friction."""
+    """Efficiency of the rise: work on spring and mass over cam work; 1 without friction."""
     up = loads.lift_slope > 0.0
     useful = (loads.spring_force + loads.inertia_force) * loads.lift_slope
     return float(np.sum(useful[up]) / np.sum(loads.cam_torque[up]))
 
 
 def shaft_speed(crank_rpm: float) -> float:
-    """Speed omega_m = pi n / 60 of a camshaft at half the crank speed n, rpm; rad/s (eq. 11)."""
+    """Camshaft speed omega_m = pi n / 60, rad/s, at crank speed n, rpm (eq. 11)."""
     return float(np.pi * crank_rpm / 60.0)
 
 
 def follower_acceleration(
     slope: ArrayLike, lift_d2: ArrayLike, speed: Array, turning: Array
 ) -> Array:
-    """Acceleration x'' omega^2 + x' epsilon of the follower, m/s^2 (eq. 15)."""
+    """Follower acceleration x'' omega^2 + x' epsilon, m/s^2 (eq. 15)."""
     return np.asarray(np.asarray(lift_d2) * speed**2 + np.asarray(slope) * turning)
 
 
