@@ -1,4 +1,4 @@
-"""Ratings of a synthesis: the limits of a case as the checks apply them."""
+"""Ratings of a synthesis: limits of the case in the form of its constraints."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 
 
 def ratings_of(case: Case) -> Ratings:
-    """Ratings of a case; the wall over the bore counts where the prime radius is free.
+    """Ratings of a case; the wall over the bore limits a free prime radius.
 
     The root of a keyway under a fit is judged by finite elements alone: its bound is too wide.
     """
@@ -67,7 +67,7 @@ def ratings_of(case: Case) -> Ratings:
 
 
 def limits_of(case: Case) -> dict[str, dict[str, float]]:
-    """Limits by the key of their constraint and by check, SI; without those outside the scope.
+    """Limits by constraint and check, SI, without those outside the scope.
 
     Of a row its value, else of the measure of the check.
     """
@@ -106,7 +106,7 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
 
 
 def edge_load(machine: Machine, guide: Guide, temperature: float) -> float | None:
-    """Line load in a guide whose edge pressure is the yield strength, N/m; None if not known."""
+    """Line load at which a guide's edge pressure reaches yield, N/m; None if not known."""
     strength, peak = guide.material.yield_strength_at(temperature), edge_pressure_of(machine, guide)
     if not strength > 0.0 or guide.clearance <= 0.0:
         return None
@@ -121,7 +121,7 @@ def edge_load(machine: Machine, guide: Guide, temperature: float) -> float | Non
 
 
 def softening(machine: Machine, guide: Guide, temperature: float) -> tuple[float, float]:
-    """Shares of pressure limit and line load of a guide that are left at a temperature, K.
+    """Remaining shares of pressure limit and line load of a guide at a temperature, K.
 
     1 where they are not known at the temperature: the check is then not evaluated.
     """
@@ -132,7 +132,7 @@ def softening(machine: Machine, guide: Guide, temperature: float) -> tuple[float
 
 
 def greatest_cycles(case: Case) -> LoadCycles:
-    """Upper bound of the load cycles in the target life, for any lift within the limits.
+    """Upper bound of the load cycles in the target life over all lifts within the limits.
 
     The roller centre moves by at most the greatest pitch radius over the cosine of the greatest
     pressure angle per cam angle.
@@ -147,7 +147,7 @@ def greatest_cycles(case: Case) -> LoadCycles:
 
 
 class Surge(NamedTuple):
-    """Rise of the forces of the hardest spring by its surge at a lift, N.
+    """Increase of the hardest spring's forces by surge at a lift, N.
 
     travel: maximum lift, m; stress: of the greatest force; most, least: of greatest and least
     force, where the wire is fatigued most.
@@ -179,7 +179,7 @@ def surge_of(solved: Solution) -> Surge | None:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TopCam(LoadedCam):
-    """A cam at a maximum lift, with the surge of the last solved one, which grows with the lift."""
+    """Cam at maximum lift, with the surge of the last solved cam scaled to its lift."""
 
     last: Surge
 
@@ -201,7 +201,7 @@ class TopCam(LoadedCam):
 
 
 def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
-    """Normal force, N, and contact pressure, Pa, at the limit of further checks, by their ids.
+    """Normal force, N, and contact pressure, Pa, at which further checks reach their limits, by id.
 
     From their utilisation on a solved cam: they depend on the whole turn, on the unbalance or on
     the stress below the surface, and have no closed form by cam angle.
@@ -222,7 +222,7 @@ def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
 
 
 def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
-    """Ratings with the limits that follow from a solved cam; see `surge_of`, `scaled_limits`."""
+    """Ratings with limits scaled from a solved cam; see `surge_of`, `scaled_limits`."""
     case = solved.case
     known = limits_of(case)
     scaled = {group: known[group] | own for group, own in scaled_limits(solved).items()}
@@ -236,7 +236,7 @@ def _travel_limit(case: Case, surge: Surge | None = None) -> dict[str, float]:
 
 
 def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
-    """Greatest lift allowed by each check at maximum lift that is kept, m, by its id.
+    """Greatest lift, m, that each kept check allows, by id.
 
     Without those that no lift, or every lift of the law of the spring, passes. Where rate or
     preload is free, the spring design is open. Without a surge, which depends on the lift, stress

@@ -1,4 +1,4 @@
-"""Bounds of the constraints in the unit of the drawing; ratings with one bound relaxed."""
+"""Bounds of the constraints in drawing units; ratings with one bound relaxed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Change = Callable[[Ratings, float], Ratings]
 
 @dataclass(frozen=True)
 class Bound:
-    """A bound of one constraint.
+    """Bound of one constraint in its drawing unit, with its relaxation.
 
     Parameters
     ----------

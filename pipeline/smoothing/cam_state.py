@@ -1,4 +1,4 @@
-"""Lift from its stored energy, loaded cam of a scenario, means over the turn, constraints.
+"""Cam of a synthesis: lift from stored energy, loads of a scenario, means, constraints.
 
 All functions take complex numbers: a complex step gives their derivative to round-off.
 """
@@ -43,7 +43,7 @@ from camwright.pipeline.smoothing.scenario import (
 
 
 def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
-    """Lift and three derivatives from the stored energy and its derivatives, J/rad^k.
+    """Lift and three derivatives, m/rad^k, from the stored energy and its derivatives, J/rad^k.
 
     F = sqrt(P^2 + 2 k E), s = 2 E / (F + P), and E' = F s' differentiated; P: preload, weight and
     mean external force.
@@ -85,13 +85,13 @@ _READ = (CONTACT_FORCE_MARGIN, PRESSURE_ANGLE, RETURN_PRESSURE_ANGLE)
 
 
 def unloaded(jet: Jet, variables: DesignVariables, ratings: Ratings) -> LoadedCam:
-    """Cam of a lift without loads."""
+    """Cam of a lift, without loads."""
     return LoadedCam(jet, _numbers(variables, ratings))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScenarioCam(LoadedCam):
-    """A cam in one scenario at n cam angles; in stacked scenarios, each array (..., n).
+    """Loaded cam of a scenario at n cam angles; of stacked scenarios (..., n).
 
     What finite elements, the surge or the heat of a solved cam add is in the `Correction` of the
     scenario, held while the search runs.
@@ -116,7 +116,7 @@ class ScenarioCam(LoadedCam):
 
     @cached_property
     def spin_mean(self) -> Array:
-        """That of the solved cam; before, of a roller on the prime circle."""
+        """Mean roller speed of the solved cam; before the first one, that on the prime circle."""
         rolling, path = self.fix.rolling[..., :1], roller_of(self.motion)  # one value
         prime = path.prime_radius[..., :1]
         share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
@@ -124,7 +124,7 @@ class ScenarioCam(LoadedCam):
 
     @property
     def direction(self) -> Array:
-        """As of any cam; the mean over its cell where a cam angle has one, see `Scenario`."""
+        """Sign of the motion, averaged over the cell of an angle with one; see `Scenario`."""
         sharp, cell = super().direction, self.scenario.cell
         if not np.any(cell):
             return sharp
@@ -174,7 +174,7 @@ class ScenarioCam(LoadedCam):
 def loaded(
     jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
 ) -> ScenarioCam:
-    """Cam of a lift in one scenario, or in stacked ones; highest: maximum lift, m."""
+    """Loaded cam of a lift in a scenario, or in stacked ones; highest: maximum lift, m."""
     numbers = (
         _numbers(variables, ratings)
         | scenario.numbers.changed
@@ -197,7 +197,7 @@ def loaded(
 
 
 class Total(NamedTuple):
-    """Utilisations over several scenarios.
+    """Combination of means over several scenarios into utilisations.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ class Total(NamedTuple):
 
 
 class Mean(NamedTuple):
-    """Utilisations from means over the turn; terms (..., n) at equally spaced angles.
+    """Utilisations from means over the turn; terms (..., n) at equal angles.
 
     Of each scenario the power of its mean, or of several scenarios the total; times a factor.
     """
@@ -264,7 +264,7 @@ _SHARE = 1e-5  # of a mean: step of the second derivatives
 
 
 def duty_shares(scenario: Scenario) -> Array | None:
-    """Shares (r, s) of stacked scenarios in the operation at each tolerance corner.
+    """Shares (r, s) of stacked scenarios in the operating time at each tolerance corner.
 
     None without a duty: each scenario counts for the whole life.
     """
@@ -275,7 +275,7 @@ def duty_shares(scenario: Scenario) -> Array | None:
 
 
 def by_duty(terms: Array, scenario: Scenario, power: float = 1.0) -> Mean:
-    """Power of the sum of damage or wear of the load cases by their duty.
+    """Utilisation by duty-weighted damage or wear over the load cases.
 
     Parameters
     ----------
@@ -300,7 +300,7 @@ State = TypeVar("State", LoadedCam, ScenarioCam)
 
 @dataclass(frozen=True)
 class Constraint(Generic[State]):
-    """A limit that the synthesis keeps.
+    """Constraint of a synthesis: limit of a check in differentiable form.
 
     Parameters
     ----------
@@ -323,7 +323,7 @@ class Constraint(Generic[State]):
 
     @property
     def name(self) -> str:
-        """Name of its utilisation: id of the check, or limit of a stroke."""
+        """Name of its utilisation: check id, or limit of a stroke."""
         return self.stroke or self.check
 
     def value(self, ratings: Ratings) -> float | None:
@@ -332,12 +332,12 @@ class Constraint(Generic[State]):
 
 
 def where_applies(applies: Value, use: Array) -> Array:
-    """Utilisation in the scenarios to which a limit applies, far from it in the others."""
+    """Utilisation where a limit applies; far below it in the other scenarios."""
     return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
 
 
 def kept(declared: Declaration) -> Constraint[LoadedCam]:
-    """Constraint of a check that is declared by a measure.
+    """Constraint of a check declared by a measure.
 
     Raises
     ------
@@ -364,7 +364,7 @@ def kept(declared: Declaration) -> Constraint[LoadedCam]:
 
 
 def kept_strokes(declared: Declaration) -> tuple[Constraint[LoadedCam], ...]:
-    """Constraints of the strokes of a check with limits of their own, after the first."""
+    """Constraints of a check's further strokes that have limits of their own."""
     whole, strokes = kept(declared), () if declared.measured is None else declared.measured.strokes
 
     def of_stroke(stroke: Stroke) -> Constraint[LoadedCam]:
@@ -378,7 +378,7 @@ def kept_strokes(declared: Declaration) -> tuple[Constraint[LoadedCam], ...]:
 
 
 def kept_loads(declared: Declaration) -> Constraint[ScenarioCam]:
-    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced."""
+    """Constraint of a check on loads, reduced over turn and load cases; see `kept`."""
     of_cam, how = kept(declared), declared.measured
 
     def utilisation(cam: ScenarioCam, limit: float) -> Array | Mean | None:

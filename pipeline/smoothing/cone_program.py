@@ -1,4 +1,4 @@
-"""Convex programs with linear limits and second-order cones, solved by Clarabel."""
+"""Second-order cone programs with linear and quadratic terms, solved by Clarabel."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _BEYOND = 1e-7  # of a norm over its bound, ten times the tolerance of the solve
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """Rows of one limit: level + entries @ x[columns] <= slack; level (m,), entries (m, w).
+    """Linear rows of one limit: level + entries @ x[columns] <= slack; (m,), (m, w).
 
     scenario, point (m,): of each row. mean: from means over the turn; the scenario is the number of
     the utilisation, the point -1. A cost has its greatest row in the objective, a row that is not
@@ -45,7 +45,7 @@ class Linear:
 
 @dataclass(frozen=True, eq=False)
 class Norm:
-    """A ripple |level + slopes @ x|, (m,) and (m, n): in the objective, bounded, or both.
+    """Ripple |level + slopes @ x| as a cone, (m,) and (m, n): minimised, bounded, or both.
 
     number: of the weighted scenario.
     """
@@ -63,7 +63,7 @@ class Norm:
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """Trust region |slopes @ x| <= bound; slopes (m, w) of the first unknowns."""
+    """Trust-region cone |slopes @ x| <= bound; slopes (m, w) of the first unknowns."""
 
     slopes: Array
     bound: float
@@ -71,7 +71,7 @@ class Reach:
 
 @dataclass(frozen=True, eq=False)
 class ConeSolution:
-    """Solution of a convex program: unknowns x, slack by limit and value by cost, multipliers.
+    """Solution of a cone program: step x, slack by limit, multipliers.
 
     rows: multipliers (m,) of each of the rows, in their order; norms: of each norm in the objective
     and of its ceiling.
@@ -102,7 +102,7 @@ class _Block(NamedTuple):
 
 
 class Cones:
-    """Convex program of `size` unknowns x: linear and quadratic cost, constraints.
+    """Builder of a cone program in `size` unknowns: costs and constraints.
 
     References
     ----------
@@ -117,7 +117,7 @@ class Cones:
         self._cones: list[tuple[_Block, int]] = []
 
     def columns(self, matrix: scipy.sparse.csr_array, start: int) -> scipy.sparse.csr_array:
-        """Matrix (m, size) of all unknowns from one (m, w) of those from `start` on."""
+        """Matrix (m, size) in all unknowns from a matrix (m, w) in those from `start` on."""
         parts = (matrix.data, matrix.indices + start, matrix.indptr)
         return scipy.sparse.csr_array(parts, shape=(matrix.shape[0], self.size))
 
@@ -209,7 +209,7 @@ def solved(
     ripple_weight: float = 1.0,
     reach: Reach | None = None,
 ) -> ConeSolution | None:
-    """Least ripple_weight (max(weight |norm|) + costs) + x'Hx/2 + h'x + penalty (sum of slacks).
+    """Minimum of w (max weighted |norm| + costs) + x'Hx/2 + h'x + penalty x slacks.
 
     Parameters
     ----------

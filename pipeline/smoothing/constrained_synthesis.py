@@ -35,7 +35,7 @@ def synthesise(
     enough: float | None = None,
     worth: float = 0.0,
 ) -> Design:
-    """Cam of least residual ripple within all limits.
+    """Design of least residual ripple within all limits.
 
     Parameters
     ----------
@@ -61,12 +61,12 @@ def synthesise(
 
 
 def approached(problem: Problem) -> State:
-    """End of a search at the points alone: a start for more splines."""
+    """Local optimum on the sampled angles alone, as a start on more splines."""
     return descended(started(problem), 1.0).state
 
 
 def started(problem: Problem, ripple_weight: float = 1.0) -> Search:
-    """Search from the seed, or from the better of exact energy and convex optimum."""
+    """Search started from the seed, or the better of exact energy and convex optimum."""
     search = Search(problem)
     core = convex_start(problem) if problem.seed is None else None
     if core is not None:

@@ -1,4 +1,4 @@
-"""Constraints of a synthesis: utilisation of each limit by cam angle, differentiable.
+"""Constraints of a synthesis: differentiable utilisation of each limit by cam angle.
 
 The demands are those of the checks, by the same functions of complex numbers: a complex step gives
 the derivative to round-off. A constraint is met at a utilisation of at most 1. Where a demand must
@@ -35,7 +35,7 @@ from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scen
 def shape_utilisations(
     jet: Jet, variables: DesignVariables, ratings: Ratings, names: Container[str] | None = None
 ) -> Mapping[str, Array | Mean]:
-    """Utilisations of the limits on the shape of the cam, or of those named, by check; (n,)."""
+    """Utilisations (n,) of the limits on the cam's shape, or of those named, by check."""
     return _utilisations(SHAPE, unloaded(jet, variables, ratings), ratings, names)
 
 
@@ -52,7 +52,7 @@ def utilisations_of(
 def delivered_torque(
     jet: Jet, highest: float, variables: DesignVariables, scenario: Scenario, ratings: Ratings
 ) -> Array:
-    """Cam torque F_a s', friction and inertia included, N m, (n,); with the sliding of a face."""
+    """Cam torque F_a s' (n,), N m, with friction, inertia and sliding of a face."""
     return loaded(jet, highest, variables, ratings, scenario).torque
 
 
@@ -76,7 +76,7 @@ def _utilisations(
 def constraints_of(
     checks: Iterable[Declaration],
 ) -> tuple[tuple[Constraint[LoadedCam], ...], tuple[Constraint[ScenarioCam], ...]]:
-    """Constraints on shape and loads of the checks that are declared as kept, in their order.
+    """Constraints on shape and on loads, from the checks declared as kept.
 
     Of a group one with each kind of follower; of the checks at maximum lift that of the spring
     travel, which `travel_limits` bounds.
@@ -106,5 +106,5 @@ CONSTRAINTS: tuple[Constraint[LoadedCam] | Constraint[ScenarioCam], ...] = (*SHA
 
 
 def check_of(name: str) -> str:
-    """Id of the check of a limit, by the name of its utilisation in a synthesis."""
+    """Id of the check whose limit has a given name in a synthesis."""
     return next((each.check for each in CONSTRAINTS if each.name == name), name)

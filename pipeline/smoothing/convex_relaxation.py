@@ -42,14 +42,14 @@ _LIGHT = {"follower.mass": 0.0, "guides.a.friction": 0.0, "guides.b.friction": 0
 
 @dataclass(frozen=True, eq=False)
 class Core:
-    """Optimum of the convex part: coefficients, J, and residual ripple without friction."""
+    """Optimum of the convex problem: coefficients, J, and ripple without friction."""
 
     coefficients: Array
     ripple: float
 
 
 def convex_start(problem: Problem) -> Core | None:
-    """Energy of least friction-free ripple within travel, pressure angle and normal force.
+    """Energy of least frictionless ripple within travel, pressure angle and normal force.
 
     Of a face, within its width in place of the pressure angle.
 

@@ -1,4 +1,4 @@
-"""Stored energy over one cam turn as a periodic quintic B-spline; exact start of a search.
+"""Stored energy over the turn as a periodic quintic B-spline; exact start of a search.
 
 Of a cam with equal lobes the splines are those of one lobe: the unknowns of all lobes are the same,
 and the lobes repeat to round-off.
@@ -42,7 +42,7 @@ def _pieces() -> Array:
 def basis_matrix(
     theta: ArrayLike, count: int, derivative: int = 0, lobes: int = 1
 ) -> scipy.sparse.csr_array:
-    """Periodic quintic B-splines or their derivatives at cam angles, (n, count), six a row.
+    """Sparse matrix (n, count) of periodic quintic B-splines or a derivative, at cam angles.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def basis_matrix(
 def basis_rows(
     theta: ArrayLike, count: int, derivative: int = 0, lobes: int = 1
 ) -> tuple[Array, NDArray[np.intp]]:
-    """Non-zero entries of each row of `basis_matrix`, (n, 6), and their columns."""
+    """Non-zero entries (n, 6) of the rows of `basis_matrix`, with their columns."""
     if derivative not in range(DEGREE):
         raise InputError("derivative", derivative, "0, 1, 2, 3 or 4")
     values, columns = _rows(theta, count, (derivative,), lobes)
@@ -99,7 +99,7 @@ def _rows(
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """B-splines at cam angles (m,), rad: columns (m, 6), entries (order, m, 6).
+    """B-splines and derivatives at cam angles (m,), rad: columns (m, 6), entries (order, m, 6).
 
     side (m,): sign of E' at a reversal, where E' is zero, else 0; see `reversals`. None: at none.
     """
@@ -135,12 +135,12 @@ class Grid:
         )
 
     def chained(self, local: Array) -> Array:
-        """Derivatives (m, 6) by the coefficients, from those (4, m) by E, E', E'', E'''."""
+        """Derivatives (m, 6) by the coefficients from those (4, m) by E, E', E'', E'''."""
         return np.asarray(np.einsum("km,kmj->mj", local, self.entries))
 
 
 def reversals(turn: Grid, coefficients: Array, lobes: int) -> Grid:
-    """Cam angles at which the follower reverses, each from before and from after it, (2 r,).
+    """Reversal angles of the follower, each approached from both sides, (2 r,).
 
     The angles move with the coefficients: E' stays zero, so that the entries are total derivatives,
     B^(k) - E^(k+1)/E'' B'. Reversals of next to no curvature, as in a dwell, are left out.
@@ -261,7 +261,7 @@ def exact_start(
     shape: SpringShape | None = None,
     lobes: int = 1,
 ) -> Array:
-    """Coefficients of the energy of the unsmoothed torque, raised until the pressure angle holds.
+    """Coefficients of the energy that balances the torque, raised to keep the pressure angle.
 
     Of a flat face, until its width holds.
 

@@ -1,4 +1,4 @@
-"""Correction of the synthesis, which uses closed forms, by the finite elements of its cam."""
+"""Correction of a synthesis, made by closed forms, by the finite elements of its cam."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _SUM = 1e3  # weight of the sum of the shares in their least squares
 
 
 class LimitShift(NamedTuple):
-    """Change of the utilisation of one limit by finite elements."""
+    """Change of one limit's utilisation by finite elements."""
 
     limit: str
     before: float
@@ -60,7 +60,7 @@ class LimitShift(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Finite elements of one cam against the closed forms of its synthesis.
+    """Finite elements of a cam against the closed forms of its synthesis.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Comparison:
 
     @property
     def used(self) -> tuple[LimitShift, ...]:
-        """Shifts of the limits used by one half at least, the greatest first."""
+        """Shifts of the limits used by at least one half, the greatest first."""
         used = (each for each in self.shifts if max(each.before, each.after) > _USED)
         return tuple(sorted(used, key=lambda each: -abs(each.change)))
 
@@ -110,7 +110,7 @@ class Comparison:
 
 
 class Rank(NamedTuple):
-    """Order of trials, the least the best: infinite and greatest finite violation, ripple."""
+    """Rank of a trial, least is best: infinite violations, greatest finite violation, ripple."""
 
     infinite: int
     violation: float
@@ -118,7 +118,7 @@ class Rank(NamedTuple):
 
 
 def solved_ripple(cycles: Sequence[Cycle]) -> float:
-    """Greatest weighted torque ripple of solved cycles, one a load case, over the engine's."""
+    """Greatest weighted torque ripple over the engine's, of one solved cycle per load case."""
     ripples = [
         cycle.machine.ripple_weight * float(np.std(after) / np.std(before))
         for cycle in cycles
@@ -151,7 +151,7 @@ def rank(checks: Sequence[Check], ripple: float) -> Rank:
 def compared(
     problem: Problem, design: Design, solved: Solution, checks: Sequence[Check] = ()
 ) -> Comparison:
-    """Solved cam of a design against its synthesis.
+    """Comparison of a solved cam with its synthesis.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def compared(
 def judged_over(
     uses: Mapping[str, float], checks: Sequence[Check], known: Mapping[str, float] | None
 ) -> dict[str, float]:
-    """Utilisation by which a check is judged over that of the corrected synthesis, by limit.
+    """Ratio, by limit, of judged utilisation to that of the corrected synthesis.
 
     The check is judged at its worst tolerance corner, at the end of its error bar. Of failed
     checks and those known before, by which a growing ratio is extrapolated; known None: of all, as
@@ -207,7 +207,7 @@ def judged_over(
 
 
 def corrected(problem: Problem, design: Design, cams: Sequence[Comparison]) -> Problem:
-    """Problem of the next trial; it starts from the design.
+    """Problem of the next trial, with mixed corrections, started from the design.
 
     The corrections are the convex combination of those of all cams for which the change of the
     utilisations of the latest cam, over the turn, is least: where several limits alternate, their
@@ -241,7 +241,7 @@ def corrected(problem: Problem, design: Design, cams: Sequence[Comparison]) -> P
 
 
 def shares(changes: Array) -> Array:
-    """Share (m,) of the corrections of each cam in those of the next trial; their sum is 1.
+    """Weights (m,), of sum 1, of the corrections of each cam in the next trial.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ def _mixed(corrections: Sequence[Correction], weights: Array) -> Correction:
 
 
 def corrections_of(solved: Solution) -> dict[str, Correction]:
-    """Corrections by load case."""
+    """Finite-element corrections of a solution, by load case."""
     swept = {sweep.preload: _at_least_force(solved, sweep) for sweep in solved.speed_sweeps}
     guides = zip(GUIDES, solved.machine.guides.both, strict=True)
     left = [

@@ -1,4 +1,4 @@
-"""First and second derivatives of functions of lift and design variables by complex steps."""
+"""First and second derivatives of cam functions by complex steps."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SHARE = 1e-5  # of a variable: step of the second derivatives
 
 
 class Gradient(NamedTuple):
-    """Terms (...) of a value, and their partial derivatives.
+    """Terms (...) of a value with their partial derivatives.
 
     local (4, ...): by E, E', E'', E''' of each point; shared (1 or 4, ...): by the maximum lift
     and, where they are free, k, P, r0. mean: of the terms (m, n); None: they are the value.
@@ -32,7 +32,7 @@ class Gradient(NamedTuple):
 
 
 class Point(NamedTuple):
-    """Arguments of a function: E, E', E'', E''' (n,), J/rad^k; maximum lift, m; variables."""
+    """Arguments of a cam function: E to E''' (n,), J/rad^k; maximum lift, m; variables."""
 
     energy: tuple[Array, ...]
     highest: float
@@ -40,12 +40,12 @@ class Point(NamedTuple):
 
 
 def values_of(function: Function, at: Point) -> Mapping[str, Array | Mean]:
-    """Values of a function of the lift, by name."""
+    """Values of a cam function, by name."""
     return function(lift_jet(at.energy, at.variables), at.highest, at.variables)
 
 
 def differentiated(function: Function, at: Point, freed: bool) -> dict[str, Gradient]:
-    """Values of a function of the lift with all derivatives, by name.
+    """Values of a cam function with their first derivatives, by name.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def differentiated(function: Function, at: Point, freed: bool) -> dict[str, Grad
 def second_derivatives(
     function: Function, at: Point, freed: bool, weights: Mapping[str, Array]
 ) -> Array:
-    """Second derivatives (q, q, n) of a weighted sum of terms (..., n).
+    """Hessians (q, q, n) of a weighted sum of terms (..., n).
 
     By E, E', E'', E''', the maximum lift and, where they are free, k, P, r0: q is 5 or 8. Central
     differences of complex steps.

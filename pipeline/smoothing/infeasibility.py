@@ -1,4 +1,4 @@
-"""Conflicting limits of a synthesis, and the relaxations that make it feasible."""
+"""Conflicting limits of a synthesis, and relaxations that make it feasible."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Change = Callable[[Problem, float], Problem]
 
 @dataclass(frozen=True)
 class Relaxation:
-    """One feasible change, `before` to `after` in `unit`; `factor` is its size."""
+    """Feasible relaxation: a value from `before` to `after` in `unit`, by `factor`."""
 
     what: str
     before: float
@@ -46,7 +46,7 @@ class Relaxation:
 
 @dataclass(frozen=True)
 class Infeasibility:
-    """Smallest set of conflicting limits, and the relaxations, the smallest first."""
+    """Minimal set of conflicting limits, and relaxations, the smallest first."""
 
     conflict: tuple[str, ...]
     relaxations: tuple[Relaxation, ...]
@@ -64,7 +64,7 @@ class Infeasibility:
 
     @property
     def sentence(self) -> str:
-        """One line for the statement of a run."""
+        """Conflict and relaxations in one line."""
         names = ", ".join(self.conflict) or "the limits taken together"
         ways = "; or ".join(item.sentence for item in self.relaxations[:3])
         return f"the synthesis does not keep together: {names}" + (
@@ -90,7 +90,7 @@ def infeasibility(
     solved: Problem | None = None,
     margin: float = 0.0,
 ) -> Infeasibility:
-    """Smallest set of conflicting limits, and feasible relaxations.
+    """Minimal set of conflicting limits by a deletion filter, and feasible relaxations.
 
     A deletion filter determines the set: each limit in turn is dropped, and stays out where the
     rest still conflict; groups of limits are dropped at once, and halved where they may not. The

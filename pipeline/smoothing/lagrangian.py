@@ -1,4 +1,4 @@
-"""Lagrangian of a synthesis: its value for other numbers of the machine, its second derivatives.
+"""Lagrangian of a synthesis: value for changed machine numbers, Hessian.
 
 Ripples and limits are functions of the energy and its derivatives at each cam angle, of the maximum
 lift and of the free variables. Their second derivatives are small matrices by cam angle, which the
@@ -33,7 +33,7 @@ _PRICE_LEAST = 1e-9  # multiplier below which a row does not count
 
 @dataclass(frozen=True, eq=False)
 class Lagrangian:
-    """Ripples and limits at an optimum, each times its multiplier.
+    """Lagrangian at an optimum: ripples and limits times their multipliers.
 
     By the envelope theorem the derivative of the ripple by a number of the machine is that of the
     Lagrangian at the optimum.
@@ -71,7 +71,7 @@ class Lagrangian:
         )
 
     def at(self, problem: Problem, variables: DesignVariables | None = None) -> float:
-        """Value for a problem of the same limits and splines, ratio to the ripple of the engine.
+        """Value for a problem of equal limits and splines, over the engine's ripple.
 
         Parameters
         ----------
@@ -99,7 +99,7 @@ class Lagrangian:
 def lagrangian_curvature(
     search: Search, state: State, here: Model, model: Model, program: ConeSolution
 ) -> Array:
-    """Second derivatives (size, size) of the Lagrangian by the scaled unknowns, at a state.
+    """Hessian (size, size) of the Lagrangian in the scaled unknowns at a state.
 
     Without those of the norms by their linear residuals, which the cone program has. The second
     derivative of the maximum lift is left out.

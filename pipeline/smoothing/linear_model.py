@@ -1,4 +1,4 @@
-"""State of a search, and the linear models of its functions there."""
+"""State of a search, and linear models of its functions there."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Coefficients, J, and variables, with ripple, jerk term and utilisations.
+    """Iterate of a search: coefficients, J, variables, ripple, costs, utilisations.
 
     Parameters
     ----------
@@ -57,12 +57,12 @@ class State:
 
     @property
     def violation(self) -> float:
-        """Sum of the excess of each limit over its reserve."""
+        """Sum over the limits of the excess over their reserve."""
         return sum(max(0.0, value - 1.0 + RESERVE) for value in self.utilisation.values())
 
 
 class Summit(NamedTuple):
-    """Maximum lift, m, and its derivatives by the coefficients and by k, P, r0."""
+    """Maximum lift, m, with derivatives by the coefficients and by k, P, r0."""
 
     lift: float
     entries: Array
@@ -71,7 +71,7 @@ class Summit(NamedTuple):
 
 
 class Model(NamedTuple):
-    """Models at a state: ripples, rows of limits; Hessian and slope of the jerk term.
+    """Linear model at a state: ripple cones, limit rows, Hessian and gradient of the jerk.
 
     means: by limit the scenarios (s,) and the derivatives (m, size) of their means over the turn by
     the scaled unknowns.

@@ -1,4 +1,4 @@
-"""Synthesis from several starts and on more splines: best design, agreement, convergence."""
+"""Multistart synthesis with spline refinement: best design, agreement, convergence."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SEED = 1989
 
 @dataclass(frozen=True)
 class Starts:
-    """Residual ripple of the design of each start; None where a limit is not kept.
+    """Residual ripple by start; None where a limit is not kept.
 
     The first start is that of the problem, the others are random.
     """
@@ -80,7 +80,7 @@ class Starts:
 
 @dataclass(frozen=True)
 class Resolution:
-    """Change of the ripple with the number of splines.
+    """Convergence of the ripple with the number of splines.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class Resolution:
 
 
 class Explored(NamedTuple):
-    """Best design, agreement of the starts, change with the number of splines."""
+    """Best design of several starts, their agreement, convergence with the splines."""
 
     design: Design
     starts: Starts
@@ -133,7 +133,7 @@ class Explored(NamedTuple):
 
 
 def explored(problem: Problem, count: int) -> Explored:
-    """Best design from several starts, their agreement, and its convergence with the splines.
+    """Best design of several starts, their agreement, and its convergence with the splines.
 
     Each start is solved on fewer splines and cam angles, and then on those of the design. The
     number of splines rises until the ripple changes by less than `Problem.convergence`. Where few
@@ -161,7 +161,7 @@ def explored(problem: Problem, count: int) -> Explored:
 
 
 def resolved(problem: Problem, first: Design) -> tuple[list[Design], Resolution]:
-    """Designs of rising numbers of splines, the last the finest, and the change of their ripple.
+    """Designs on a rising number of splines, the finest last, and the change of their ripple.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def resolved(problem: Problem, first: Design) -> tuple[list[Design], Resolution]
 
 
 def continued(problem: Problem, start: Design | State) -> Design:
-    """Design of a problem from one of it on other splines."""
+    """Design of a problem, started from a design on another number of splines."""
     seed = refined(start.coefficients, problem.coefficients)
     return synthesise(replace(problem, seed=seed, variables=start.variables))
 
@@ -219,7 +219,7 @@ def _random(problem: Problem, size: float, random: np.random.Generator) -> Probl
 
 
 def refined(coefficients: Array, count: int) -> Array:
-    """Coefficients (count,) of an energy on finer splines, by least squares."""
+    """Least-squares coefficients (count,) of an energy on finer splines."""
     theta = uniform_turn(8 * count)
     level = basis_matrix(theta, count)
     energy = basis_matrix(theta, coefficients.size) @ coefficients

@@ -1,4 +1,4 @@
-"""Terms of the objective of a synthesis, each over a reference of the engine; differentiable.
+"""Objective of a synthesis: torque residuals and costs, each over an engine reference.
 
 A residual is linear in the crank torque: its square, weighted, adds to that of the torque ripple,
 and the root of the sum over the engine is minimised. A cost adds its greatest weighted value. At a
@@ -22,7 +22,7 @@ from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 
 
 class Scale(NamedTuple):
-    """References of the costs: energy swing of the engine torque, J; its greatest force, N.
+    """Reference values of the costs: energy swing of the engine, J, and greatest force, N.
 
     The energy swing is the range of the integral of the torque over a cycle; the force is that of
     the greatest torque at the prime radius.
@@ -33,7 +33,7 @@ class Scale(NamedTuple):
 
 
 def scale_of(scenarios: Sequence[Scenario], gear_ratio: float, prime_radius: float) -> Scale:
-    """References of the scenario of the greatest weight; prime radius of the pitch curve, m."""
+    """Reference values from the scenario of greatest weight; prime radius in m."""
     torque = gear_ratio * max(scenarios, key=lambda item: item.weight).torque
     stored = torque_integral(torque - torque.mean())
     return Scale(float(np.ptp(stored)), float(np.abs(torque).max()) / prime_radius)
@@ -41,7 +41,7 @@ def scale_of(scenarios: Sequence[Scenario], gear_ratio: float, prime_radius: flo
 
 @dataclass(frozen=True)
 class Residual:
-    """A term linear in the crank torque.
+    """Objective term linear in the crank torque.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Residual:
 
 
 class Turning(NamedTuple):
-    """Cam in one scenario at n cam angles; scale: references of the costs."""
+    """Loaded cam of a scenario with the references of the costs."""
 
     loads: ScenarioCam
     variables: DesignVariables
@@ -70,7 +70,7 @@ class Turning(NamedTuple):
 
 @dataclass(frozen=True)
 class Cost:
-    """A smooth term.
+    """Smooth objective term that is not linear in the crank torque.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Cost:
 
 
 class Weighted(NamedTuple):
-    """A term with its weight, > 0."""
+    """Objective term with its weight, > 0."""
 
     term: Residual | Cost
     weight: float
@@ -97,7 +97,7 @@ Objective = tuple[Weighted, ...]
 
 
 def torque_ripple(item: Scenario, values: Array) -> Array:
-    """Columns of crank torque about their means; the norm is their std over that of the engine."""
+    """Crank torque about its mean, (n, w), scaled so that the norm is the ripple ratio."""
     before = item.torque - item.torque.mean()
     return np.asarray((values - values.mean(axis=0)) / (np.sqrt(before.size) * np.std(before)))
 
@@ -109,7 +109,7 @@ def _speed_ripple(item: Scenario, values: Array) -> Array:
 
 
 def harmonics(orders: Iterable[int]) -> Residual:
-    """Chosen harmonics of the torque, rms over the ripple of the engine.
+    """Residual of chosen torque harmonics, rms over the engine's ripple.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def harmonics(orders: Iterable[int]) -> Residual:
 
 
 def torque_integral(values: Array) -> Array:
-    """Integral of periodic columns (n, ...) over the cam angle, of zero mean."""
+    """Zero-mean integral of periodic columns (n, ...) over the cam angle."""
     spectrum = np.fft.rfft(values, axis=0)
     order = np.arange(spectrum.shape[0]).reshape(-1, *[1] * (spectrum.ndim - 1))
     spectrum = np.divide(spectrum, 1j * order, out=np.zeros_like(spectrum), where=order > 0)
@@ -221,7 +221,7 @@ KEYS: tuple[str, ...] = (TORQUE.key, SPEED.key, "harmonic", *(each.key for each 
 
 
 def objective_of(weights: Mapping[str, float], orders: Iterable[int] = ()) -> Objective:
-    """Terms of an objective; those of a weight of zero are left out.
+    """Objective from the weights of its terms; zero weights are left out.
 
     Parameters
     ----------
@@ -247,7 +247,7 @@ def objective_of(weights: Mapping[str, float], orders: Iterable[int] = ()) -> Ob
 
 
 def residuals(objective: Objective, item: Scenario, values: Array) -> Array:
-    """Stacked residuals of columns of crank torque (n, w), N m: (m, w); the norm is minimised."""
+    """Stacked residuals (m, w) of crank torques (n, w), N m, whose norm is minimised."""
     parts = [
         np.sqrt(each.weight) * each.term.columns(item, values)
         for each in objective
@@ -257,7 +257,7 @@ def residuals(objective: Objective, item: Scenario, values: Array) -> Array:
 
 
 def residuals_slope(objective: Objective, item: Scenario, values: Array) -> Array:
-    """Derivative (n,) of the norm of `residuals` by the crank torque (n,), N m."""
+    """Gradient (n,) of the norm of `residuals` by the crank torque (n,), N m."""
     slope, square = np.zeros_like(values), 0.0
     for each in objective:
         if isinstance(each.term, Residual):
@@ -274,7 +274,7 @@ def costs(
     loads: ScenarioCam,
     variables: DesignVariables,
 ) -> Mapping[str, Array | Mean]:
-    """Weighted costs by key; each (..., n), or a `Mean` of the turn.
+    """Weighted costs by key, each (..., n) or a `Mean` over the turn.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Constraints of checks without a measure: guide edges, force over the speeds, keyway, grease.
+"""Constraints of checks without a pointwise measure: guide edges, speed sweep, keyway, grease.
 
 As in `constraints`. What finite elements, the surge or the heat of a solved cam add is in the
 `Correction` of its scenario, held while the search runs.

@@ -1,4 +1,4 @@
-"""Synthesis problem of a case, with tolerance corners; problems with other rollers."""
+"""Synthesis problem of a case with its tolerance corners, and with other rollers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ POINTS = 720
 
 
 def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
-    """Constrained synthesis of a case.
+    """Constrained synthesis problem of a case.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
 def roller_problems(
     case: Case, torques: Mapping[str, Torque], original: Problem
 ) -> Iterator[tuple[str, Problem]]:
-    """Name and problem of each roller that fits into the case, the smallest first.
+    """Name and problem of each catalogue roller that fits the case, the smallest first.
 
     None in place of a flat face.
 

@@ -1,4 +1,4 @@
-"""Required cam torque, and the lift that delivers it."""
+"""Torque that the cam is to deliver, and its lift."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ROUND_OFF = 1e-9  # of the torque
 
 
 def cam_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None = None) -> Lift:
-    """Lift of the case file, or the one required by the smoothed engine torque.
+    """Lift of a case: stated, or required by the smoothed engine torque.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Functions of a synthesis problem at sampled cam angles, and their linear models."""
+"""Functions of a synthesis problem at sampled cam angles, with linear models."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ _KEPT = 1e-6  # of the greatest slope of the energy: least slope where its sign 
 
 
 class Means(NamedTuple):
-    """Limits and costs from means over the turn in some scenarios.
+    """Limits and costs by means over the turn, in some scenarios.
 
     function, at      of the terms by scenario and point, and its arguments
     scenarios         numbers of the scenarios
@@ -81,7 +81,7 @@ class Means(NamedTuple):
 
 
 class Search:
-    """Functions of one problem on a uniform grid, with extra angles between its points.
+    """Problem sampled on a uniform grid of cam angles, with extra angles in between.
 
     Friction of the guides changes its sign where the follower reverses, and with a roller of an
     offset loads jump there. The limits then hold at the reversals too, before and after each: these
@@ -134,7 +134,7 @@ class Search:
 
     @property
     def size(self) -> int:
-        """Number of unknowns: coefficients, then free variables."""
+        """Number of unknowns: coefficients and free variables."""
         return self.problem.coefficients + len(self.problem.freed)
 
     def _exact(self) -> Array:
@@ -196,7 +196,7 @@ class Search:
         return self._last[1]
 
     def summit(self, state: State) -> Summit:
-        """Maximum lift at a state, and its derivatives."""
+        """Maximum lift at a state with its derivatives."""
         peaks = self._peaks(state.coefficients)
         at = Point(peaks.energy(state.coefficients), 0.0, state.variables)
         lift = differentiated(_lift, at, self.freed)["lift"]
@@ -262,7 +262,7 @@ class Search:
     def function(
         self, names: frozenset[str], state: State, take: Callable[[Array], Array]
     ) -> Function:
-        """Limits of the shape, or those of the loads and costs, of part of the scenarios."""
+        """Function of the limits on shape, or of limits on loads and costs, in some scenarios."""
         if names <= SHAPE_LIMITS:
             return self.shape(names)
         stack = taken(state.stack, take)
@@ -309,7 +309,7 @@ class Search:
         return lambda each: np.broadcast_to(each, shape)[rows, points]
 
     def level(self, name: str, value: Array) -> Array:
-        """Level of the rows of a limit, <= 0 within its reserve; of a cost its value."""
+        """Row level of a limit, <= 0 within its reserve; of a cost its value."""
         return value if name in self.costs else value - 1.0 + RESERVE
 
     def torque(self, state: State, weighted: NDArray[np.intp]) -> Function:
@@ -338,7 +338,7 @@ class Search:
     def pointwise(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
-        """Greatest of the scenarios at any cam angles, (n,), of the limits that are no means."""
+        """Greatest of the scenarios at cam angles, (n,), for the pointwise limits."""
         loads = self._loaded(coefficients, variables, grid, self.stack(grid, variables))
         values, _ = self._uses(loads, variables, 0)
         limits = values.keys() - self.costs
@@ -435,7 +435,7 @@ class Search:
         return self._engines[phase]
 
     def near(self, state: State) -> dict[str, NDArray[np.bool_]]:
-        """Rows of each limit near it, and not far behind another scenario at the same angle."""
+        """Masks of near-active rows by limit, without those far behind another scenario."""
         rows = {}
         for name, value in state.pointwise.items():
             level = self.level(name, value)
@@ -444,7 +444,7 @@ class Search:
         return rows
 
     def near_means(self, state: State) -> dict[str, NDArray[np.bool_]]:
-        """Utilisations from means that are near their limit."""
+        """Masks of near-active utilisations from means."""
         rows = {}
         for name, value in state.means.items():
             level = self.level(name, value)
@@ -570,7 +570,7 @@ class Search:
         return models
 
     def families(self, names: Iterable[str]) -> list[frozenset[str]]:
-        """Names of limits on the shape; of limits on the loads and costs; without empty ones."""
+        """Limit names split into shape, and loads with costs; empty groups are left out."""
         every = frozenset(names)
         return [each for each in (every & SHAPE_LIMITS, every - SHAPE_LIMITS) if each]
 
@@ -596,7 +596,7 @@ class Search:
     def of_means(
         self, state: State, summit: Summit, rows: Mapping[str, NDArray[np.bool_]]
     ) -> Means:
-        """Limits and costs whose utilisations (r,) are wanted, in the scenarios they need."""
+        """Mean-based limits and costs for chosen utilisations (r,), in the scenarios they need."""
         needed = [state.members[name][chosen].any(axis=0) for name, chosen in rows.items()]
         own = np.flatnonzero(np.isin(self._corners, self._corners[np.any(needed, axis=0)]))
         return Means(
@@ -636,7 +636,7 @@ class Search:
         )
 
     def new_reversals(self, state: State, there: State) -> NDArray[np.intp]:
-        """Points whose motion another state reverses by a rise or return that is new.
+        """Points whose direction of motion changes by a stroke new in another state.
 
         Where a reversal of the state has moved, the points it has passed do not count.
         """

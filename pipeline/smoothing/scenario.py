@@ -45,7 +45,7 @@ class DesignVariables:
 
 
 def redrawn(case: Case, variables: DesignVariables) -> Case:
-    """The case with the spring and prime radius of a design."""
+    """Case with the spring and prime radius of a design."""
     spring = replace(case.spring, rate=float(variables.rate), preload=float(variables.preload))
     cam = replace(case.cam, prime_radius=float(variables.prime_radius))
     return case.model_copy(update={"spring": spring, "cam": cam})
@@ -53,7 +53,7 @@ def redrawn(case: Case, variables: DesignVariables) -> Case:
 
 @dataclass(frozen=True, eq=False)
 class Ratings:
-    """Limits of a synthesis and the numbers of its machine, SI.
+    """Limits of a synthesis and nominal numbers of its machine, SI.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class Ratings:
 
     @property
     def tilting(self) -> float:
-        """Slope of the normal over that of the lift: 1 of a roller, 0 of a flat face."""
+        """Tangent of the normal over lift slope: 1 for a roller, 0 for a flat face."""
         return float(self.follower == "roller")
 
     @property
@@ -114,7 +114,7 @@ _FACTORS = (
 
 @dataclass(frozen=True, eq=False)
 class Correction:
-    """Finite-element result over closed form at n equally spaced cam angles, each (n,).
+    """Ratios of finite elements to closed forms at n equal cam angles, each (n,).
 
     Of the contact pressure, the bearing loads and the normal loads of guides A and B, and the jam
     index at maximum friction. Point supports have neither length nor opposite pushes: without the
@@ -155,7 +155,7 @@ class Correction:
 
     @classmethod
     def none(cls, count: int) -> Correction:
-        """A correction without effect at so many cam angles."""
+        """Correction without effect at n cam angles."""
         one, zero = readonly(np.ones(count)), readonly(np.zeros(count))
         return cls(
             contact=one, guide_a=one, guide_b=one, rubbing_a=one, rubbing_b=one, jam=one,
@@ -164,16 +164,16 @@ class Correction:
         )  # fmt: skip
 
     def enlarged(self, margin: float) -> Correction:
-        """A correction greater by a margin, of the corrected loads; surge and speeds are kept."""
+        """Correction with load factors raised by a margin; surge and speeds are unchanged."""
         return replace(self, **{name: getattr(self, name) * (1.0 + margin) for name in _FACTORS})
 
     def each(self, of: Callable[[Sequence[Array]], Array], *others: Correction) -> Correction:
-        """A function of the values of every field here and in others."""
+        """Correction by a function of each field of this and other corrections."""
         every, names = (self, *others), [each.name for each in fields(self)]
         return Correction(*(of([getattr(one, name) for one in every]) for name in names))
 
     def towards(self, other: Correction, share: float) -> Correction:
-        """Linear interpolation to another correction, at the angles of that one."""
+        """Linear interpolation towards another correction, at its angles."""
         if share == 1.0:
             return other
         own = self.at(uniform_turn(other.contact.size))
@@ -187,7 +187,7 @@ class Correction:
 
 @dataclass(frozen=True, eq=False)
 class Scenario:
-    """One load case, or one tolerance corner of it; or several at once, see `stacked`.
+    """Load case at nominal or a tolerance corner; or several stacked, see `stacked`.
 
     Parameters
     ----------
@@ -229,11 +229,11 @@ class Scenario:
     cell: Value = 0.0
 
     def at(self, numbers: Mapping[str, Value]) -> Scenario:
-        """With other numbers."""
+        """Scenario with other machine numbers."""
         return replace(self, numbers=self.numbers | numbers)
 
     def torque_at(self, phase: float) -> tuple[Array, Array]:
-        """Engine torque, N m, and its derivative, N m/rad, advanced by `phase`, rad of cam."""
+        """Engine torque, N m, and derivative, N m/rad, advanced by a cam angle `phase`, rad."""
         spectrum = np.fft.rfft(self.torque)
         order = 1j * np.arange(spectrum.size)
         if self.torque.size % 2 == 0:
@@ -247,7 +247,7 @@ _NUMBERS = ("rate_factor", "preload_factor", "spring_mass", "nominal", "swept", 
 
 
 def stacked(scenarios: Sequence[Scenario], theta: Array, cell: Value = 0.0) -> Scenario:
-    """Scenarios at once: numbers (s, 1), corrections (s, n) at cam angles theta (n,), rad.
+    """Several scenarios as one: numbers (s, 1), corrections (s, n) at cam angles (n,), rad.
 
     cell: cam angle, rad, for which each stands, one or (n,). All have the same external force, and
     the same numbers: one that is not known in all of them, such as a maximum friction, is left out.
@@ -274,7 +274,7 @@ def stacked(scenarios: Sequence[Scenario], theta: Array, cell: Value = 0.0) -> S
 
 
 def joined(one: Scenario, other: Scenario) -> Scenario:
-    """Stacked scenarios at the cam angles of two stacks of the same scenarios."""
+    """Stacked scenarios at the union of the cam angles of two stacks."""
 
     def of(both: Sequence[Value]) -> Array:
         return np.concatenate([np.asarray(each) for each in both], axis=1)
@@ -288,7 +288,7 @@ def joined(one: Scenario, other: Scenario) -> Scenario:
 
 
 def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
-    """Some of the stacked scenarios, or some of their angles: `take` of each number, correction."""
+    """Selection of stacked scenarios or angles, by applying `take` to each array."""
 
     def of(value: Value | None) -> Array | None:
         return None if value is None else take(np.asarray(value))

@@ -1,4 +1,4 @@
-"""Shadow prices: change of the torque ripple per unit of a bound or of a number of the machine."""
+"""Shadow prices: change of the torque ripple per unit of a bound or machine number."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _WEIGHTED = 1e-3  # of the ripple: least other terms of an objective that is no 
 
 @dataclass(frozen=True)
 class MachineNumber:
-    """A number of the machine with a price.
+    """Number of the machine whose price is computed.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ PHASE = "phase"
 def machine_prices(
     design: Design, problem: Problem, case: Case, torques: Mapping[str, Torque]
 ) -> list[MachinePriceRecord]:
-    """Prices of the numbers of the machine, greatest first; none of an unconverged design.
+    """Shadow prices of machine numbers, greatest first; none for an unconverged design.
 
     The price is the decrease of the crank-torque ripple (std, N m) per unit more of the number, to
     first order and at a new optimum: the derivative of the Lagrangian at the optimum, by a
@@ -204,7 +204,7 @@ def _with_solved_limits(ratings: Ratings, stated: Ratings, solved: Ratings) -> R
 
 
 def problem_like(problem: Problem, case: Case, torques: Mapping[str, Torque]) -> Problem:
-    """Problem of a changed case with the finite-element corrections of another."""
+    """Problem of a changed case with the finite-element corrections of another problem."""
     other = problem_of(case, torques)
     scenarios = tuple(
         replace(each, correction=known.correction)
@@ -216,13 +216,13 @@ def problem_like(problem: Problem, case: Case, torques: Mapping[str, Torque]) ->
 
 
 def objective(design: Design, problem: Problem) -> str:
-    """What the prices of a design are decreases of, in words."""
+    """Objective to whose decrease the prices refer, in words."""
     state = Search(problem).state(design.coefficients, design.variables)
     return "objective" if state.cost + state.jerk > _WEIGHTED * state.ripple else "ripple"
 
 
 def prices(design: Design, problem: Problem) -> list[PriceRecord]:
-    """Shadow prices of the active limits, highest first; none of an unconverged design.
+    """Shadow prices of the active limits, greatest first; none for an unconverged design.
 
     The price is the decrease of the crank-torque ripple (std, N m) per unit of the limit, to
     first order: the multiplier times the slope of the utilisation. With costs or a jerk
@@ -270,7 +270,7 @@ def prices(design: Design, problem: Problem) -> list[PriceRecord]:
 
 
 def limits_in_use(design: Design) -> tuple[Array, dict[str, Array]]:
-    """Cam angles (n,), rad, ascending, and the utilisation of each limit at them, by check.
+    """Ascending cam angles (n,), rad, with the utilisation of each limit there, by check.
 
     The greatest first. A limit on a mean over the turn has the same utilisation at every angle.
     """

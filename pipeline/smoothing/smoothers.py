@@ -1,4 +1,4 @@
-"""Named zero-phase smoothers of the torque of a machine, by the harmonics of its cycle."""
+"""Zero-phase filters of a machine torque, by the harmonics of its cycle."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ KINDS = ("none", "moving_average", "gaussian", "harmonic", "savitzky_golay", "sm
 
 @dataclass(frozen=True)
 class Smoother:
-    """Linear zero-phase filter of a torque over its cycle, with an adjustable strength.
+    """Linear zero-phase filter of a periodic torque with adjustable strength.
 
     `strength` stretches the filter along the shaft angle: at 2 a moving average of 60 deg
     becomes one of 120 deg, a cut-off at harmonic 24 one at harmonic 12. The filter acts on the
@@ -85,7 +85,7 @@ class Smoother:
 
     @classmethod
     def from_case(cls, smoothing: Smoothing, period: Period) -> Smoother:
-        """Smoother of a case with the period of its machine."""
+        """Smoother of a case, for the period of its machine."""
         names = ("kind", "points", "spacing", "width", "harmonics", "taper", "degree", "cutoff")
         return cls(**{name: getattr(smoothing, name) for name in names}, period=period)
 
@@ -95,7 +95,7 @@ class Smoother:
 
     @property
     def angular_width(self) -> float:
-        """Width of the filter, rad of the shaft; `width_in_words` defines it by kind."""
+        """Width of the filter, rad of the shaft, by kind as `width_in_words` states."""
         widths = {
             "none": 0.0,
             "moving_average": self.points * self.spacing,
@@ -107,7 +107,7 @@ class Smoother:
         return float(widths[self.kind] * self.strength)
 
     def refuse_as_too_wide(self) -> NoReturn:
-        """Refuse a smoother that leaves no torque, by the key that narrows it."""
+        """Refuse a smoother that leaves no torque; the message names the key to narrow it."""
         key, value, sense = {
             "gaussian": ("width", shown(self.width, "deg"), "smaller"),
             "harmonic": ("harmonics", f"{self.harmonics:.4g}", "greater"),
@@ -123,7 +123,7 @@ class Smoother:
 
     @property
     def width_in_words(self) -> str:
-        """The filter and its angular width in words."""
+        """Filter and angular width in words."""
         degrees = np.rad2deg(self.angular_width)
         spacing = np.rad2deg(self.spacing * self.strength)
         words = {
@@ -152,7 +152,7 @@ class Smoother:
 
 
 def smoothed(torque: ArrayLike, smoother: Smoother) -> Array:
-    """Smoothed torque at the same angles.
+    """Torque filtered at equal angles.
 
     Parameters
     ----------

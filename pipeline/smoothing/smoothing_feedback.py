@@ -1,4 +1,4 @@
-"""Next trial after a failed one: a wider smoother, the best one again, or none."""
+"""Choice of the next trial: wider smoother, repetition of the best, or stop."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ WIDEST = 0.5  # of a cycle; a wider window leaves no ripple to compensate
 
 @dataclass(frozen=True)
 class Next:
-    """Smoother of one more trial, and why."""
+    """Smoother of a further trial, with its reason."""
 
     smoother: Smoother
     why: str
@@ -32,7 +32,7 @@ class Next:
 
 @dataclass(frozen=True)
 class Stop:
-    """End of the trials. `best` counts from 1: the last trial unless none was left to repeat it."""
+    """End of the trials; `best`: number from 1 of the result."""
 
     reason: str
     binding: tuple[str, ...]
@@ -87,13 +87,13 @@ def next_smoother(attempts: Sequence[Attempt], max_trials: int, forecast: Foreca
 
 
 def lift_failures(checks: Sequence[Check]) -> tuple[Check, ...]:
-    """Failed must-have checks that a gentler lift can pass, worst first."""
+    """Failed must-have checks that a gentler lift can cure, worst first."""
     failing = [c for c in checks if c.must_have and c.lift_can_help and c.status == "fail"]
     return tuple(sorted(failing, key=lambda check: -(check.utilisation or 0.0)))
 
 
 def best_attempt(attempts: Sequence[Attempt]) -> int:
-    """Index of the best attempt; of equals the latest."""
+    """Index of the best attempt, the latest of equal ones."""
     scores = [score(attempt.checks) for attempt in attempts]
     return max(i for i, item in enumerate(scores) if item == min(scores))
 

@@ -1,4 +1,4 @@
-"""Forecast of the checks of a wider smoother, corrected by the trials so far."""
+"""Forecast of the checks under a wider smoother, corrected by previous trials."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FINE_STEPS = 10  # in each of the two intervals beside the best of the first swe
 
 @dataclass(frozen=True)
 class Attempt:
-    """Smoother and checks of a trial."""
+    """Smoother of a trial with its checks."""
 
     smoother: Smoother
     checks: tuple[Check, ...]
@@ -38,7 +38,7 @@ def keeps_torque(checks: Sequence[Check]) -> bool:
 
 
 def score(checks: Sequence[Check]) -> Score:
-    """Torque reduction lost; failed must-have checks, their worst utilisation; those without data.
+    """Order of forecasts: torque reduction lost; failures, worst utilisation; missing data.
 
     The least score is the best: a failed check is worse than any number of missing data.
     """
@@ -51,7 +51,7 @@ def score(checks: Sequence[Check]) -> Score:
 def best_candidate(
     attempts: Sequence[Attempt], forecast: Forecast, widest: float
 ) -> Smoother | None:
-    """Narrowest smoother forecast to pass; else the one with the best forecast.
+    """Narrowest smoother forecast to pass, else that of the best forecast.
 
     The forecast at a strength is the nearest trial plus the difference of the closed forms.
     Strengths are swept from that of the first trial up to the widest window, coarsely, then

@@ -1,4 +1,4 @@
-"""Problem of a constrained synthesis and its design; ripple of a crank torque."""
+"""Constrained synthesis: problem, design, coarsening, ripple of a crank torque."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ FINEST = 10  # refinement of the points for extremes between them
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Problem of a constrained synthesis.
+    """Constrained synthesis problem: scenarios, limits, free variables, objective.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class Problem:
         return scale_of(self.scenarios, self.gear_ratio, self.variables.prime_radius)
 
     def ceiling_of(self, item: Scenario) -> float | None:
-        """Greatest residual ripple of a scenario over that of the engine; None: not limited."""
+        """Greatest allowed residual ripple of a scenario over the engine's; None: no limit."""
         if item.torque_reduction is None or TORQUE_REDUCTION.id in self.left_out:
             return None
         judged = self.judged.get(TORQUE_REDUCTION.id, 1.0)
@@ -105,22 +105,22 @@ class Problem:
 
     @property
     def ceiling(self) -> float | None:
-        """Least ceiling of the scenarios whose ripple counts; None without one."""
+        """Least allowed residual ripple of the weighted scenarios; None without one."""
         counting = [self.ceiling_of(item) for item in self.scenarios if item.weight > 0]
         return min((each for each in counting if each is not None), default=None)
 
 
 class OfProblems(Protocol):
-    """Lagrangian at an optimum, as a function of the problem."""
+    """Interface of a Lagrangian at an optimum, evaluated for other problems."""
 
     def at(self, problem: Problem, variables: DesignVariables | None = None) -> float:
-        """Value for a problem of the same limits and splines, ratio to the ripple of the engine."""
+        """Value for a problem of equal limits and splines, over the engine's ripple."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """Result of a constrained synthesis.
+    """Result of a constrained synthesis: energy, variables, ripple, utilisations, multipliers.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ class Design:
 
     @property
     def ripple_gain(self) -> float | None:
-        """`gain` of a design within all limits; None outside, where the violation outweighs it."""
+        """Foreseen `gain` of a feasible design; None otherwise, where violation outweighs it."""
         return self.gain if self.feasible else None
 
     @property
@@ -175,7 +175,7 @@ class Design:
 
     @property
     def feasible(self) -> bool:
-        """Whether each limit is kept, between the points too."""
+        """Whether all limits are kept, between the sampled points too."""
         return all(value <= 1.0 for value in self.utilisation.values())
 
     def lift(self, samples: int = 1440) -> Lift:
@@ -189,7 +189,7 @@ class Design:
 
 
 def coarsened(problem: Problem) -> Problem:
-    """Problem with fewer points and splines, without a seed, for feasibility and ranking."""
+    """Problem on fewer cam angles and splines, without a seed, for feasibility and ranking."""
     points = problem.coarse_points
     turns = tuple(replace(item, torque=thinned(item.torque, points)) for item in problem.scenarios)
     return replace(
@@ -202,23 +202,23 @@ def coarsened(problem: Problem) -> Problem:
 
 
 def per_lobe(coefficients: int, lobes: int) -> int:
-    """Splines of a lobe from those of the turn, no fewer than a periodic spline has."""
+    """Splines of a lobe from those of the turn, at least as many as a periodic spline needs."""
     return max(-(-coefficients // lobes), LEAST_COEFFICIENTS)
 
 
 def thinned(torque: Array, points: int) -> Array:
-    """Torque over one turn (points,), low-pass filtered to the coarser spacing."""
+    """Torque over a turn resampled to `points` after low-pass filtering."""
     spectrum = np.fft.rfft(torque)[: points // 2]
     return readonly(np.fft.irfft(spectrum, n=points) * (points / torque.size))
 
 
 def ripple_of(problem: Problem, item: Scenario, values: Array) -> Array:
-    """Residuals of columns of crank torque, weighted, over those of the engine."""
+    """Weighted residuals of crank torques (n, w), over those of the engine."""
     return residuals(problem.objective, item, values)
 
 
 def torque_slope(item: Scenario, values: Array) -> Array:
-    """Derivative (n,) of the norm of `torque_ripple` by the crank torque (n,)."""
+    """Gradient (n,) of the norm of `torque_ripple` by the crank torque (n,)."""
     level = torque_ripple(item, values)
     size = float(np.linalg.norm(level))
     spread = np.sqrt(values.size) * float(np.std(item.torque))
@@ -226,6 +226,6 @@ def torque_slope(item: Scenario, values: Array) -> Array:
 
 
 def triangle(columns: Array) -> tuple[Array, Array]:
-    """Level (m,) and slopes (m, w) of equal norm in w + 1 rows; columns: slopes, then level."""
+    """Level (m,) and slopes (m, w) of equal norm in w + 1 rows, by QR decomposition."""
     factor = np.asarray(np.linalg.qr(columns, mode="r"))
     return factor[:, -1], factor[:, :-1]

@@ -1,4 +1,4 @@
-"""Rounds of synthesis and correction: the solved cam of one corrects the problem of the next.
+"""Rounds of synthesis and correction: each solved cam corrects the next problem.
 
 The optimiser is imported with this module.
 """
@@ -26,7 +26,7 @@ from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
 
 @dataclass(frozen=True, eq=False)
 class Round:
-    """Design of a round, to be solved and compared before the next round is taken.
+    """Design of one round, to be solved and compared before the next round.
 
     It holds no solution: only one is in memory at a time.
 
@@ -70,7 +70,7 @@ def rounds(
     guided: Callable[[Design], Solution] | None = None,
     progress: Progress = SILENT,
 ) -> Iterator[Round]:
-    """Rounds without end; the caller compares each cam, and decides which is the last.
+    """Endless rounds of synthesis; the caller compares each solved cam, and stops.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Descent from a start to a local optimum: convex programs within a trust region."""
+"""Trust-region descent by sequential convex programs, from a start to a local optimum."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _PATIENCE = 4  # steps over which the gain of a draft is judged
 
 
 class Descent(NamedTuple):
-    """End of a descent: state, last model and its program, number of steps.
+    """Result of a descent: state, last model and program, number of steps.
 
     gain: decrease of the merit that another step foresees; penalty: of a unit of violation. stuck:
     whether no cam near the end exceeds the limits by notably less. ended: whether the effort of the
@@ -67,7 +67,7 @@ def descended(
     enough: float | None = None,
     worth: float = 0.0,
 ) -> Descent:
-    """Local optimum of a search from its start.
+    """Local optimum of a synthesis problem from its start.
 
     Outside the limits the search ends, `stuck`, where a step foresees next to no gain and the least
     violation of the linear models is that of the cam, or wider steps were refused: a greater
