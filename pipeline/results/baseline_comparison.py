@@ -1,4 +1,4 @@
-"""Changes of the checks against a baseline run, beyond the error bars."""
+"""Comparison of checks with a baseline run: changes beyond the error bars."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ UNKNOWN_ERROR = 1e-6
 
 
 def changes(before: Iterable[CheckRecord], now: Iterable[CheckRecord]) -> list[CheckChange]:
-    """Checks that differ: by status, by demand beyond both error bars, by limit.
+    """Checks that differ from the baseline: in status, limit, or demand beyond both error bars.
 
     A check on one side only is `new` or `gone`. Relative evidence, such as residuals and mesh
     uncertainties, is an error itself: it differs where its status does.
@@ -31,7 +31,7 @@ def changes(before: Iterable[CheckRecord], now: Iterable[CheckRecord]) -> list[C
 
 
 def lines(entries: Iterable[CheckChange]) -> list[str]:
-    """One line a change."""
+    """Changes of the checks, one line each."""
     return [
         f"{entry['id']}: {', '.join(entry['kinds'])}; demand {_text(entry['demand_before'])} ->"
         f" {_text(entry['demand'])} {entry['unit']} (error bars {_text(entry['error_bars'])}),"

@@ -1,4 +1,4 @@
-"""Records of checks: contents, table, status by the numbers, verdict in one line.
+"""JSON records of checks: contents, table, verdict in words.
 
 No solver and no case parser is imported.
 """
@@ -41,7 +41,7 @@ AnyCheck = Mapping[str, object]
 
 
 class Recorded(Protocol):
-    """A check with a record."""
+    """Interface of a check with its JSON record."""
 
     def as_record(self) -> AnyCheck: ...
 
@@ -54,7 +54,7 @@ AnyRecord = TypeVar("AnyRecord", bound=AnyCheck)
 
 @dataclass(frozen=True)
 class RecordedCheck(Generic[AnyRecord]):
-    """A record as `base.verdict` reads a check: status and utilisation are as stated.
+    """Check read from its record, for `base.verdict`; status and utilisation as stated.
 
     Its numbers are in the unit of the record.
     """
@@ -99,7 +99,7 @@ class RecordedCheck(Generic[AnyRecord]):
 
     @property
     def worst(self) -> float | None:
-        """Demand by which it is judged; None where a number is missing."""
+        """Judged demand; None where a number is missing."""
         demand = worst(self)
         return None if demand is None or math.isnan(demand) else demand
 
@@ -114,7 +114,7 @@ class RecordedCheck(Generic[AnyRecord]):
 
     @property
     def error(self) -> float:
-        """Half of the error bar of the worst demand; 0 where it is that of round-off."""
+        """Half of the error bar of the judged demand; 0 where it is round-off alone."""
         return error_of_worst(self) if self.error_share > _ROUNDING else 0.0
 
     @property
@@ -138,12 +138,12 @@ class RecordedCheck(Generic[AnyRecord]):
 
 
 def of_records(records: Iterable[AnyRecord]) -> tuple[RecordedCheck[AnyRecord], ...]:
-    """Records as `base.verdict` reads checks."""
+    """Checks of `base.verdict` from their records."""
     return tuple(RecordedCheck(record) for record in records)
 
 
 def records_of(checks: Iterable[RecordedCheck[AnyRecord]]) -> tuple[AnyRecord, ...]:
-    """Records of the checks that `of_records` gives."""
+    """Records of the checks given by `of_records`."""
     return tuple(each.record for each in checks)
 
 
@@ -198,7 +198,7 @@ class CheckList(Displayed, tuple[Item, ...]):
 
 
 class WithChecks(Displayed):
-    """A result with checks: its data frame and its figure are those of the checks."""
+    """Base of results with checks: data frame and figure of the checks."""
 
     checks: tuple[Any, ...]
 
@@ -233,7 +233,7 @@ def _row_in_words(record: AnyCheck) -> list[str]:
 
 
 def judgement(checks: Iterable[AnyCheck], depth: Depth) -> StatedVerdict:
-    """Depth, verdict, screen and both in one line.
+    """Depth, verdict, screen, and a line that states them.
 
     A certified run has a verdict and no screen, a shallower one a screen and no verdict.
     """
@@ -298,12 +298,12 @@ def _counted(number: int, one: str, many: str) -> str:
 
 
 def to_be_confirmed(records: Iterable[AnyCheck]) -> list[str]:
-    """Names of the recalled values on which the must-have checks rest, each once."""
+    """Names of the unconfirmed values on which the must-have checks rest, each once."""
     return _listed(records, "to_be_confirmed")
 
 
 def relaxed_limits(records: Iterable[AnyCheck]) -> list[str]:
-    """Limits of the must-have checks that are weaker than their defaults, in words, each once."""
+    """Limits of the must-have checks weaker than their defaults, in words, each once."""
     return _listed(records, "relaxed")
 
 

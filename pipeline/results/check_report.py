@@ -1,4 +1,4 @@
-"""Checks of a run for `camwright check`: selection, order, failure, table."""
+"""Text output of `camwright check`: selection, table, failures, remarks."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STYLES = {"pass": "green", "fail": "red", "waived": "yellow", "not_evaluated": "
 
 
 def selected(records: Sequence[CheckRecord], only: Iterable[str]) -> tuple[CheckRecord, ...]:
-    """Records whose id fits a pattern such as ``guide_*``; all records without a pattern.
+    """Records whose id matches a pattern such as ``guide_*``; without patterns all.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def selected(records: Sequence[CheckRecord], only: Iterable[str]) -> tuple[Check
 
 
 def fits(record: CheckRecord, only: Iterable[str]) -> bool:
-    """Whether the id of a record fits one of the patterns; True without patterns."""
+    """Whether the id of a record matches one of the patterns; True without patterns."""
     patterns = _patterns(only)
     return not patterns or any(fnmatch.fnmatchcase(record["id"], p) for p in patterns)
 
@@ -51,7 +51,7 @@ def _patterns(only: Iterable[str]) -> list[str]:
 
 
 def not_proven(record: AnyCheck) -> str:
-    """Worst demand with its error bar against the limit, where the bar lies across it."""
+    """Judged demand with its error bar against a limit inside the bar, in words."""
     one = RecordedCheck(record)
     if not record["not_proven"] or one.worst is None or one.limit is None:
         return ""
@@ -61,7 +61,7 @@ def not_proven(record: AnyCheck) -> str:
 
 
 def waiver_words(record: CheckRecord) -> str:
-    """Value up to which a waiver accepts the demand, and its name, date and reason."""
+    """Demand accepted by a waiver, with name, date and reason."""
     if not record["waiver"]:
         return ""
     unit = unit_text(record["unit"])
@@ -69,7 +69,7 @@ def waiver_words(record: CheckRecord) -> str:
 
 
 def rows(records: Iterable[CheckRecord]) -> list[tuple[str, ...]]:
-    """Text of the table by `HEADINGS`, worst first."""
+    """Cells of the table of checks by `HEADINGS`, worst first."""
     return [
         (
             record["title"],
@@ -88,7 +88,7 @@ def _unit(record: CheckRecord) -> str:
 
 
 def unit_text(unit: str) -> str:
-    """Unit behind a number, after a space; "" of a ratio, whose unit is ``-``."""
+    """Unit after a number with its space; "" for a ratio, whose unit is ``-``."""
     return "" if unit == "-" else f" {unit}"
 
 
@@ -112,7 +112,7 @@ def status(record: CheckRecord) -> str:
 
 
 def table(records: Iterable[CheckRecord]) -> Table:
-    """The checks as a table for the terminal."""
+    """Table of checks for the terminal."""
     from rich.table import Table
     from rich.text import Text
 
@@ -131,7 +131,7 @@ def table(records: Iterable[CheckRecord]) -> Table:
 
 
 def overview(rows: Iterable[Sequence[str]]) -> Table:
-    """Several runs as a table for the terminal, a row each, by `OVERVIEW`."""
+    """Table of several runs for the terminal, a row each, by `OVERVIEW`."""
     from rich.table import Table
     from rich.text import Text
 
@@ -147,7 +147,7 @@ def overview(rows: Iterable[Sequence[str]]) -> Table:
 
 
 def overview_row(target: str, document: Mapping[str, Any]) -> tuple[str, ...]:
-    """Run or case as a row of `overview`."""
+    """Row of a run or case in `overview`."""
     checks = within_depth(of_records(document["checks"]))
     required = [each.status for each in checks if each.must_have]
     first = governing(checks)
@@ -176,7 +176,7 @@ def remarks(records: Iterable[CheckRecord]) -> list[str]:
 
 
 def deeper_lines(records: Iterable[CheckRecord]) -> list[str]:
-    """Checks that a deeper solution judges, a line a depth."""
+    """Checks that need a deeper solution, a line for each depth."""
     by_depth: dict[str, list[str]] = {}
     for record in records_of(in_order(of_records(records))):
         if record["judged_at"]:
@@ -191,7 +191,7 @@ def _waived(record: CheckRecord) -> str:
 
 
 def binding_lines(records: Iterable[CheckRecord], binding: Sequence[str]) -> list[str]:
-    """Binding checks: those that fail, and those without data."""
+    """Lines on the binding checks: failed ones, and ones without data."""
     missing = {r["id"] for r in records if r["status"] == "not_evaluated"}
     known = [name for name in binding if name not in missing]
     unknown = [name for name in binding if name in missing]
@@ -200,7 +200,7 @@ def binding_lines(records: Iterable[CheckRecord], binding: Sequence[str]) -> lis
 
 
 def place(record: CheckRecord) -> str:
-    """Load case and cam angle of the demand."""
+    """Load case and cam angle of the demand, in words."""
     angle = record["cam_angle_deg"]
     words = [record["load_case"]] if record["load_case"] else []
     words += [] if angle is None else [f"{angle:.1f} deg"]
@@ -208,25 +208,26 @@ def place(record: CheckRecord) -> str:
 
 
 def corner(record: CheckRecord) -> str:
-    """Governing tolerance corner, and the demand there."""
+    """Governing tolerance corner with its demand."""
     if not record["corner"]:
         return ""
     return f"{record['corner']}: {number(record['corner_demand'])}"
 
 
 def number(value: float | None) -> str:
+    """Number of a record as text."""
     return "-" if value is None else f"{value:.4g}"
 
 
 def with_error(value: float | None, error: float | None) -> str:
-    """A number with its error bar, unless that is below the digits shown."""
+    """Number with its error bar; the bar is omitted below the digits shown."""
     if value is None or error is None or error <= 5e-4 * abs(value):
         return number(value)
     return f"{value:.4g} ±{error:.2g}"
 
 
 def consistency_line(finding: Finding) -> str:
-    """An input beside the value that the other inputs or usage imply, as a line."""
+    """Line on an input beside its implied or usual value."""
     if finding["id"] == "plausibility":
         return f"plausibility: {finding['how']}"
     share = finding["difference_percent"]
@@ -238,7 +239,7 @@ def consistency_line(finding: Finding) -> str:
 
 
 def sentence(text: str) -> str:
-    """Text with a full stop; a word at its start, unlike a symbol, with a capital letter."""
+    """Text as a sentence: full stop, capital letter unless it starts with a symbol."""
     is_word = re.match(r"(a|[a-z]{2,})(?=$|[,:;.]|-[a-z]| (?![-=<>/+]))", text) is not None
     start = text[:1].upper() if is_word else text[:1]
     return f"{start}{text[1:].rstrip('.')}."

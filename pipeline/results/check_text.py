@@ -1,4 +1,4 @@
-"""Declaration of a check in words: formula, limit, calculation, what it rests on."""
+"""Declaration of a check in words: formula, limit, method, sources, keys."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from camwright.pipeline.results.check_report import sentence
 
 
 class CheckText(NamedTuple):
-    """A check in words: sentences, and the dotted keys on which it rests.
+    """Sentences on a check, and the dotted keys on which it rests.
 
     A key such as ``cam.material.E`` is that of the material which the part names. load_end: what
     a follower that leaves the cam or locks does to the check; "": nothing.
@@ -50,7 +50,7 @@ _LOAD_END = {
 
 
 def check_text(one: Declaration) -> CheckText:
-    """Words of a declaration."""
+    """Sentences on a check from its declaration."""
     needs = f"; a {one.needs} only" if one.needs else ""
     part = f"; part `{one.part}`" if one.part else ""
     depth = f"Evaluated at the depth {one.tier.word} and deeper."
@@ -78,13 +78,13 @@ PAGES: tuple[Page, ...] = get_args(Page)
 
 
 def page_of(name: str) -> Page:
-    """Part of the mechanism that a check judges by its id; "": evidence, or unknown."""
+    """Part of the mechanism that a check judges, by its id; "" for evidence or unknown ids."""
     one = DECLARED.get(name)
     return "" if one is None else one.page
 
 
 def default_of(row: AnyLimit) -> str:
-    """Default of a limit in its unit; "" without one."""
+    """Default of a limit with its unit; "" without one."""
     return "" if row.default is None else shown(row.default, row.quantity.unit, DIGITS)
 
 
@@ -97,7 +97,7 @@ def _limit(one: Declaration) -> str:
 
 
 def checks_with(key: Key) -> tuple[str, ...]:
-    """Ids of the checks that rest on a key, have it as limit or name it in their formula."""
+    """Ids of the checks that use a key as limit, in their formula or otherwise."""
     return tuple(
         one.id
         for one in DECLARED.values()
@@ -119,7 +119,7 @@ def _named(path: str, formula: str) -> bool:
 
 
 def program_sources() -> Iterator[tuple[str, Source]]:
-    """Name and source of each value that the program holds; a card number by number."""
+    """Name and source of each value built into the program, card values included."""
     for key, row in LIMITS.items():
         yield f"limits.{key}", row.source
     for one in CHECKS:
@@ -137,7 +137,7 @@ def program_sources() -> Iterator[tuple[str, Source]]:
 
 
 def open_sources() -> dict[str, list[str]]:
-    """Names of the values of the program that are to be confirmed, by the text of their source."""
+    """Names of the built-in values to be confirmed, by the text of their source."""
     by_text: dict[str, list[str]] = {}
     for name, source in program_sources():
         if not source.confirmed:

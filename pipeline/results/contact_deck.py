@@ -1,4 +1,4 @@
-"""Contact at one cam angle as an input deck for another finite-element program.
+"""Contact at one cam angle as an input deck for CalculiX or Abaqus.
 
 Either with the contact pressure of this program as nodal forces, which another program can confirm
 as far as elasticity goes, or with a contact pair that it solves by itself.
@@ -38,7 +38,7 @@ _NEAR = 3.0  # Hertz half-widths from the contact within which the surfaces may 
 
 
 def force_at(cycle: Table, load_case: str, theta: float) -> float:
-    """Normal force, N, of a load case at a cam angle, rad, by linear interpolation of the cycle.
+    """Normal force, N, of a load case at a cam angle, rad, interpolated linearly.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def _deck_body(
 def write_pair_deck(
     path: Path, pair: ContactPair, solved: SolvedPair, penalty: float = PENALTY
 ) -> None:
-    """Write both bodies at one angle in contact, for CalculiX; our results as comments alone.
+    """Write both bodies in contact at one angle for CalculiX, own results as comments.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def _touching(
 def deck(
     run: Path, theta: float, path: Path, load_case: str | None = None, *, contact: bool = False
 ) -> SolvedPair:
-    """Solve the contact of a run at a cam angle, rad, and write it as a deck.
+    """Solve the contact of a run at a cam angle, rad, and write its deck.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Fine mesh of a body below its contact, and the field on it at every cam angle.
+"""Fine mesh of a body below its contact, with fields at every cam angle.
 
 A half-disc about the contact whose inner part scales with the half-width. The correction of the
 body is interpolated from its coarse mesh.
@@ -36,7 +36,7 @@ _BELOW = 0.04
 
 @lru_cache(maxsize=1)
 def zone_triangles() -> Index:
-    """Triangles (3, t) of the zone; node 0 is the contact, then rings of equal numbers of nodes."""
+    """Triangles (3, t) of the zone; node 0 is the contact, then rings of equal node numbers."""
     ring = _SECTORS + 1
     first = 1 + np.arange(_SECTORS)
     core = np.stack([np.zeros_like(first), first + 1, first])
@@ -53,7 +53,7 @@ def zone_nodes() -> int:
 
 @dataclass(frozen=True, eq=False)
 class ZoneSite:
-    """A body whose surface carries contacts, as the zones below them need it."""
+    """Interface of a body with contacts on its surface, for the zones below them."""
 
     body: LoadedBody
 
@@ -116,7 +116,7 @@ class ZoneSite:
 
 
 def zone_places(half_width: Array, radius: Array) -> Array:
-    """Nodes (2, m, k), m: along the surface and depth from it.
+    """Node positions (2, m, k), m: along the surface, and depth.
 
     half_width (k,), m, zero without contact; radius (k,) of the zone, m.
     """
@@ -138,7 +138,7 @@ def zone_places(half_width: Array, radius: Array) -> Array:
 
 @lru_cache(maxsize=8)
 def patch_weights(poisson: float) -> tuple[Index, Array, Array]:
-    """Interpolation of the contact patch at the inner nodes of the zone.
+    """Interpolation weights from the contact patch to the inner nodes of the zone.
 
     Returns
     -------

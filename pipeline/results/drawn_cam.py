@@ -1,4 +1,4 @@
-"""The cam of a finished run as it was solved, drawn and certified."""
+"""Case and contour of a finished run as solved."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SPLINE_ROUNDING = 1e-9  # of coefficients computed by another machine
 
 
 def drawn_cam(run: Path) -> tuple[Case, Contour]:
-    """The case of a run with the spring and prime radius of its final trial, and its contour.
+    """Case of a run with spring and prime radius of its final trial, and its contour.
 
     The contour is the one that was solved, drawn and certified, whatever the number of positions.
 

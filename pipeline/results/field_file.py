@@ -1,4 +1,4 @@
-"""VTKHDF file of meshes with fields over the turn: a block per body, a step per cam angle.
+"""VTKHDF file of fields over the turn: a block per body, a step per cam angle.
 
 Written by h5py: the writer of VTK 9.7 stamps the time of writing into the file and rounds the
 times to single precision. Meshes of three-node triangles in a plane; lengths in mm.
@@ -60,7 +60,7 @@ class MeshBlock:
 
 @dataclass(frozen=True, eq=False)
 class FieldStep:
-    """A block at one step: points (2, n), mm, triangles (3, t), hidden (t,) and point data."""
+    """Fields of a block at one step: points (2, n), mm, triangles (3, t), hidden (t,), data."""
 
     points: Array
     triangles: Index
@@ -69,7 +69,7 @@ class FieldStep:
 
 
 class FieldFile:
-    """The file while it is written.
+    """VTKHDF file being written.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def field_file(
     path: Path, times: ArrayLike, blocks: Mapping[str, MeshBlock], fields: Mapping[str, int],
     notes: Notes,
 ) -> Iterator[FieldFile]:  # fmt: skip
-    """The file at `path`, to be filled; see `FieldFile`. Same input, same bytes.
+    """Context manager: VTKHDF file at `path`; equal input gives equal bytes.
 
     Raises
     ------
@@ -189,14 +189,14 @@ def field_file(
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """The steps of a file: cam angles (s,), deg, and notes by name, (s,)."""
+    """Steps of a file: cam angles (s,), deg, and notes by name, (s,)."""
 
     path: Path
     times: Array
     notes: Mapping[str, NDArray[Any]]
 
     def step(self, number: int) -> dict[str, FieldStep]:
-        """The blocks at one step, by name.
+        """Blocks at one step, by name.
 
         Raises
         ------
@@ -208,7 +208,7 @@ class Series:
 
 
 def read_series(path: Path) -> Series:
-    """Steps and notes of a file.
+    """Steps and notes of a VTKHDF file.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Field files of a run: the stress of both bodies over the turn, and their positions."""
+"""Field files of a run: stress of both bodies over the turn, and their poses."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _DIGITS = 9  # of a cam angle, deg
 
 
 class Shown(StrEnum):
-    """Cam angles of the stress field: none, the worst, those of `shown_positions`, all."""
+    """Cam angles of the stress field: none, the worst, `shown_positions`, or all."""
 
     NONE = "none"
     WORST = "worst"
@@ -60,7 +60,7 @@ def write_fields(
     folder: Path, final: Trial, shown: Shown = Shown.DEFAULT,
     advance: Callable[[int, int], None] = lambda *_: None,
 ) -> None:  # fmt: skip
-    """Write ``fields/`` of a trial; nothing if the contour encloses no body.
+    """Write the field files of a trial; none if the contour encloses no body.
 
     The load case is that with the maximum contact pressure.
     """
@@ -80,7 +80,7 @@ def write_fields(
 
 
 def write_end_field(path: Path, final: Trial, workers: Crew = ALONE) -> None:
-    """Write the field of both bodies at the worst certified angle; nothing without finite elements.
+    """Write the field of both bodies at the worst certified angle, if certified by finite elements.
 
     Half x >= 0 of each on the coarser of the last two meshes: x along the rolling direction, y
     along the axis, z = 0 in the contact, below it the cam, above it the follower.
@@ -126,7 +126,7 @@ def write_end_field(path: Path, final: Trial, workers: Crew = ALONE) -> None:
 
 
 def hardest(cycles: Sequence[Cycle]) -> int:
-    """Number, from 0, of the load case with the maximum contact pressure.
+    """Index of the load case with the maximum contact pressure.
 
     A load case in which the follower leaves the cam or locks counts only where every one does: its
     loads are no results.
@@ -138,7 +138,7 @@ def hardest(cycles: Sequence[Cycle]) -> int:
 
 
 def shown_positions(cycle: Cycle, shown: Shown, certified: Sequence[int]) -> IntArray:
-    """Positions of a cycle in order; by default every `STEP`, the certified ones and the worst."""
+    """Sorted positions of a cycle to show: by default every `STEP`, certified ones, worst."""
     count = cycle.theta.size
     worst = first_greatest(cycle.contact.p0_hertz)
     if shown is Shown.WORST:
@@ -259,7 +259,7 @@ def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[s
 
 
 def cam_outlines(pair: ContactPair, stations: int) -> Array:
-    """Contour and bore (2, stations, 2), m, at the same polar angles."""
+    """Contour and bore (2, stations, 2), m, at common polar angles."""
     outer = pair.contour.points(uniform_turn(stations))
     radius, angle = np.hypot(*outer), np.arctan2(outer[1], outer[0])
     inner = outer * (bore_reach(pair.bore_radius, pair.keyway, angle) / radius)

@@ -1,4 +1,4 @@
-"""Files of a run: from what each follows, how it is compared, and how it differs when made again.
+"""Differences between files of a run and the same files made again.
 
 Nothing depends on the versions that the run states: numbers are compared as numbers, texts by their
 words and numbers, solids and fields by what they hold, pictures by their pixels, all else to the
@@ -53,7 +53,7 @@ _UNREADABLE = (
 
 
 class Kind(StrEnum):
-    """How two files are compared."""
+    """Method by which two files are compared."""
 
     TEXT = "byte by byte"
     TABLE = "numbers by column"
@@ -69,7 +69,7 @@ class Kind(StrEnum):
 
 
 class Origin(StrEnum):
-    """From what a file follows."""
+    """Inputs that determine a file."""
 
     SOLVED = "case and lift"
     DRAWN = "the other files of the run"
@@ -79,7 +79,7 @@ class Origin(StrEnum):
 
 
 class FileClass(NamedTuple):
-    """A class of files: pattern of the name, with ``N`` for the number of the final trial."""
+    """Class of run files: name pattern, with ``N`` for the final trial; comparison, origin."""
 
     pattern: str
     kind: Kind
@@ -120,7 +120,7 @@ CLASSES = (
 
 
 def classes_of(name: str, final_trial: int) -> tuple[FileClass, ...]:
-    """Classes of the file of a relative name; one, or none of a file that no command writes."""
+    """Classes that a relative file name matches; none for a file no command writes."""
     return tuple(
         each for each in CLASSES if re.fullmatch(each.pattern.replace("N", str(final_trial)), name)
     )
@@ -132,7 +132,7 @@ def classes_of(name: str, final_trial: int) -> tuple[FileClass, ...]:
 def file_differences(
     stored: Path, again: Path, names: Iterable[tuple[str, Kind]]
 ) -> Iterator[tuple[str, str]]:
-    """Names of files that differ, and how.
+    """Files that differ, and how, in words.
 
     Parameters
     ----------
@@ -292,7 +292,7 @@ def _members(file: Path) -> dict[str, np.ndarray]:
 
 
 def text_difference(one: str, two: str, absolute: float = _ROUND_OFF) -> str:
-    """The first difference of two texts: their words, or a number by more than its round-off.
+    """First difference of two texts: a word, or a number beyond round-off.
 
     A count, written without a decimal point, must be the same.
 

@@ -1,4 +1,4 @@
-"""Exchange of run folders and of files in them, complete at any interruption.
+"""Atomic replacement of run folders and of files in them.
 
 A run is written in ``.DIR.partial`` beside its final path DIR, under a lock. It is complete when
 its sign-off record is written and its state is deleted. The earlier run waits in ``.DIR.replaced``
@@ -43,7 +43,7 @@ _BY_OTHERS = ("inspection/", "exports/")
 
 
 def absolute(out: Path) -> Path:
-    """Final path of a run, links resolved; ResultError if it cannot be that of a folder."""
+    """Final path of a run, links resolved; ResultError if it cannot be a folder's."""
     try:
         resolved = out.resolve()
     except (OSError, RuntimeError, ValueError) as error:
@@ -54,7 +54,7 @@ def absolute(out: Path) -> Path:
 
 
 def partial_of(out: Path) -> Path:
-    """Folder in which a run is written."""
+    """Temporary folder in which a run is written."""
     return out.with_name(f".{out.name}.partial")
 
 
@@ -67,12 +67,12 @@ def _lock_file(out: Path) -> Path:
 
 
 def owned(out: Path) -> OwnedFolder:
-    """Final path of a run, with its lock beside it."""
+    """Context manager: final path of a run, locked for this process."""
     return OwnedFolder(out, OURS, "run", _lock_file(out))
 
 
 def complete_exchange(out: Path) -> None:
-    """Move a run that was complete when its process was killed to its final path.
+    """Move a complete run to its final path after its process was killed.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def complete_exchange(out: Path) -> None:
 
 
 def settle(out: Path) -> None:
-    """Complete the exchange at which a process was killed; the caller holds the lock."""
+    """Complete an exchange interrupted by a killed process; the caller holds the lock."""
     replaced = _replaced(out)
     if is_complete(partial_of(out)) and _may_be_replaced(out):
         exchange(out)
@@ -120,13 +120,13 @@ def exchange(out: Path) -> None:
 
 
 def is_being_written(folder: Path) -> bool:
-    """Whether a folder is that in which a run is written; see `partial_of`."""
+    """Whether a folder is the temporary one of a run; see `partial_of`."""
     named = folder.name.startswith(".") and folder.suffix == ".partial"
     return named and (folder / STATE).is_file() and not (folder / signoff.NAME).exists()
 
 
 def is_complete(partial: Path) -> bool:
-    """Whether the run in a folder lacks nothing but its final path."""
+    """Whether the run in a folder is complete but for its final path."""
     whole = not partial.is_symlink() and (partial / signoff.NAME).is_file()
     return whole and not (partial / STATE).exists()
 
@@ -139,13 +139,13 @@ def _may_be_replaced(out: Path) -> bool:
 
 
 def unrecorded(out: Path) -> list[str]:
-    """Files of a run folder, by relative name, that its record does not know; all without one."""
+    """Files of a run folder, by relative name, that its record omits; all without a record."""
     known = _hashes_of(out)
     return [name for name in _names_in(out) if name not in known]
 
 
 def of_the_user(run: Path) -> list[str]:
-    """Files in a run folder that `run` did not write, by name; changed ones are not told.
+    """Files in a run folder that `run` has not written, by name; changed ones are not listed.
 
     In a folder without a record, as of a damaged run, those that no run has by their name.
     """
@@ -156,7 +156,7 @@ def of_the_user(run: Path) -> list[str]:
 
 
 def kept_by_nothing(out: Path) -> list[str]:
-    """Recorded files of a run that a run in its place would not write again as they are.
+    """Recorded files that a new run in the same folder would lose: added or changed ones.
 
     Those of `inspect` and `deck`, and those that were changed since they were recorded.
     """
@@ -193,7 +193,7 @@ def _holds_ours(folder: Path) -> bool:
 
 @contextmanager
 def amended(path: Path) -> Iterator[Path]:
-    """Folder in which to write files for a finished run; they and its record change together.
+    """Context manager: folder for files to add to a finished run together with its record.
 
     After an exception the run is as before. The record of a file that is not written stays, also
     where the file differs from it. A run without a record is not finished: its files are written
@@ -218,7 +218,7 @@ def amended(path: Path) -> Iterator[Path]:
 
 
 def complete_amendment(path: Path) -> None:
-    """Put the files in place that a killed process was moving into a run; delete incomplete ones.
+    """Complete or delete the amendment of a run interrupted by a killed process.
 
     Raises
     ------
@@ -231,7 +231,7 @@ def complete_amendment(path: Path) -> None:
 
 
 def settle_recorded(path: Path) -> None:
-    """Complete what an interrupted command was adding to a run; refuse one not as recorded.
+    """Complete an interrupted amendment; refuse a run that differs from its record.
 
     Raises
     ------
@@ -246,7 +246,7 @@ def settle_recorded(path: Path) -> None:
 
 @contextmanager
 def staged(path: Path) -> Iterator[Path]:
-    """Folder, not made yet, whose files are moved into a run at the end without an exception.
+    """Context manager: folder whose files are moved into a run unless an exception is raised.
 
     Raises
     ------

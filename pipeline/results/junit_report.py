@@ -1,4 +1,4 @@
-"""Checks of runs and cases as JUnit XML, as Jenkins and GitLab read it.
+"""JUnit XML of the checks of runs and cases, as Jenkins and GitLab read it.
 
 A suite is a run or the preview of a case, a test case a check. The last test case, `VERDICT`, is
 the exit code of `camwright check`: missing data are skipped tests, and an incomplete suite has an
@@ -37,14 +37,14 @@ _TOTALS = ("tests", "failures", "errors")
 
 @dataclass(frozen=True)
 class Clock:
-    """Start of a run or preview, UTC as ``2026-01-31T12:00:00Z``, and its duration, s."""
+    """Start of a run or preview, UTC as ``2026-01-31T12:00:00Z``, and duration, s."""
 
     started: str | None = None
     seconds: float | None = None
 
     @classmethod
     def of(cls, summary: Mapping[str, object]) -> Clock:
-        """Clock of a run by its ``run.json``."""
+        """Clock of a run from its ``run.json``."""
         times, started = summary.get("timings_s"), summary.get("started")
         total = times.get("total") if isinstance(times, Mapping) else None
         return cls(
@@ -54,7 +54,7 @@ class Clock:
 
     @property
     def attributes(self) -> dict[str, str]:
-        """``timestamp``, without a zone as JUnit wants it, and ``time`` of a suite."""
+        """Attributes ``timestamp``, without a zone as JUnit requires, and ``time`` of a suite."""
         made = {} if self.started is None else {"timestamp": self.started.removesuffix("Z")}
         return made if self.seconds is None else made | {"time": f"{self.seconds:.3f}"}
 
@@ -74,7 +74,7 @@ def junit(suites: Sequence[ET.Element]) -> str:
 
 
 def unread_suite(name: str, message: str) -> ET.Element:
-    """JUnit suite of a run or case that cannot be read or solved."""
+    """JUnit suite of a run or case that could not be read or solved."""
     suite = ET.Element("testsuite", name=_for_xml(name))
     case = _case(suite, name, "read")
     ET.SubElement(case, "error", type="error", message=_for_xml(message))
@@ -89,7 +89,7 @@ def junit_suite(
     properties: Mapping[str, str],
     clock: Clock = Clock(),
 ) -> ET.Element:
-    """JUnit suite: properties of the run, a test case a check, the verdict as the last one.
+    """JUnit suite of a run: properties, a test case for each check, the verdict last.
 
     A check without data is skipped, with its reason. One that fails is a failure where it counts
     at the level `fail_on`, else a passed test whose output states its status. The checks share

@@ -1,4 +1,4 @@
-"""Limits of the model, stated once: for the report, the sign-off record and the documentation."""
+"""Limits of the model, for report, sign-off record and documentation."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ MODEL_LIMITS = (
 
 
 def limitations() -> LimitationsRecord:
-    """Statements by kind: ``limitations`` of the model, ``singularities`` that are excluded."""
+    """Limits of the model by kind: ``limitations``, and excluded ``singularities``."""
     return {
         "limitations": [each.statement for each in MODEL_LIMITS if not each.singular],
         "singularities": [each.statement for each in MODEL_LIMITS if each.singular],

@@ -52,7 +52,7 @@ _FORMS: Mapping[str, Any] = {
 
 
 def record_schema(name: str) -> Schema:
-    """Schema of a record, complete in itself.
+    """JSON Schema of a record, self-contained.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Run folder while it is written."""
+"""Run folder being written."""
 
 from __future__ import annotations
 
@@ -102,14 +102,14 @@ FILES: Mapping[str, Callable[[Any], bytes | str]] = {
 
 
 def versions() -> dict[str, str]:
-    """Versions of the project, its source text, Python and the libraries."""
+    """Versions of the project, its source hash, Python and the libraries."""
     ours = {"camwright": _version("camwright"), "source": _source_sha256()}
     ours["python"] = platform.python_version()
     return ours | {name: _version(name) for name in _LIBRARIES}
 
 
 class RunFolder:
-    """The folder of a run while it is written; a context manager.
+    """Run folder being written; a context manager.
 
     An interruption leaves the files for ``resume``, and so does a full disk or an unexpected
     exception once contact is solved. An error of the case deletes them: it would occur again.
@@ -188,7 +188,7 @@ class RunFolder:
         write_atomic(self._file(place), FILES[name](values))
 
     def mesh_path(self, trial: int) -> Path:
-        """Path of ``4_mesh.msh``; its folder exists."""
+        """Path of ``4_mesh.msh``, in a folder that exists."""
         return self._file(f"trial_{trial}/4_mesh.msh")
 
     @property

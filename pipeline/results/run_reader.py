@@ -1,4 +1,4 @@
-"""A finished run read from its folder: tables, checks, summary. `run_folder` writes it.
+"""Reading of finished runs: tables, checks, summary, hashes.
 
 Reading needs no solver and no case parser.
 """
@@ -52,7 +52,7 @@ SWEEP_FILE = "5_speed_sweep.csv"
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TrialRecord(WithChecks):
-    """A trial read from its folder: lift, contour, cycle, checks, record, speed sweep."""
+    """Trial read from its folder: lift, contour, cycle, checks, record, speed sweep."""
 
     number: int
     path: Path
@@ -98,7 +98,7 @@ class TrialRecord(WithChecks):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Run(WithChecks):
-    """A run read from its folder; the final trial is the result."""
+    """Run read from its folder; its final trial is the result."""
 
     path: Path
     case_text: str
@@ -122,7 +122,7 @@ class Run(WithChecks):
 
     @property
     def final(self) -> TrialRecord:
-        """The trial that is the result: the best one of a synthesis, else the last one."""
+        """Final trial: the best of a synthesis, else the last."""
         return self.trials[self.summary["final_trial"] - 1]
 
     @property
@@ -143,7 +143,7 @@ class Run(WithChecks):
 
 
 def read_run(path: str | Path) -> Run:
-    """Read a run folder.
+    """Run read from its folder.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def read_run(path: str | Path) -> Run:
 
 
 def read_verdict(path: Path) -> dict[str, Any]:
-    """Summary of a finished run and checks of its final trial; no table is read.
+    """Summary of a finished run and checks of its final trial, without tables.
 
     Raises
     ------
@@ -197,7 +197,7 @@ def read_verdict(path: Path) -> dict[str, Any]:
 
 
 def verify_run(path: Path) -> None:
-    """Compare the files of a run with the hashes in ``run.json``; ResultError for a difference."""
+    """Compare the files of a run with their recorded hashes; ResultError for a difference."""
     _require_own_case(path)
     summary = read_summary(path)
     for name, digest in summary["files"].items():
@@ -215,7 +215,7 @@ def _require_own_case(path: Path) -> None:
 
 
 def read_summary(path: Path) -> Summary:
-    """Contents of ``run.json``; ResultError for a folder that holds no run of this schema.
+    """Contents of ``run.json``; ResultError without a run of this schema.
 
     AlteredError where it holds a link, see `files.require_plain`.
     """
@@ -236,21 +236,21 @@ def read_summary(path: Path) -> Summary:
 
 
 def require_folder(path: Path) -> None:
-    """Refuse a path that is no folder, and with AlteredError one that holds a link or pipe."""
+    """Refuse a path that is no folder, and with AlteredError a folder with links or pipes."""
     if not path.is_dir():
         raise ResultError(f"{path}: no such folder")
     require_plain(path, AlteredError)
 
 
 def require_schema(file: Path, record: Json | Summary) -> None:
-    """Refuse a record of another schema."""
+    """Refuse a record of another schema version."""
     schema = record.get("schema", SCHEMA) if isinstance(record, dict) else SCHEMA
     if schema != SCHEMA:
         raise ResultError(f"{file}: schema = {schema}, must be {SCHEMA}: run the case again")
 
 
 def input_sha256(path: Path) -> str:
-    """Hash of the resolved case and its included files, as `Case.sha256` has it."""
+    """Hash of the resolved case and its included files, equal to `Case.sha256`."""
     inputs = path / "inputs"
     kept = {
         file.relative_to(path).as_posix(): file.read_bytes()
@@ -261,7 +261,7 @@ def input_sha256(path: Path) -> str:
 
 
 def results_sha256(files: Mapping[str, str]) -> str:
-    """Hash of the results of a run: of the lines `HASH  NAME`, by name, of its `files`.
+    """Hash of the results of a run: of lines `HASH NAME` sorted by name.
 
     These are the lines that sha256sum prints.
     """
@@ -270,14 +270,14 @@ def results_sha256(files: Mapping[str, str]) -> str:
 
 
 def is_result(name: str) -> bool:
-    """Whether a file of a run is a table, a record, a mesh or an array; the rest can be redrawn."""
+    """Whether a file is a result (table, record, mesh, array), not a drawing of results."""
     file = Path(name)
     made_last = ("run.json", "signoff.json")
     return file.suffix in (".csv", ".json", ".msh", ".npz") and file.name not in made_last
 
 
 def load_end_words(ends: Iterable[LoadEndRecord]) -> str:
-    """Such as ``leaves the cam at 150.5 deg (over-speed)``; "" without any."""
+    """End of the loads, such as ``leaves the cam at 150.5 deg (over-speed)``; "" without one."""
     return ", ".join(end["statement"] for end in ends)
 
 
@@ -325,7 +325,7 @@ def _read_trial(run: Path, number: int) -> TrialRecord:
 
 
 def read_trial_record(trial: Path) -> TrialContents:
-    """Contents of ``trial.json`` in the folder of a trial."""
+    """Contents of ``trial.json`` of a trial."""
     file = trial / "trial.json"
     record: TrialContents = read_json(file)
     _require(file, record, TrialContents)
@@ -333,7 +333,7 @@ def read_trial_record(trial: Path) -> TrialContents:
 
 
 def read_checks(trial: Path) -> tuple[CheckRecord, ...]:
-    """Records of ``6_checks.json`` in the folder of a trial.
+    """Check records of ``6_checks.json`` of a trial.
 
     Raises
     ------
@@ -344,7 +344,7 @@ def read_checks(trial: Path) -> tuple[CheckRecord, ...]:
 
 
 def read_records(file: Path) -> tuple[CheckRecord, ...]:
-    """Records of checks of a file; see `read_checks`."""
+    """Check records of a file; see `read_checks`."""
     records: list[CheckRecord] = read_json(file)
     if not isinstance(records, list):
         raise ResultError(f"{file}: must be a list of checks")

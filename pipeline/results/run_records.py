@@ -1,4 +1,4 @@
-"""Records of a run: columns of its tables, headline, trial, crank speed."""
+"""Records of a run: table columns, headline, trial, crank speed."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ _DRAWN = 720  # least number of angles at which lift and contour are listed
 
 
 def torque_columns(torque: Torque) -> dict[Column, Array]:
-    """Columns of ``1_torque.csv``: torque of the engine, components, error bar if measured."""
+    """Columns of ``1_torque.csv``: engine torque, components, error bar if measured."""
     total = Column("total", "N m", "Torque on the machine's shaft")
     parts = {
         Column(name, "N m", f"Torque on the machine's shaft, {name.replace('_', ' ')}"): values
@@ -93,7 +93,7 @@ def torque_columns(torque: Torque) -> dict[Column, Array]:
 
 
 def spline_columns(lift: Lift) -> dict[Column, Array]:
-    """Columns of ``2_spline.csv``: the lift itself, a polynomial from each knot to the next."""
+    """Columns of ``2_spline.csv``: coefficients of the lift's polynomials between knots."""
     return {CAM_ANGLE: lift.theta, **dict(zip(SPLINE, lift.spline.coefficients, strict=True))}
 
 
@@ -120,7 +120,7 @@ def lift_columns(case: Case, lift: Lift) -> dict[Column, Array]:
 
 
 def limit_columns(theta: Array, uses: Mapping[str, Array]) -> dict[Column, Array]:
-    """Columns of ``2_limits.csv``: utilisation (n,) of each limit by the id of its check."""
+    """Columns of ``2_limits.csv``: utilisation (n,) of each limit by check id."""
     columns = {Column(name, "", f"Utilisation of {name}"): use for name, use in uses.items()}
     return {CAM_ANGLE: theta, **columns}
 
@@ -145,7 +145,7 @@ def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
 
 
 def cycle_columns(cycles: tuple[Cycle, ...]) -> dict[Column, Cells]:
-    """Columns of ``5_cycle.csv``: those of all load cases, one below the other."""
+    """Columns of ``5_cycle.csv``, the load cases in sequence."""
     tables = [cycle.columns() for cycle in cycles]
     columns = dict.fromkeys(column for table in tables for column in table)
     # One load case has columns that another lacks, such as the torque of an engine at rest.
@@ -157,13 +157,13 @@ def cycle_columns(cycles: tuple[Cycle, ...]) -> dict[Column, Cells]:
 
 
 def sweep_columns(sweeps: tuple[SpeedSweep, ...]) -> dict[Column, Array]:
-    """Columns of ``5_speed_sweep.csv``: one sweep a preload, one below the other."""
+    """Columns of ``5_speed_sweep.csv``, one sweep for each preload in sequence."""
     tables = [sweep.columns() for sweep in sweeps]
     return {column: np.concatenate([each[column] for each in tables]) for column in tables[0]}
 
 
 def column_table(trial: Trial) -> dict[str, tuple[Column, ...]]:
-    """Columns of a solved trial, with unit and meaning, by file of its folder."""
+    """Columns with unit and meaning by file of a trial's folder."""
     tables: dict[str, Values] = {
         "2_lift.csv": lift_columns(trial.case, trial.lift),
         "2_spline.csv": spline_columns(trial.lift),
@@ -236,7 +236,7 @@ def headline(trial: Trial) -> HeadlineRecord:
 
 
 def figures(trial: Trial) -> CamFigures:
-    """Figures of a cam and of its stated load cases, in mm, deg, rpm, N, N m and MPa.
+    """Figures of a cam and of its load cases, in mm, deg, rpm, N, N m and MPa.
 
     Extremes are refined between the samples. Of a load case in which the follower leaves the cam
     or locks the speed and the least contact force alone are stated, the others are None.
@@ -330,7 +330,7 @@ def _residual_max(trial: Trial) -> float | None:
 
 
 def trial_record(trial: Trial) -> TrialContents:
-    """Contents of ``trial.json``: smoothing, reason, mesh, certificate, rolling."""
+    """Record of ``trial.json``: smoothing, reason, mesh, certificate, rolling."""
     smoothing, mesh, width = trial.smoothing, trial.mesh, trial.smoothing.angular_width
     machine, contact = trial.solution.machine, trial.cycles[0].contact
     ends = trial.solution.length_certificate
@@ -367,7 +367,7 @@ def trial_record(trial: Trial) -> TrialContents:
 
 
 def quality_record(quality: Quality) -> QualityRecord:
-    """Quality of a mesh."""
+    """Record of a mesh's quality figures."""
     return {
         "min_angle_deg": quality.min_angle_deg,
         "min_scaled_jacobian": quality.min_scaled_jacobian,
@@ -378,7 +378,7 @@ def quality_record(quality: Quality) -> QualityRecord:
 
 
 def fatigue_record(solution: Solution) -> dict[str, FatigueRecord]:
-    """Points of the Goodman diagrams of spring and camshaft, with the safety required, MPa."""
+    """Goodman diagrams of spring and camshaft with their required safety, MPa."""
     limits = solution.machine.limits
     parts = {
         "spring": (spring_fatigue_points(solution), limits[SPRING_FATIGUE]),
@@ -404,7 +404,7 @@ def fatigue_record(solution: Solution) -> dict[str, FatigueRecord]:
 
 
 def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, list[float]] | None:
-    """Change of p0 by finite elements over Hertz, least and greatest of the loaded angles, percent.
+    """Least and greatest change of p0 by finite elements over the loaded angles, percent.
 
     p0; bending of the cam and of the part of the follower, to first order; rest: mesh and change of
     curvature along the contact. None for closed forms, and without a loaded angle.
@@ -437,7 +437,7 @@ def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, list[float]] | None:
 def crank_speed_record(
     trial: Trial, required: Array | None
 ) -> tuple[CrankSpeedRecord, Values | None]:
-    """Crank speed with and without the cam, and consistency and plausibility of the inputs.
+    """Record of crank speed with and without cam, consistency and plausibility.
 
     Parameters
     ----------
@@ -511,7 +511,7 @@ def _motion_record(motion: CrankMotion) -> MotionRecord:
 
 
 def certificate_record(point: CertificatePoint) -> CertificateRecord:
-    """One certified angle in millimetres and megapascals."""
+    """Record of one certified angle, mm and MPa."""
     return {
         "cam_angle_deg": float(np.degrees(point.theta)),
         "p0_MPa": _figure(point.p0, point.p0_cycle, _MPA),

@@ -38,7 +38,7 @@ _LONGEST_NAME = 100
 
 @dataclass(frozen=True)
 class Signature:
-    """A valid signature by a trusted key.
+    """Valid signature of a run record by a trusted key.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Signature:
 
     @property
     def words(self) -> str:
-        """Such as ``approved by A. Meyer, 2026-01-31T12:00:00Z, key SHA256:...``."""
+        """Text such as ``approved by A. Meyer, 2026-01-31T12:00:00Z, key SHA256:...``."""
         owner = f" ({self.owner})" if self.owner and self.owner != self.name else ""
         return f"{self.role} by {self.name}, {self.date}, key {self.key}{owner}"
 
@@ -70,7 +70,7 @@ class _RefusedError(Exception):
 
 
 def encoded(kind: str, payload: bytes) -> bytes:
-    """Pre-authentication encoding of a payload of a type: the bytes that are signed.
+    """DSSE pre-authentication encoding of a typed payload: the signed bytes.
 
     References
     ----------
@@ -81,7 +81,7 @@ def encoded(kind: str, payload: bytes) -> bytes:
 
 
 def checked_name(name: str) -> str:
-    """A name as it can be signed; InputError if it is empty, long or has control characters."""
+    """Name of a signer; InputError if empty, too long or with control characters."""
     name = name.strip()
     if not name or len(name) > _LONGEST_NAME or not name.isprintable():
         limit = f"1 to {_LONGEST_NAME} printable characters"
@@ -90,7 +90,7 @@ def checked_name(name: str) -> str:
 
 
 def sign(folder: Path, private: Ed25519PrivateKey, role: str, name: str, date: str) -> Signature:
-    """Add the signature of a role to ``signoff.intoto.jsonl``; no other file is written.
+    """Add the signature of a role to ``signoff.intoto.jsonl``, the only file written.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def _signed(
 def verified(
     folder: Path, trusted: Mapping[str, TrustedKey]
 ) -> tuple[tuple[Signature, ...], list[str]]:
-    """Valid signatures of the record of a run, and the faults of the others, one line each.
+    """Valid signatures of a run record, and faults of the invalid ones, one line each.
 
     The files of the run are not compared; `signoff.changes` does that.
 

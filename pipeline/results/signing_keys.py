@@ -1,4 +1,4 @@
-"""Ed25519 keys: new, read, trusted.
+"""Ed25519 keys: creation, reading, trust.
 
 References
 ----------
@@ -35,12 +35,12 @@ _OPENSSH = "ssh-ed25519"
 
 
 class PassphraseError(InputError):
-    """An encrypted key without its passphrase."""
+    """Encrypted key read without its passphrase."""
 
 
 @dataclass(frozen=True)
 class TrustedKey:
-    """A public key, its owner as its file names him, and the roles it may sign."""
+    """Public key with its owner's name and permitted roles."""
 
     public: Ed25519PublicKey
     owner: str = ""
@@ -55,7 +55,7 @@ def fingerprint(public: Ed25519PublicKey) -> str:
 
 
 def write_key(path: Path, owner: str = "") -> Path:
-    """Write a new private key, PEM, and its public key in OpenSSH form to ``PATH.pub``.
+    """Write a new private key (PEM) and its public key ``PATH.pub`` (OpenSSH).
 
     Raises
     ------
@@ -87,7 +87,7 @@ def write_key(path: Path, owner: str = "") -> Path:
 
 
 def read_private_key(path: Path, passphrase: bytes | None = None) -> Ed25519PrivateKey:
-    """Private Ed25519 key of a file in PEM or OpenSSH form.
+    """Private Ed25519 key of a PEM or OpenSSH file.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def read_private_key(path: Path, passphrase: bytes | None = None) -> Ed25519Priv
 
 
 def own_keys() -> Path | None:
-    """File of the keys that this user trusts; None without a home folder."""
+    """File of the user's trusted keys; None without a home folder."""
     try:
         if sys.platform == "win32":
             return Path(os.environ["APPDATA"]) / "camwright" / "trusted_keys"
@@ -135,7 +135,7 @@ def own_keys() -> Path | None:
 
 
 def trust(public: Path) -> Path | None:
-    """Add a public key to `own_keys`; returns that file, None without a home folder.
+    """Add a public key to `own_keys`; the file, or None without a home folder.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def trust(public: Path) -> Path | None:
 
 
 def read_trusted(path: Path | None) -> dict[str, TrustedKey]:
-    """Trusted keys by fingerprint; of None those of `own_keys`.
+    """Trusted keys by fingerprint; for None those of `own_keys`.
 
     A line is a public key in OpenSSH form with its owner, before it the roles it may sign where
     they are not all: ``prepared,checked ssh-ed25519 AAAA... A. Meyer``. Empty lines and those from
@@ -231,7 +231,7 @@ def _public_line(public: Ed25519PublicKey, owner: str) -> bytes:
 
 
 def bytes_of(path: Path, field: str) -> bytes:
-    """Bytes of a small file; InputError naming `field` if it cannot be read or is large."""
+    """Contents of a small file; InputError naming `field` if unreadable or too large."""
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST + 1)

@@ -1,4 +1,4 @@
-"""Sign-off record of a run: figures with error bars, verdict, evidence, hash of every file.
+"""Sign-off record of a run: figures with error bars, verdict, evidence, file hashes.
 
 It follows from the files of the run alone and can be reproduced from them. `signatures` are on this
 record alone.
@@ -45,7 +45,7 @@ _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
 def record(path: Path) -> SignoffRecord:
-    """The sign-off record of the run in a folder.
+    """Sign-off record of the run in a folder.
 
     Raises
     ------
@@ -123,12 +123,12 @@ def _statements(checks: Sequence[CheckRecord]) -> list[LimitStatement]:
 
 
 def write(path: Path) -> None:
-    """Write the record into the folder of a run that is otherwise complete."""
+    """Write the sign-off record into a run folder that is otherwise complete."""
     write_atomic(path / NAME, json_text(record(path)) + "\n")
 
 
 def write_amended(path: Path, added: Path) -> None:
-    """Write the record of a run with the files of a folder added to it into that folder.
+    """Write the sign-off record of a run and of files to be added to it.
 
     The other hashes are those of the record before.
     """
@@ -138,7 +138,7 @@ def write_amended(path: Path, added: Path) -> None:
 
 
 class Difference(NamedTuple):
-    """Difference of a run from its record.
+    """Difference between a run and its record.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ class Difference(NamedTuple):
 
 
 def changes(path: Path) -> list[Difference]:
-    """Differences of a run from its record, by name; empty without any.
+    """Differences of a run from its record, by file name.
 
     The signatures are not among the files, see `signatures.verified`. Where the folder holds more
     than files and folders, that alone is named and no file is read.
@@ -220,7 +220,7 @@ def require_recorded(path: Path) -> None:
 
 
 def read_run(path: str | Path) -> run_reader.Run:
-    """Read the folder of a finished run that is as recorded.
+    """Finished run read from its folder, verified against its record.
 
     Raises
     ------
@@ -243,7 +243,7 @@ def _recorded_hashes(path: Path, recorded: Json) -> dict[str, str]:
 
 
 def hashes(path: Path) -> dict[str, str]:
-    """SHA-256 of every file of a run, without those of the record and its signatures."""
+    """SHA-256 of every file of a run but the record and its signatures."""
     return file_hashes(path, lambda name: name not in (NAME, SIGNATURES))
 
 
@@ -276,7 +276,7 @@ def _is_sha256(value: Json) -> bool:
 
 
 def environment() -> str:
-    """System and processor, for the summary of a run."""
+    """Operating system and processor, for the summary of a run."""
     return f"{platform.system()} {platform.machine()}"
 
 

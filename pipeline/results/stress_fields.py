@@ -34,7 +34,7 @@ IntArray = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class BodyField:
-    """Field of a mesh at k cam angles.
+    """Displacement and stress on a mesh at k cam angles.
 
     points (2, n, k), m; displacement (2, n, k), m; stress xx, yy, xy (3, n, k), Pa; hidden (t, k)
     triangles that another mesh replaces.
@@ -46,7 +46,7 @@ class BodyField:
     hidden: NDArray[np.bool_]
 
     def placed(self, places: Poses) -> BodyField:
-        """The field of a body in its own frame, in that of the cam."""
+        """Field transformed from the body's frame to the cam frame."""
         turn = places.turn
         xx, yy, xy = self.stress
         tensor = np.einsum(
@@ -62,7 +62,7 @@ class BodyField:
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Poses of a body at k cam angles: origins (k, 2), m, and rotations (k, 2, 2) of its axes."""
+    """Poses of a body at k cam angles: origins (k, 2), m, rotations (k, 2, 2)."""
 
     origin: Array
     turn: Array
@@ -74,7 +74,7 @@ class Poses:
 
 
 def follower_places(pair: ContactPair, theta: Array) -> Poses:
-    """Poses of the follower's body in the cam frame at cam angles (k,)."""
+    """Poses of the follower body in the cam frame at cam angles (k,)."""
     contacts, normals = pair.contour.points(theta), -pair.contour.normal(theta)
     at, up = pair.follower.contacts(pair.contour, theta)
     cosine, sine = (up * normals).sum(axis=0), up[0] * normals[1] - up[1] * normals[0]
@@ -85,7 +85,7 @@ def follower_places(pair: ContactPair, theta: Array) -> Poses:
 
 @dataclass(frozen=True, eq=False)
 class TurnFields:
-    """Fields of the bodies of a cycle, block by block."""
+    """Stress fields of both bodies over a cycle, computed in blocks of angles."""
 
     pair: ContactPair
     bodies: CycleBodies
@@ -168,7 +168,7 @@ class TurnFields:
 
 
 def fallen_back(contour: Contour, theta: Array, along: Array) -> Array:
-    """Height (m, k) of the tangent above the contour, m, at distances `along` (m, k), m.
+    """Gap (m, k), m, of the contour below its tangent at distances `along` (m, k), m.
 
     By the circle of curvature where the contour does not reach as far.
     """
@@ -180,7 +180,7 @@ def fallen_back(contour: Contour, theta: Array, along: Array) -> Array:
 
 
 def approach(cam: BodyField, follower: BodyField, normals: Array) -> Array:
-    """Approach (k,), m, of the supports of both bodies, by which their surfaces touch.
+    """Approach (k,), m, of the supports of both bodies, from their displacements at the contact.
 
     From the fields below the contact, each relative to its support; `normals` (2, k) of the cam.
     """
@@ -190,7 +190,7 @@ def approach(cam: BodyField, follower: BodyField, normals: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Loaded:
-    """A body under contacts in its own frame.
+    """Body under contact loads, in its own frame.
 
     contacts, normals (2, c) with c = 1 where all are equal; line_load N/m and half_width m (k,);
     height of the tangent above the surface, m, at distances (m, k) along it, m.

@@ -1,4 +1,4 @@
-"""Trial: one cam, its solution and the checks of both."""
+"""Trial: cam, solution and checks."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class TrialPoint:
         )
 
     def as_record(self) -> TrialPointRecord:
-        """The JSON record; a utilisation of null is infinite, or that of no check."""
+        """JSON record; a null utilisation is infinite, or belongs to no check."""
         use = self.utilisation
         return {
             "trial": self.number,

@@ -1,4 +1,4 @@
-"""Files of a trial in a run folder."""
+"""Writing of a trial's files in a run folder."""
 
 from __future__ import annotations
 
@@ -48,6 +48,6 @@ def write_trial_files(folder: RunFolder, trial: Trial) -> None:
 
 
 def write_judgement(folder: RunFolder, trial: Trial) -> None:
-    """Write checks and record of a trial; again after its certificate."""
+    """Write checks and record of a trial; repeated after its certificate."""
     folder.write("6_checks.json", [check.as_record() for check in trial.checks], trial.number)
     folder.write("trial.json", trial_record(trial), trial.number)

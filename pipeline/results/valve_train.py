@@ -1,4 +1,4 @@
-"""Record of the machine motion of a valve cam in ``run.json``.
+"""Record of a valve cam's machine motion in ``run.json``.
 
 Equations of Petrescu and Petrescu (2015), see `valve_cam`; rows by equations that are not available
 are marked *reconstructed*.
@@ -34,7 +34,7 @@ _NO_YIELD = "momentary yield of eq. 6.18; no efficiency: force and velocity are 
 
 @dataclass(frozen=True)
 class Row:
-    """A value of a load case ("": of all), with a note on its source."""
+    """Value of a load case ("": of all), with a note on its source."""
 
     load_case: str
     name: str
@@ -54,7 +54,7 @@ class Row:
 
 
 def valve_cam(case: Case) -> ValveCam | None:
-    """Valve cam of a case with ``[valve_train]``, whose lift is by segments; else None."""
+    """Valve cam of a case with ``[valve_train]`` and a lift by segments; else None."""
     train, lift = case.valve_train, case.lift
     if train is None or not isinstance(lift, LiftSegments):
         return None
@@ -77,7 +77,7 @@ def valve_record(trial: Trial) -> ValveTrainRecord | None:
 
 
 def machine_motion(cam: ValveCam, turns: Sequence[Turn]) -> ValveTrainRecord:
-    """Module of the cam and rows of its machine motion in all load cases."""
+    """Module of the cam, and rows of its machine motion in all load cases."""
     rows = [*_shape(cam), *(row for turn in turns for row in _motion(cam, turn))]
     return {"module": cam.module, "rows": [row.as_record() for row in rows]}
 

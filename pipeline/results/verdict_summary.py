@@ -1,4 +1,4 @@
-"""Verdict of a run or case in a few lines: worst failures with remedy, missing data, headline."""
+"""Summary of a verdict in a few lines: failures with remedies, missing data, headline."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _LEAST = 24  # columns of a title
 
 
 class Places(NamedTuple):
-    """Where a verdict comes from: target of `check`, case file, page; time of the run, s.
+    """Origin of a verdict: target of `check`, case file, page; run time, s.
 
     A page of "" was not written; a time of None is not stated.
     """
@@ -51,7 +51,7 @@ class Places(NamedTuple):
 
 
 def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
-    """Verdict of a run in at most `LINES` lines of `WIDTH` columns.
+    """Summary of a run's verdict in at most `LINES` lines of `WIDTH` columns.
 
     Verdict or screen; where the follower leaves the cam or locks; the worst `WORST` failures with
     demand, limit and remedy; number of missing keys; headline; record of a measured speed;
@@ -81,7 +81,7 @@ def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
 
 
 def trial_lines(run: Run) -> list[str]:
-    """A line on each trial, under a heading: smoothing, ripple left, failed required checks.
+    """Lines on the trials: smoothing, ripple left, failed required checks.
 
     The worst `WORST` are named by their ids. None of a single trial.
     """
@@ -111,18 +111,18 @@ def verdict_words(document: Mapping[str, Any]) -> str:
 
 
 def load_end_line(document: Mapping[str, Any]) -> list[str]:
-    """Line on the cam angles at which the follower leaves the cam or locks; none without any."""
+    """Line on the angles of take-off or locking of the follower; none without any."""
     words = load_end_words(document.get("load_ends") or ())
     return [f"the follower {words}: loads there are not evaluated"] if words else []
 
 
 def failures(checks: Iterable[CheckRecord]) -> list[CheckRecord]:
-    """Failed required checks: those of the design, then evidence; worst first."""
+    """Failed required checks, those of the design before evidence, worst first."""
     return _failed(checks, must_have=True)
 
 
 def governs_first(checks: Iterable[CheckRecord]) -> bool:
-    """Whether the governing check is the first of `failures`, where it is described."""
+    """Whether the first of `failures` is the governing check, where described."""
     checks = tuple(checks)
     return [governing_id(of_records(checks))] == [check["id"] for check in failures(checks)[:1]]
 
@@ -136,7 +136,7 @@ def _failed(checks: Iterable[CheckRecord], *, must_have: bool) -> list[CheckReco
 
 
 def failure_words(check: CheckRecord, room: int | None = None) -> str:
-    """Title, demand, limit, utilisation, place of a failed check; room: columns, None: any."""
+    """Failed check in words: title, demand, limit, utilisation, place; room: columns or None."""
     judged, unit = RecordedCheck(check), unit_text(check["unit"])
     demand = number(judged.worst)
     sense = ">=" if check["sense"] == "at_least" else "<="
@@ -150,7 +150,7 @@ def failure_words(check: CheckRecord, room: int | None = None) -> str:
 
 
 def missing_keys(checks: Iterable[CheckRecord], *, must_have: bool = True) -> dict[str, list[str]]:
-    """Keys that the case lacks, each with the ids of the checks that need it.
+    """Missing keys of a case, each with the ids of the checks that need it.
 
     Of the required checks, else of the optional ones.
     """
@@ -163,7 +163,7 @@ def missing_keys(checks: Iterable[CheckRecord], *, must_have: bool = True) -> di
 
 
 def missing_count(checks: Iterable[CheckRecord], case: str) -> list[str]:
-    """Line on the number of missing keys and the command that lists them; none without any."""
+    """Line on the number of missing keys, and the command that lists them."""
     count = len(missing_keys(checks))
     if not count:
         return []
@@ -172,12 +172,12 @@ def missing_count(checks: Iterable[CheckRecord], case: str) -> list[str]:
 
 
 def failure_lines(checks: Iterable[CheckRecord]) -> list[str]:
-    """Lines on every failed required check, with id and remedy."""
+    """Lines on all failed required checks, with id and remedy."""
     return _failed_lines("fails", failures(checks))
 
 
 def advisory_lines(checks: Iterable[CheckRecord]) -> list[str]:
-    """Lines on every failed optional check, with id and remedy: they decide nothing."""
+    """Lines on all failed optional checks, with id and remedy."""
     failed = _failed(checks, must_have=False)
     return _failed_lines("beyond its limit, decides nothing", failed)
 
@@ -194,7 +194,7 @@ def _failed_lines(word: str, failed: Iterable[CheckRecord]) -> list[str]:
 
 
 def missing_lines(checks: Sequence[CheckRecord], case: str) -> list[str]:
-    """Lines on the missing keys and the required checks that need them, and on other data."""
+    """Lines on missing keys, the required checks that need them, and other data."""
     keys = missing_keys(checks)
     by_ids: dict[str, list[str]] = {}
     for key, ids in keys.items():
@@ -213,7 +213,7 @@ def missing_lines(checks: Sequence[CheckRecord], case: str) -> list[str]:
 
 
 def torque_lines(torques: Mapping[str, Torque]) -> list[str]:
-    """Torque that the cam is to balance, a line a load case; none of a stated lift."""
+    """Lines on the torque to balance, one for each load case; none for a stated lift."""
     lines = []
     for name, torque in torques.items():
         swing = torque.peak_to_peak
@@ -226,7 +226,7 @@ def torque_lines(torques: Mapping[str, Torque]) -> list[str]:
 
 
 def figure_lines(known: Mapping[str, Any]) -> list[str]:
-    """Figures of the cam, and of each load case a line; see `run_records.figures`."""
+    """Lines on the figures of the cam and of each load case; see `run_records.figures`."""
     lines = [f"figures: {_listed(known, _OF_THE_CAM)}"]
     for row in known["load_cases"]:
         words = _listed(row, _OF_A_LOAD_CASE)
@@ -260,7 +260,7 @@ def _listed(row: Mapping[str, Any], titles: Iterable[tuple[str, tuple[str, ...],
 
 
 def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
-    """Next step after an open screen; none after a failed one or a verdict."""
+    """Lines on the next step after an open screen; none otherwise."""
     if document["screen"] != OPEN:
         return []
     if document["binding"]:
@@ -276,7 +276,7 @@ def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
 
 
 def headline_line(document: Mapping[str, Any]) -> list[str]:
-    """Ripple without and with the cam, greatest contact pressure, stress of each body; or none."""
+    """Line: ripple without and with the cam, greatest contact pressure and body stresses."""
     figures = document.get("headline") or {}
     before, after = (figures.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
     parts = []
@@ -303,7 +303,7 @@ def body_stresses(figures: Mapping[str, Any]) -> list[str]:
 
 
 def governing_line(checks: Iterable[CheckRecord]) -> list[str]:
-    """Title, utilisation and place of the governing check; none if none is evaluated."""
+    """Line: title, utilisation and place of the governing check; none without one."""
     first = governing(of_records(checks))
     if first is None:
         return []
@@ -313,7 +313,7 @@ def governing_line(checks: Iterable[CheckRecord]) -> list[str]:
 
 
 def measured_line(document: Mapping[str, Any]) -> list[str]:
-    """Line on the record of a measured crank speed: runs, wheel, sampling rate, error bar."""
+    """Line on a measured crank speed: runs, wheel, sampling rate, error bar."""
     record: Mapping[str, Any] = document.get("measurement") or {}
     if "torque_error_bar_max_Nm" not in record:
         return []
@@ -329,7 +329,7 @@ def measured_line(document: Mapping[str, Any]) -> list[str]:
 
 
 def place_line(document: Mapping[str, Any], places: Places) -> list[str]:
-    """Line on page, analysis sheet, number of trials and time; none of a case."""
+    """Line on page, analysis sheet, number of trials and time; none for a case."""
     parts = [f"page: {places.page}, analysis sheet: #sheet in it"] if places.page else []
     if count := document.get("trials"):
         parts.append("1 trial" if count == 1 else f"{count} trials")
@@ -339,7 +339,7 @@ def place_line(document: Mapping[str, Any], places: Places) -> list[str]:
 
 
 def folded(text: str, most: int = 2) -> list[str]:
-    """Text in lines of `WIDTH` columns, cut after `most`."""
+    """Text wrapped to `WIDTH` columns, cut after `most` lines."""
     return textwrap.wrap(
         text, WIDTH, subsequent_indent="  ", max_lines=most, placeholder=_CUT,
         break_long_words=False, break_on_hyphens=False,
@@ -347,7 +347,7 @@ def folded(text: str, most: int = 2) -> list[str]:
 
 
 def shortened(text: str, width: int = WIDTH) -> str:
-    """Text on one line, cut to a number of columns."""
+    """Text in one line, cut to a number of columns."""
     indent = " " * (len(text) - len(text.lstrip(" ")))
     line = indent + " ".join(text.split())
     return line if len(line) <= width else line[: width - 1].rstrip() + _CUT

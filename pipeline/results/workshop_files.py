@@ -1,4 +1,4 @@
-"""Workshop files: dimensions, contour table, drawing, solid, cutter path, inspection sheet."""
+"""Workshop files: dimensions, contour table, drawing, solid, cutter path, inspection sheets."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _RADII_POINTS = 36_000  # of the contour: its chords are within a nanometre
 
 @dataclass(frozen=True)
 class CamDimensions:
-    """Dimensions of a cam, m, and the state of its material in words; "": not stated.
+    """Dimensions of a cam, m, and the state of its material in words; "" if not stated.
 
     bore : Size               diameter
     keyway_width : Size       None without a keyway, as the others of the keyway
@@ -90,7 +90,7 @@ def dimensions_of(case: Case) -> CamDimensions:
 
 
 def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
-    """Contents of ``dimensions.json``: sizes, tolerances, material, radii by polar angle."""
+    """Record of ``dimensions.json``: sizes, tolerances, material, radii by polar angle."""
     size, keyway, hole = dimensions_of(case), case.cam.keyway, drilled_hole(case.cam, contour)
     polygon = contour.polygon(_RADII_POINTS)
     record: dict[str, Json] = {
@@ -134,7 +134,7 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
 
 
 def track_record(case: Case, word: str) -> dict[str, Json]:
-    """Axial section of the surface in contact of a body: flat, ends, crown; null: not stated."""
+    """Axial section of a contact surface: flat, ends, crown; null if not stated."""
     part = case.cam if word == "cam" else case.facing
     end, crown = part.end, part.crown
     drops = None if crown is None else crown_drops(case, word)
@@ -200,7 +200,7 @@ def outline_of(case: Case, contour: Contour) -> Outline:
 
 
 def part_title(case: Case) -> PartTitle:
-    """Product of the cam in its STEP file."""
+    """Product data of the cam in its STEP file."""
     stated = case.document
     return PartTitle(
         case.name,
@@ -257,7 +257,7 @@ def _write_crown(case: Case, word: str, path: Path) -> None:
 
 
 def stamp_solid(folder: Path, case_sha256: str, results_sha256: str) -> None:
-    """State the hashes of case and results in the header of the STEP file, if there is one.
+    """Write the hashes of case and results into the header of the STEP file, if any.
 
     The results are complete only after the solid was written; no hash covers the solid itself.
     """
@@ -267,13 +267,13 @@ def stamp_solid(folder: Path, case_sha256: str, results_sha256: str) -> None:
 
 
 def dimensions_text(case: Case, contour: Contour) -> str:
-    """JSON of the dimensions; GeometryError of a contour that is undercut."""
+    """JSON of the dimensions; GeometryError for an undercut contour."""
     contour.require_no_undercut()
     return json_text(dimensions_record(case, contour)) + "\n"
 
 
 def contour_table(contour: Contour, theta: Array) -> str:
-    """CSV of contour and lift, a row per angle."""
+    """CSV of contour and lift, a row for each angle."""
     x, y = contour.points(theta)
     normal = contour.normal(theta)
     lift = contour.pitch.lift.derivatives(theta, 3)
@@ -312,7 +312,7 @@ def cutter_table(contour: Contour, tool_radius: float, theta: Array) -> str:
 
 
 def inspection_sheet(contour: Contour, theta: Array, tolerance: float) -> str:
-    """CSV of nominal points with a tolerance band along the normal, measured columns empty."""
+    """CSV of nominal points with normal tolerance band and empty measured columns."""
     x, y = contour.points(theta) * 1e3
     normal = contour.normal(theta)
     polar = np.degrees(np.mod(np.arctan2(y, x), 2 * np.pi))
@@ -327,7 +327,7 @@ def inspection_sheet(contour: Contour, theta: Array, tolerance: float) -> str:
 
 
 def crown_sheet(y: Array, drop: Array) -> str:
-    """CSV of the nominal drop of a crown at axial coordinates, measured columns empty.
+    """CSV of a crown's nominal drop at axial coordinates, with empty measured columns.
 
     Its first two columns are those of the table of a crown in a case.
     """
