@@ -1,4 +1,4 @@
-"""Hand-check sheet: checks of a finished run evaluated once more from their formula texts.
+"""Hand-check sheet: checks of a finished run evaluated again from their formula texts.
 
 | module          | responsibility                                                    |
 | --------------- | ----------------------------------------------------------------- |

@@ -1,4 +1,4 @@
-"""Hand-check sheet: a check of a finished run evaluated once more from its own formula text.
+"""Hand-check sheet: a check of a finished run evaluated again from its formula text.
 
 The symbols of the formula are those of the declaration: keys of the case, columns of the cycle,
 figures of the drawn cam, all from the run folder. What a solver or a reduction over the turn gave
@@ -79,7 +79,7 @@ ONLY = "?"
 
 @dataclass(frozen=True)
 class Quantity:
-    """A symbol of a formula with its value.
+    """Symbol of a formula with its value and unit.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Quantity:
 
 
 class SheetStep(NamedTuple):
-    """A definition, or with the name "" the demand: expression and its value in words."""
+    """Step of a sheet: symbol, or "" for the demand, with its expression and value in words."""
 
     name: str
     expression: formula.Node
@@ -106,7 +106,7 @@ class SheetStep(NamedTuple):
 
 
 class SheetBound(NamedTuple):
-    """Limit by the formula: expression, and value in the unit of the record."""
+    """Limit evaluated from its formula: expression, and value in the unit of the record."""
 
     expression: formula.Node
     value: float
@@ -114,7 +114,7 @@ class SheetBound(NamedTuple):
 
 @dataclass(frozen=True)
 class Sheet:
-    """A check as an engineer writes it by hand.
+    """Hand calculation of a check: formula, symbols, steps, result.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ class Sheet:
 
     @property
     def is_stated(self) -> bool:
-        """Whether the demand is one number of a solver, or not evaluated at all."""
+        """Whether the demand is a number of a solver, or not evaluated."""
         recorded = {each.symbol for each in self.quantities if each.recorded}
         return not self.steps or self.steps[-1].expression.text in recorded
 
@@ -159,12 +159,12 @@ class Sheet:
 
     @property
     def agrees(self) -> bool:
-        """Whether formula and record give the same demand, limit and use within rounding."""
+        """Whether demand, limit and utilisation of formula and record are equal to rounding."""
         return not self.differs_in
 
     @property
     def differs_in(self) -> str:
-        """First of demand, limit and use that differs from the record; "": none."""
+        """First of demand, limit and utilisation that differs from the record; "" for none."""
         limit, stated, use = self.record["limit"], self.record["utilisation"], self.use
         if not self._gives_the_demand:
             return "demand"
@@ -185,13 +185,13 @@ class Sheet:
         return self.gives(demand, ROUNDING)
 
     def gives(self, demand: float, share: float, of_limit: float = _LEAST) -> bool:
-        """Whether the formula gives a demand within a share of it, or of the limit."""
+        """Whether the formula reproduces a demand within a share of it, or of the limit."""
         least = of_limit * abs(self.record["limit"] or 1e-3)
         return self.result is not None and _same(self.result, demand, share, least)
 
     @property
     def known(self) -> Mapping[str, str]:
-        """Value of each symbol as it stands in a formula."""
+        """Value of each symbol as printed in a formula."""
         defined = {step.name: step.shown for step in self.steps[:-1]}
         return {each.symbol: each.shown for each in self.quantities} | defined
 
@@ -201,7 +201,7 @@ def _same(one: float, other: float, share: float = ROUNDING, least: float = 0.0)
 
 
 class SheetRun:
-    """A finished run whose checks are evaluated once more.
+    """Finished run whose checks are evaluated again.
 
     Raises
     ------
@@ -215,7 +215,7 @@ class SheetRun:
 
     @cached_property
     def machines(self) -> Mapping[str, Machine]:
-        """Machine by load case, that of the design load case first."""
+        """Machine by load case, the design load case first."""
         return {each.load_case: each for each in machines(self.case)}
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Hand-check sheet in print: rows of words and formulas for page and PDF."""
+"""Hand-check sheet typeset for page and PDF."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _EQUAL = (Printed("sign", "="),)
 
 @dataclass(frozen=True)
 class PrintedSymbol:
-    """Symbol of a formula, its value with unit, and where it stands in the run."""
+    """Symbol of a formula, value with unit, and its place in the run."""
 
     name: str
     symbol: Math
@@ -33,7 +33,7 @@ class PrintedSymbol:
 
 @dataclass(frozen=True)
 class PrintedSheet:
-    """A sheet for page and PDF.
+    """Hand-check sheet typeset for page and PDF.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class PrintedSheet:
 
 
 def printed(sheet: Sheet, *, governing: bool) -> PrintedSheet:
-    """A sheet in print."""
+    """Typeset sheet of a hand calculation."""
     record = sheet.record
     return PrintedSheet(
         record["id"],

@@ -1,4 +1,4 @@
-"""Hand-check sheet as lines of text."""
+"""Hand-check sheet as plain lines of text."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ IN_WORDS = "a rule in words, or a form that does not hold for this case: not eva
 
 
 def demand_words(record: CheckRecord) -> str:
-    """Demand of a check with its error bar and place."""
+    """Demand of a check in words, with error bar and place."""
     at = place(record)
     shown = f"{with_error(record['demand'], record['error'])}{unit_text(record['unit'])}"
     return f"{shown} at {at}" if at else shown
 
 
 def limit_words(sheet: Sheet) -> str:
-    """Limit of a check, as its formula has it, with its source."""
+    """Limit of a check in words, by its formula, with source."""
     record = sheet.record
     sense = ">=" if record["sense"] == "at_least" else "<="
     shown = f"{sense} {number(record['limit'])}{unit_text(record['unit'])}"
@@ -41,7 +41,7 @@ def limit_words(sheet: Sheet) -> str:
 
 
 def outcome_words(sheet: Sheet) -> str:
-    """Whether the formula gives the demand, or why it is stated."""
+    """Agreement of the formula's demand with the record, or why the demand is stated."""
     if not sheet.agrees:
         return f"DISAGREES with the {sheet.differs_in} of the check"
     if not sheet.steps:
@@ -50,7 +50,7 @@ def outcome_words(sheet: Sheet) -> str:
 
 
 def use_words(sheet: Sheet) -> str:
-    """Use of the limit as a quotient, in percent."""
+    """Utilisation as a quotient, in percent."""
     used_words = used(RecordedCheck(sheet.record).utilisation)
     if sheet.use is None:
         return f"{used_words} used"
@@ -60,7 +60,7 @@ def use_words(sheet: Sheet) -> str:
 
 
 def sheet_lines(sheet: Sheet) -> list[str]:
-    """A sheet in lines: formula, symbols, steps, result, limit with its source."""
+    """Lines of a sheet: formula, symbols, steps, result, limit with source."""
     record = sheet.record
     rows = [("formula", sheet.text)]
     rows += [(each.symbol, f"{each.shown}  [{each.source}]") for each in sheet.quantities]

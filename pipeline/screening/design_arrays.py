@@ -36,7 +36,7 @@ Judged = tuple[Array, Array | float | None]
 
 @dataclass(frozen=True, eq=False)
 class LiftOrigin:
-    """What the lifts of a group of designs follow from.
+    """Source of the lifts of a group of designs: torque, stored energy, or stated lift.
 
     torque (1 or m, N): smoothed engine torque, crank N m; energy (N,): stored over the turn, J,
     of a synthesised lift; lift (N,): of the case file, m. Two are None.
@@ -49,7 +49,7 @@ class LiftOrigin:
 
 @dataclass(frozen=True, eq=False)
 class Designs:
-    """Designs of one structure with what follows from them; arrays (m, 1) and (m, n).
+    """Designs of one structure with their derived quantities; arrays (m, 1) and (m, n).
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Designs:
     results: dict[str, object] = field(default_factory=dict, init=False)
 
     def value(self, key: str) -> Array:
-        """Values of a key (m, 1), SI; NaN where the case leaves it out."""
+        """Values at a key (m, 1), SI; NaN where the case omits it."""
         if key in self.columns:
             return self.columns[key]
         stated = value_of(self.case, key)
@@ -79,7 +79,7 @@ class Designs:
 
     @KeptResult
     def numbers(self) -> Numbers:
-        """Numbers of the designs, those of no load case."""
+        """Numbers of the designs outside any load case."""
         cam = self.case.cam
         known: dict[str, Value | None] = {
             "cam.held_radius": self.value("cam.bore_radius") + (cam.held_radius - cam.bore_radius),
@@ -92,7 +92,7 @@ class Designs:
         return Numbers({**self.columns, **known}, self.case)
 
     def limit(self, row: AnyLimit) -> Array:
-        """Values of a limit (m,), SI; NaN where there is none."""
+        """Values of a limit (m,), SI; NaN without one."""
         return self.value(f"limits.{row.id}")[:, 0]
 
     @KeptResult
@@ -140,7 +140,7 @@ class Designs:
         return LoadedCam(Jet(*self.jets), self.numbers, self.highest[:, None])
 
     def whole_to(self, order: int) -> LoadedCam:
-        """As `whole`, with the derivatives of the lift up to an order, 2 or 3."""
+        """Unloaded cams of all angles with lift derivatives up to order 2 or 3; see `whole`."""
         if order == 2:
             return self.whole
         jerk = np.broadcast_to(knot_derivatives(self.lift, order)[order], self.jets.shape[1:])
@@ -196,7 +196,7 @@ class Designs:
 
     @KeptResult
     def states(self) -> tuple[ScreenedState, ...]:
-        """Load cases of the designs, then standstill and over-speed at each preload."""
+        """Load cases of the designs, with standstill and over-speed at each preload."""
         base, stated = self.value("spring.preload"), self.case.load_cases
         states: list[ScreenedState] = []
         preloads: list[Array] = []
@@ -268,7 +268,7 @@ class Designs:
 
     @KeptResult
     def unbalance(self) -> tuple[Array, Array]:
-        """Unbalance of the cams (m, 1), kg m, and its direction, rad; none with a counter-hole."""
+        """Unbalance (m, 1), kg m, and direction, rad, of the cams; zero with a counter-hole."""
         cam, (along, across) = self.machine.cam, self.whole.motion.contact_point
         if cam.counter_hole is not None:
             return np.zeros((self.count, 1)), np.zeros((self.count, 1))
@@ -316,7 +316,7 @@ class Designs:
 
 @dataclass(frozen=True, eq=False)
 class TorqueOfSpeed:
-    """Engine torque of a load case less its mean over the crank speed.
+    """Engine torque of a load case about its mean, as a function of crank speed.
 
     speeds (k,), rad/s; torques (k, N), crank N m: one a speed, or at Chebyshev nodes between the
     least and the greatest of more than `_NODES` speeds.
@@ -328,7 +328,7 @@ class TorqueOfSpeed:
 
     @classmethod
     def of(cls, case: Case, number: int, speeds: Array | None) -> TorqueOfSpeed:
-        """Torque of a load case at the speeds (m,) of designs; None: at that of the case."""
+        """Torque of a load case at the speeds (m,) of designs; for None at the case's speed."""
         state = case.load_cases[number]
         wanted = np.array([state.speed]) if speeds is None else np.unique(speeds)
         wanted = wanted[(wanted > 0.0) & np.isfinite(wanted)] if speeds is not None else wanted
@@ -343,7 +343,7 @@ class TorqueOfSpeed:
         return cls(wanted, totals, interpolated)
 
     def at(self, speeds: Array | None) -> Array:
-        """Torque (m, N) at speeds (m,); (1, N) at that of the case, None."""
+        """Torque (m, N) at speeds (m,); for None (1, N) at the case's speed."""
         if speeds is None:
             return self.torques
         if not self.interpolated:
@@ -366,7 +366,7 @@ def _never(_: Designs) -> bool:
 
 
 class Screened(NamedTuple):
-    """A check that screening judges.
+    """Check that the screening evaluates, with its measure.
 
     deviation: from the demand of the preview, over the greater of demand and limit, as
     `tests/verification/test_screening.py` measures it; applies: demand (m,), designs -> to which;

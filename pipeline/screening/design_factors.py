@@ -1,4 +1,4 @@
-"""Factors of many designs: values by dotted key, their bounds, and groups of one structure."""
+"""Factors of many designs: values by dotted key, bounds, grouping by structure."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ Factor = Array | Sequence[TomlValue]
 
 
 def is_array(case: Case, key: str, values: Factor) -> bool:
-    """Whether designs that differ in a key are solved at once.
+    """Whether designs that differ in a key can be solved together as arrays.
 
     Not in a table that the case leaves out, and not at a speed of zero: it has no engine torque.
     Rate and preload of a gas or torsion spring are refused with the case.
@@ -67,7 +67,7 @@ def is_array(case: Case, key: str, values: Factor) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Designs of one structure.
+    """Designs of equal structure, solved together.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def count_of(factors: Mapping[str, Factor]) -> int:
 
 
 def groups(case: Case, factors: Mapping[str, Factor]) -> Iterator[Group]:
-    """The designs by the values that have no array path, in order of their first design.
+    """Designs grouped by the values without an array path, in order of first appearance.
 
     Raises
     ------
@@ -175,7 +175,7 @@ def _number(quantity: In, value: TomlValue) -> float:
 def refusals(
     case: Case, values: Mapping[str, Array], highest: Array, travel: Array | None = None
 ) -> list[str]:
-    """Refusal of each design in words, "" where it is accepted.
+    """Reason for the refusal of each design, "" where it is accepted.
 
     Suspects are found on arrays; the case of each is then made, and names field, value and limit.
 

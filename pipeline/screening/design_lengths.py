@@ -55,7 +55,7 @@ class DesignValues(Protocol):
 def factors_of(
     designs: DesignValues, force: Array, radius: Array, rubbing: tuple[Array, Array], shaft: Array
 ) -> FactorRange | None:
-    """Factors (m, n) of the designs; 1 without contact, NaN where the contour bounds no body.
+    """Axial pressure factors (m, n) of the designs; 1 without contact, NaN for no closed contour.
 
     None where the case lacks an end, or the designs have too many shapes of contact, see
     `has_many_shapes`.
@@ -93,7 +93,7 @@ def factors_of(
 
 
 def has_many_shapes(designs: DesignValues) -> bool:
-    """Whether the pressure of plane strain bounds that along the line of contact from below.
+    """Whether plane-strain pressure serves as lower bound along the line of contact.
 
     It does where the line has ends, but of too many shapes for a table each: without a moment the
     greatest pressure, and that in the middle of a crowned line, are above plane strain.

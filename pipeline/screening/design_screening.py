@@ -1,4 +1,4 @@
-"""Columns of the screening of many designs: demand, limit, utilisation, status, headline."""
+"""Screening of many designs: demand, limit, utilisation, status and headline as columns."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Column = NDArray[np.float64] | NDArray[np.object_]
 
 
 class ScreenedDesigns(Displayed, dict[str, Column]):
-    """Columns (n,) of n screened designs by name, displayed by their number."""
+    """Columns (n,) of n screened designs by name."""
 
     @property
     def facts(self) -> Mapping[str, object]:
@@ -59,7 +59,7 @@ class ScreenedDesigns(Displayed, dict[str, Column]):
         return data_frame(self)
 
     def plot(self, *names: str) -> tuple[Axes, ...]:
-        """Columns over the number of the design, one panel each; see `Table.plot`.
+        """Columns over the design number, one panel each; see `Table.plot`.
 
         Without a name the first utilisation.
         """
@@ -71,7 +71,7 @@ class ScreenedDesigns(Displayed, dict[str, Column]):
 def screen_designs(
     case: Case, factors: Mapping[str, Factor], *, positions: int = 180
 ) -> ScreenedDesigns:
-    """Closed-form checks of many designs at once, from lift to spring and bearing.
+    """Closed-form checks of many designs together, from lift to spring and bearing.
 
     Designs that differ in the keys of `ARRAYS` alone, and in preload and speed of load cases, are
     solved as arrays: rate, preload, travel and winding of the spring, prime and roller radius,
@@ -256,7 +256,7 @@ _SYNTHESES: dict[str, tuple[Case, Array]] = {}  # by the hash of the case, made 
 
 
 def synthesis(case: Case) -> tuple[Case, Array]:
-    """The case as its synthesis draws it, and the energy that it stores over the turn (N,), J."""
+    """Case as drawn by its synthesis, and stored energy over the turn (N,), J."""
     key = case.sha256
     if key not in _SYNTHESES:
         trial = preview_case(case, corners=False)
@@ -268,7 +268,7 @@ def synthesis(case: Case) -> tuple[Case, Array]:
 
 
 def judged_columns(designs: Designs) -> dict[str, Column]:
-    """Columns of each check, ``screen``, ``governing`` and ``message`` (m,) of designs."""
+    """Columns (m,) of each check, ``screen``, ``governing`` and ``message``."""
     columns: dict[str, Column] = {}
     count, machine = designs.count, designs.machine
     fails = np.zeros(count, dtype=bool)

@@ -1,4 +1,4 @@
-"""Loaded cams of many designs: guides by tables, ends of the contact by factors."""
+"""Loaded cams of many designs: guides by tables, contact ends by factors."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class ScreenedState(NamedTuple):
 
 
 class Block(DesignValues, Protocol):
-    """What the load cases of many designs share; see `Designs`."""
+    """Quantities common to the load cases of many designs; see `Designs`."""
 
     @property
     def motion(self) -> Motion: ...
@@ -53,7 +53,7 @@ class Block(DesignValues, Protocol):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScreenedCam(LoadedCam):
-    """Cams of many designs in a load case; arrays (m, n).
+    """Loaded cams of many designs in a load case; arrays (m, n).
 
     The loads are clipped as `Loads`: no axial force where the follower has left the cam, and a
     finite one where it locks.
@@ -152,12 +152,12 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def ends(self) -> LoadEnds:
-        """Where the loads end being those of the cam; see `Loads.ends`."""
+        """First angles at which followers leave the cam or lock; see `Loads.ends`."""
         return ends_of(self.normal <= 0.0, (self.jam >= 1.0) & (self.slope > 0.0))
 
     @cached_property
     def friction_loss(self) -> Array:
-        """Friction loss of the guides and of a face over one cam turn (m,), J."""
+        """Friction loss of guides and face over a cam turn (m,), J."""
         work = self.jam * self.axial * np.abs(self.slope) + self.axial * self.motion.sliding
         return FULL_TURN * np.mean(work + self.viscous * self.slope, axis=-1)
 

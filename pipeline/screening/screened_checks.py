@@ -1,4 +1,4 @@
-"""Checks that screening judges, with demand and limit of many designs at once.
+"""Checks of the screening: demand and limit of many designs together.
 
 The formulas are those of the checks, on arrays. Where a check adds what screening leaves out, the
 surge of the spring or the temperature of a guide, the utilisation is a lower bound: a design that
