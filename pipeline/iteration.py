@@ -1,4 +1,4 @@
-"""Synthesis of the cam of a case, and the trials until a cam passes."""
+"""Trials of a case until a cam passes; synthesis of its cam."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ _RESULT: Mapping[Verdict, str] = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Synthesis(Tabled):
-    """Cam of a case.
+    """Cam of a case: contour, drawn case, record of a constrained synthesis.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class Synthesis(Tabled):
         return table(lift | contour_columns(self.case, self.contour))
 
     def plot(self, *headers: str) -> tuple[Axes, ...]:
-        """The contour with its bore; with headers curves, see `Table.plot`."""
+        """Figure of the contour with its bore; with headers, curves as of `Table.plot`."""
         if headers:
             return super().plot(*headers)
         (axes,) = self.contour.plot()
@@ -121,7 +121,7 @@ class Iteration(NamedTuple):
 
 
 class Tried(NamedTuple):
-    """A solved trial, and the iteration that ends with it; None: another trial follows."""
+    """Solved trial, with the whole iteration if it is the last; else None."""
 
     trial: Trial
     iteration: Iteration | None
@@ -154,7 +154,7 @@ def trials(
     progress: Progress = SILENT,
     workers: Crew = ALONE,
 ) -> Iterator[Tried]:
-    """Trials until one passes the checks of its tier or no better one is forecast.
+    """Trials until one passes the checks of its tier, or no better one is forecast.
 
     Only one solution is in memory at a time, and the best of a constrained synthesis, if the caller
     holds no trial while the next is solved.
@@ -178,7 +178,7 @@ def trials(
 
 
 def trials_of(case: Case, torques: Mapping[str, Torque], *, tier: Tier = Tier.CYCLE) -> Iteration:
-    """Iteration of a case, its trials not kept; see `trials`."""
+    """Final trial and statement of the trials of a case; see `trials`."""
     made = trials(case, torques, tier=tier)
     while True:
         trial, iteration = next(made)
@@ -188,7 +188,7 @@ def trials_of(case: Case, torques: Mapping[str, Torque], *, tier: Tier = Tier.CY
 
 
 def solved_already(trial: Trial) -> Iteration:
-    """Iteration of one trial that is solved."""
+    """Iteration that consists of one trial, already solved."""
     return _alone(trial, f"one trial, {_result(trial)}")
 
 
@@ -295,7 +295,7 @@ def _forecast_of(task: _Task) -> Forecast:
 def forecasts(
     case: Case, torques: Mapping[str, Torque], smoothers: Sequence[Smoother]
 ) -> list[tuple[Check, ...]]:
-    """Quick checks of the cam of each smoother, by a coarse preview; none where no cam exists."""
+    """Coarse-preview checks of the cam of each smoother; none where no cam exists."""
     made: list[tuple[Check, ...]] = []
     for smoother in smoothers:
         try:

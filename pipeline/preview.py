@@ -1,4 +1,4 @@
-"""Preview of a case: torque, lift, contour, loads and guides as in a run; Hertz contact."""
+"""Preview of a case: torque, lift, contour, loads and guides as in a run, Hertz contact."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def preview_case(
     torques: Mapping[str, Torque] | None = None,
     nominal: Callable[[Trial], None] = lambda _: None,
 ) -> Trial:
-    """Cam of a case with the contact by closed forms; no sign-off.
+    """Trial of a case with Hertz contact in closed form; no sign-off.
 
     A constrained synthesis is corrected for length and clearance of the guides until no
     utilisation above one half changes.
@@ -172,7 +172,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
 
 
 def smoothing_record(smoother: Smoother | None) -> SmoothingRecord:
-    """Record of a smoother; None: of a lift in the case file."""
+    """Record of a smoother; for None of a lift in the case file."""
     if smoother is None:
         return GIVEN_LIFT
     return SmoothingRecord(

@@ -1,4 +1,4 @@
-"""Recomputation of a finished run: what follows from its case and the lift of its final trial.
+"""Recomputation of a finished run from its case and the lift of its final trial.
 
 Loads, contact, certificate, tolerance corners, checks, limits and files are computed again and
 compared with the folder. Further cam angles, drawn at random, are solved with both bodies in full
@@ -92,7 +92,7 @@ _OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin", "sta
 
 @dataclass(frozen=True)
 class Angle:
-    """A drawn cam angle: load case, rad, and the greatest difference of the stored cycle, relative.
+    """Redrawn cam angle of a load case, rad, and greatest relative difference from the run.
 
     figure : str     that differs most, of p0, half_width, tau_max and von_mises
     allowed : float  error bar of that figure
@@ -106,7 +106,7 @@ class Angle:
 
     @property
     def words(self) -> str:
-        """Such as ``running, 123 deg: p0 differs by 0.02 %, error bar 0.4 %``."""
+        """Text such as ``running, 123 deg: p0 differs by 0.02 %, error bar 0.4 %``."""
         return (
             f"{self.load_case}, {in_unit(self.theta, 'deg'):.4g} deg: {self.figure} differs by"
             f" {100 * self.difference:.2g} %, error bar {100 * self.allowed:.2g} %"
@@ -115,7 +115,7 @@ class Angle:
 
 @dataclass(frozen=True)
 class Recomputation:
-    """Result of a recomputation.
+    """Comparison of a run with its recomputation.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def recompute(
     jobs: int | None = None,
     progress: Progress = SILENT,
 ) -> Recomputation:
-    """Compute a finished run again from its case and the lift of its final trial, and compare it.
+    """Solve a finished run again from its case and final lift, and compare the results.
 
     Taken from the folder: the case; the lift, where a synthesis chose it; whether that synthesis
     converged; reason and number of the trial. A check may differ by its error bar, as
@@ -174,14 +174,14 @@ def recompute(
 
 
 def copy_without(folder: Path, copy: Path, pages: Iterable[str]) -> None:
-    """Copy a run without these pages and without its record, so that they can be drawn again."""
+    """Copy a run without its pages and record, so that they can be drawn again."""
     shutil.copytree(folder, copy, symlinks=True)  # a link made since is not followed
     for name in (*pages, *_LAST):
         (copy / name).unlink(missing_ok=True)
 
 
 def page_differences(folder: Path, drawn: Path, pages: Mapping[str, Kind]) -> dict[str, str]:
-    """Differences of the pages of a run from those drawn again, in words by the name of the file.
+    """Differences between the pages of a run and those drawn again, by file name.
 
     Parameters
     ----------

@@ -72,7 +72,7 @@ class RunOptions(TypedDict, total=False):
 
 
 class CaseRun:
-    """Trials of a case until a cam passes or the limit that binds is named; a context manager.
+    """Run of a case in steps: solve, write, certify, finish; a context manager.
 
     The steps in order: `solve`, `write`, `certify`, `finish`; pages are drawn from the folder of
     `draft` while it is written. A run that is left before `finish` can be resumed.
@@ -217,7 +217,7 @@ class CaseRun:
             write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
 
     def certify(self) -> Trial:
-        """The final trial with its certificate; below CERTIFIED without one."""
+        """Final trial with its certificate; unchanged below the depth CERTIFIED."""
         final = _made(self._final)
         if self.depth < Tier.CERTIFIED:
             return final
@@ -228,7 +228,7 @@ class CaseRun:
         return certified
 
     def draft(self) -> Path:
-        """The folder of the run with ``run.json`` so far: pages are drawn from it.
+        """Folder of the run with its ``run.json`` so far, from which pages are drawn.
 
         The solution, which takes most of the memory, is released after the certificate.
         """
@@ -238,7 +238,7 @@ class CaseRun:
         return self._folder.path
 
     def finish(self) -> Run:
-        """Write ``run.json`` and the sign-off record, and move the folder to its place.
+        """Write ``run.json`` and the sign-off record, and move the folder to its final path.
 
         Returns
         -------
@@ -310,7 +310,7 @@ def _made(trial: Trial | None) -> Trial:
 
 
 def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:
-    """Stopping criterion, and the failing checks of the final trial that it does not know.
+    """Stopping criterion, completed by failing checks of the final trial that it omits.
 
     Parameters
     ----------
@@ -331,7 +331,7 @@ def summary_of(
     final: Trial,
     points: Sequence[TrialPoint],
 ) -> SolvedSummary:
-    """Contents of ``run.json`` that no certificate changes; writes ``1_speed.csv``."""
+    """Part of ``run.json`` that no certificate changes; writes ``1_speed.csv``."""
     case, torque, required = final.case, final.solution.machine.torque, None
     if torque is not None and final.smoothing.strength is not None:
         smoother = Smoother.from_case(case.smoothing, case.period)
@@ -370,7 +370,7 @@ def _ripple_map_record(final: Trial) -> RippleMapRecord | Refused | None:
 
 
 def judged_of(final: Trial, statement: str) -> JudgedSummary:
-    """Contents of ``run.json`` that follow from the checks and the certificate."""
+    """Part of ``run.json`` that follows from checks and certificate."""
     benchmarks = final.solution.benchmarks
     return {
         "depth": final.depth.word,
@@ -384,7 +384,7 @@ def judged_of(final: Trial, statement: str) -> JudgedSummary:
 
 
 class Stopwatch:
-    """Progress that sums the time of each stage, s, over all trials.
+    """Progress that adds up the time of each stage, s, over all trials.
 
     Every moment belongs to one stage, the first to `START`, so that the stages sum to the total.
 
@@ -412,7 +412,7 @@ class Stopwatch:
         self._progress.note(text)
 
     def read(self) -> dict[str, float]:
-        """Time by stage, the current one included, and total, s."""
+        """Time by stage, s, the current one included, and total time, s."""
         self._close()
         times = self._seconds | {"total": self._since - self._began}
         return {name: round(seconds, 3) for name, seconds in times.items()}

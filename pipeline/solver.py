@@ -1,4 +1,4 @@
-"""Solution and checks of a cam contour, without files and prints."""
+"""Solution and checks of a cam contour, without file output."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def solve(
     jobs: int | None = 1,
     workers: Crew | None = None,
 ) -> Trial:
-    """Solve a cam in every load case of a case and check it.
+    """Trial: solution of a cam in every load case, with its checks.
 
     Parameters
     ----------
@@ -91,12 +91,12 @@ def solve(
 
 
 def checked(solved: Solution) -> Trial:
-    """Trial of a solution with its checks, nominal."""
+    """Trial of a solution with its nominal checks."""
     return Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
 
 
 def judged_at_corners(trial: Trial) -> Trial:
-    """Trial whose checks are judged at their worst tolerance corners."""
+    """Trial with checks judged at their worst tolerance corners."""
     return _at_corners(trial, outcomes(trial.case, trial.solution.machines, trial.contour))
 
 
@@ -111,7 +111,7 @@ def certify_trial(
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
 ) -> Trial:
-    """Trial with its certificate, checked again; see `certified_solution`."""
+    """Trial with its certificate, its checks made again; see `certified_solution`."""
     solved = certified_solution(trial.solution, workers, store=store, progress=progress)
     return replace(
         trial, solution=solved, checks=_judged(all_checks(solved), solved, trial.corners)

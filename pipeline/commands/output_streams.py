@@ -1,4 +1,4 @@
-"""Output streams of the command line whose reader may leave before the end.
+"""Output streams whose reader may close them early.
 
 A command does its work and returns its exit code whether or not its output is read.
 """
@@ -33,7 +33,7 @@ class _Unread(io.FileIO):
 
 
 def open_streams() -> None:
-    """Make standard output and errors ones that may be closed.
+    """Wrap standard output and errors so that an early close is no error.
 
     A stream that is closed when Python starts is one that drops everything: otherwise the next file
     that is opened has its number, and what a library prints goes into that file.

@@ -1,4 +1,4 @@
-"""Shared by the commands: exit codes, output streams, progress, text of a verdict."""
+"""Shared parts of the commands: exit codes, streams, progress, verdict text."""
 
 from __future__ import annotations
 
