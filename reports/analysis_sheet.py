@@ -1,4 +1,4 @@
-"""Figures of the cam analysis sheet: torque, shape, limits, contact; all groups in order."""
+"""Figures of the cam analysis sheet: torque, shape, limits, contact."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ _SHOWN, _MOST = 0.5, 6  # utilisation from which a limit is shown, and the numbe
 
 
 def groups(turn: SheetTurn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
-    """Figures for which the run has columns, by group."""
+    """Figures by group for which the run has columns."""
     makers: tuple[Callable[[SheetTurn], Figure | None], ...] = (
         _torque, _spectrum, _components, _crank_speed, _lift, _outline, _pressure_angle, _face,
         _radii, _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
@@ -287,7 +287,7 @@ def _radii(turn: SheetTurn) -> Figure | None:
 
 
 def broken(values: Array, largest: float) -> Array:
-    """Values with NaN above a magnitude, so that no line is drawn across a pole."""
+    """Values with NaN beyond a magnitude, so that no line crosses a pole."""
     return np.where(np.abs(values) > largest, np.nan, values)
 
 
@@ -427,7 +427,7 @@ def _limits_strip(turn: SheetTurn) -> Figure | None:
 
 
 def limits_strip(limits: Table | None, gear_ratio: float, machine: MachineWords) -> Figure | None:
-    """Utilisation over the turn of each limit that reaches half; None without a record.
+    """Figure of the utilisation over the turn of limits above one half; None without a record.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Arrangement of a run: sizes and motion from its stored results, the drawing at an angle."""
+"""Drawing data of the mechanism: sizes and motion from a run's stored results."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ _STATIONS = 360
 
 
 def arrangement_at(turn: SheetTurn, row: int | None = None) -> Drawing:
-    """The mechanism at a row of the cycle; None: at the maximum contact pressure."""
+    """Drawing of the mechanism at a row of the cycle; None: at maximum contact pressure."""
     return arrangement.drawing(mechanism_of(turn), motion_of(turn), turn.worst if row is None
                                else row)  # fmt: skip
 
 
 def moving_data(turn: SheetTurn) -> dict[str, Json]:
-    """The arrangement over the turn for a page: poses, arrows, values, angles; see `moving_record`.
+    """Drawing over the turn for a page: poses, arrows, values, angles; see `moving_record`.
 
     `at` is the place of the maximum contact pressure, `shaft` the angle of the machine's shaft.
     """
@@ -50,7 +50,7 @@ def moving_data(turn: SheetTurn) -> dict[str, Json]:
 
 
 def motion_of(turn: SheetTurn) -> DrawnMotion:
-    """Motion and forces of the load case of a report."""
+    """Motion and forces of the drawn load case."""
     c = turn.columns
     return DrawnMotion(
         turn.load_case, np.radians(c["cam_angle_deg"]), turn.crank, turn.words.shaft,
@@ -61,7 +61,7 @@ def motion_of(turn: SheetTurn) -> DrawnMotion:
 
 @lru_cache(maxsize=2)
 def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
-    """Sizes of the mechanism; those that the case does not state follow from the stem."""
+    """Sizes of the mechanism; sizes not stated in the case are scaled from the stem."""
     contour = np.array([turn.contour["contour_x_mm"], turn.contour["contour_y_mm"]])
     axis, lowest = _reference(turn)
     stroke = float(np.max(turn.lift["lift_mm"]))

@@ -13,5 +13,5 @@ PARTS = (*filter(None, PAGES), EVIDENCE)
 
 
 def part_of(check: Mapping[str, Json]) -> str:
-    """Part that a check judges, one of `PARTS`."""
+    """Part of the mechanism that a check judges, one of `PARTS`."""
     return EVIDENCE if check["evidence"] else page_of(str(check["id"])) or EVIDENCE

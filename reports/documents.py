@@ -1,4 +1,4 @@
-"""Documents beside the page: sheet to sign, report as PDF, shop drawing, spreadsheets."""
+"""Documents beside the page: sign-off sheet, PDF report, shop drawing, spreadsheets."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _MM = 1e3
 
 @dataclass(frozen=True)
 class Safety:
-    """Actual value of a check at its worst corner, the required one, and the safety factor."""
+    """Safety factor of a check at its worst corner, with actual and required value."""
 
     title: str
     outcome: str
@@ -67,7 +67,7 @@ class Safety:
 
 @dataclass(frozen=True, eq=False)
 class SignoffSheet:
-    """Contents of the sheet.
+    """Contents of the sign-off sheet.
 
     block : sequence      title block; "" is a field to fill by hand
     facts : sequence      life, lubricant, temperatures, key figures
@@ -91,7 +91,7 @@ class SignoffSheet:
 
 
 def write_signoff(material: ReportMaterial) -> list[Path]:
-    """Write the sheet to sign.
+    """Write the sign-off sheet.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def write_signoff(material: ReportMaterial) -> list[Path]:
 
 @dataclass(frozen=True, eq=False)
 class PrintedReport:
-    """The report as PDF: the sheet to sign is its first page."""
+    """PDF report, whose first page is the sign-off sheet."""
 
     sheet: SignoffSheet
     report: Report
@@ -123,7 +123,7 @@ def write_report(material: ReportMaterial) -> list[Path]:
 
 
 def sheet_content(material: ReportMaterial) -> SignoffSheet:
-    """Contents of the sheet of a run."""
+    """Contents of the sign-off sheet of a run."""
     run, verdict = material.run, verdict_of(material)
     rows = [row for row in check_rows(run.final.checks) if row.must_have and not row.judged_at]
     records = {each.id: each for each in of_records(run.final.checks)}
@@ -229,7 +229,7 @@ def _first(verdict: Verdict) -> Iterator[tuple[str, str]]:
 
 @dataclass(frozen=True, eq=False)
 class ShopDrawing:
-    """Contents of the drawing.
+    """Contents of the shop drawing.
 
     radii : sequence   polar angle, deg, and radius, mm, as text
     drops : sequence   title of each crown; axial coordinate, mm, and drop, um, as text
@@ -248,7 +248,7 @@ class ShopDrawing:
 
 
 def write_drawing(material: ReportMaterial) -> list[Path]:
-    """Write the shop drawing; none of a contour that encloses no body.
+    """Write the shop drawing; none for a contour that encloses no body.
 
     Raises
     ------
@@ -262,7 +262,7 @@ def write_drawing(material: ReportMaterial) -> list[Path]:
 
 
 def drawing_content(material: ReportMaterial) -> ShopDrawing | None:
-    """Contents of the drawing of a run; None if its contour encloses no body.
+    """Contents of the shop drawing of a run; None if its contour encloses no body.
 
     Raises
     ------
@@ -375,7 +375,7 @@ def _mating(tracks: Record) -> str:
 
 
 def write_tables(material: ReportMaterial) -> list[Path]:
-    """Write the spreadsheets, beside the tables of the run that they show.
+    """Write the spreadsheets of a run beside its tables.
 
     Raises
     ------
@@ -392,7 +392,7 @@ def write_tables(material: ReportMaterial) -> list[Path]:
 
 
 def begun(material: ReportMaterial, workers: Crew) -> dict[str, PendingCall]:
-    """Spreadsheets handed to worker processes, by their table."""
+    """Spreadsheets submitted to worker processes, by table."""
     return {
         name: workers.submit(spreadsheet, material.run.path / name, excerpt)
         for name, excerpt in _tables(material).items()

@@ -1,4 +1,4 @@
-"""Pictures of the stress field, rendered off screen by VTK.
+"""Pictures of the stress field, rendered off-screen by VTK.
 
 Without an OpenGL device some drivers abort the process. Rendering therefore runs in a child process
 (`field_painter`); if it fails, matplotlib draws the field and the picture says so. The child
@@ -34,7 +34,7 @@ _CONTACT = ("contact_x_mm", "contact_y_mm", "normal_x", "normal_y")
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """A stress field: points (2, n) mm, triangles (3, m), values MPa, displacement (2, n) mm.
+    """Stress field: points (2, n) mm, triangles (3, m), values MPa, displacement (2, n) mm.
 
     outline (2, k): edges of the bodies; body (n,): 0 cam, 1 follower; `notes` are the data of the
     cam angle, such as ``half_width_mm``.
@@ -51,7 +51,7 @@ class Field:
 
 @dataclass(frozen=True)
 class View:
-    """View of a field; lengths in mm.
+    """View of a field: window and colour scale; lengths in mm.
 
     The axes of the view have their origin at `centre` and their y axis along `normal`; `window` is
     (xmin, xmax, ymin, ymax) in these axes. Colours cover `clim`, MPa; `iso` are levels of lines.
@@ -84,7 +84,7 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class Raster:
-    """Pixels (rows, columns, 3) of a view; `note` states why it is not rendered by VTK."""
+    """Pixels (rows, columns, 3) of a view; `note`: why VTK did not render it."""
 
     view: View
     pixels: Array
@@ -92,7 +92,7 @@ class Raster:
 
 
 def read_field(path: Path) -> Field:
-    """The field at the cam angle of the highest pressure.
+    """Field at the cam angle of the highest pressure.
 
     Raises
     ------
@@ -139,7 +139,7 @@ def _surface(step: FieldStep) -> NDArray[np.int64]:
 
 
 def stated(field: Field, name: str) -> float:
-    """A number that the file states at its cam angle; ResultError if it does not."""
+    """Number that the field file states at its cam angle; ResultError without it."""
     try:
         return field.notes[name]
     except KeyError:
@@ -171,7 +171,7 @@ def contact_view(field: Field, half_width: float, point: Array, normal: Array) -
 
 
 def body_view(field: Field) -> View:
-    """View of cam and follower in the frame of the file, logarithmic colours."""
+    """View of cam and follower in the file's frame, logarithmic colours."""
     low, high = field.points.min(axis=1), field.points.max(axis=1)
     centre, half = (low + high) / 2, 0.53 * (high - low)
     peak = float(field.von_mises.max(initial=1e-9))
@@ -188,7 +188,7 @@ def frame_contact(
     name: str = "roller",
     above: field_raster.Above | None = None,
 ) -> bytes:
-    """The contact raster in axes of half-widths and of mm; `name` is the upper body."""
+    """Contact raster in axes of half-widths and mm; `name`: the upper body."""
     extent = tuple(edge / half_width_mm for edge in raster.view.window)
     return field_raster.framed(
         raster.pixels, (extent[0], extent[1], extent[2], extent[3]),
@@ -199,7 +199,7 @@ def frame_contact(
 
 
 def frame_body(raster: Raster) -> bytes:
-    """The body raster in axes of mm in the frame of the file."""
+    """Body raster in axes of mm, in the file's frame."""
     x, y = raster.view.centre
     xmin, xmax, ymin, ymax = raster.view.window
     return field_raster.framed(
@@ -209,7 +209,7 @@ def frame_body(raster: Raster) -> bytes:
 
 
 def render(field: Field, views: Sequence[View]) -> list[Raster]:
-    """Rasters of the views by the first OpenGL window that works, else by matplotlib."""
+    """Rasters of the views by the first working OpenGL window, else by matplotlib."""
     for window in WINDOWS:
         with tempfile.TemporaryDirectory() as name:
             out = Path(name)
@@ -233,7 +233,7 @@ def _painted(field: Field, view: View) -> dict[str, NDArray[Any]]:
 
 
 def flat(field: Field, view: View) -> Raster:
-    """A view drawn by matplotlib."""
+    """Raster of a view drawn by matplotlib."""
     straight = field.triangles
     placed = view.placed(deformed(field, view))
     xmin, xmax, ymin, ymax = view.window
@@ -246,7 +246,7 @@ def flat(field: Field, view: View) -> Raster:
 
 
 def deformed(field: Field, view: View) -> Array:
-    """Points (2, n) displaced at true scale relative to the anchor; undeformed without anchor."""
+    """Points (2, n) displaced to true scale relative to the anchor; undeformed without one."""
     if view.anchor is None:
         return field.points
     away = np.hypot(*(field.points - np.array(view.anchor)[:, None]))

@@ -1,4 +1,4 @@
-"""Pictures of fields: axes around a raster, the pressure above it, drawing without OpenGL."""
+"""Raster pictures of fields: axes, pressure curve above, fallback without OpenGL."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Above:
 
 
 def over_the_contact(path: Path, cycle: Table, angle: float, half_width: float) -> Above | None:
-    """Contact pressure by finite elements and of Hertz theory at a cam angle, deg.
+    """Contact pressures of finite elements and of Hertz at a cam angle, deg.
 
     Positions are in units of the half-width, mm. Of several load cases the one with the highest
     pressure is taken; None if the run has no record of the pressure at this angle.

@@ -1,4 +1,4 @@
-"""Names of a machine in the report: of its shaft, and of the parts of its cycle."""
+"""Names in the report of the machine's shaft and of the parts of its cycle."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _WHOLE = 1e-6  # of the cycles in a cam turn
 
 @dataclass(frozen=True)
 class NamedStroke:
-    """A named part of the cycle, deg of the shaft; every second one is shaded."""
+    """Named part of the cycle, deg of the shaft; every second one is shaded."""
 
     start: float
     end: float
@@ -28,7 +28,7 @@ class NamedStroke:
 
 @dataclass(frozen=True)
 class MachineWords:
-    """Words of a machine.
+    """Names of shaft, cycle and strokes of a machine.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class MachineWords:
 
 
 def words_of(case: Record, gear_ratio: float, *, balances: bool = True) -> MachineWords:
-    """Words of the machine of a case, as read from ``case.toml``.
+    """Names for the machine of a case, from its ``case.toml``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The report as one self-contained HTML page, and the pages of studies."""
+"""HTML page of the report, self-contained, and pages of studies."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def write(material: ReportMaterial) -> list[Path]:
 
 
 def text(material: ReportMaterial) -> bytes:
-    """The page in UTF-8."""
+    """HTML of the page, UTF-8."""
     figures = [drawn.figure for _, group in drawn_groups(material) for drawn in group]
     report, drawing = report_content(material), arrangement_at(material.turn)
     svg = svg_of(drawing, _PAGE_COLOURS, "inherit", 'aria-hidden="true" focusable="false"')
@@ -57,13 +57,13 @@ def _is_check_table(section: ReportSection) -> bool:
 
 
 def links(material: ReportMaterial) -> list[tuple[str, str]]:
-    """(words, relative address) of the files of the run that are there."""
+    """(words, relative address) of the existing files of the run."""
     places = (material.folder, material.run.path)
     return [(words, name) for words, name in LINKS if any((p / name).is_file() for p in places)]
 
 
 def study_page(title: str, sections: Sequence[ReportSection], lead: str = "") -> str:
-    """Page of a study: tables and pictures, no scripts."""
+    """HTML page of a study: tables and pictures, no scripts."""
     page: str = environment().get_template("study.html").render(
         title=title, lead=lead, sections=sections
     )  # fmt: skip
@@ -71,7 +71,7 @@ def study_page(title: str, sections: Sequence[ReportSection], lead: str = "") ->
 
 
 def environment() -> Environment:
-    """The templates, with escaping of all text."""
+    """Jinja environment of the templates, with all text escaped."""
     made = Environment(
         loader=FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True,
         undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,

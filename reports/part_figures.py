@@ -1,4 +1,4 @@
-"""Figures of forces and guides, and of roller, oil film, spring, pin, ring, key and shaft."""
+"""Figures of forces, guides, roller, oil film, spring, pin, ring, key and shaft."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Documents as PDF/A, set by typst."""
+"""PDF/A documents set by typst."""
 
 from __future__ import annotations
 

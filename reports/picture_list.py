@@ -1,4 +1,4 @@
-"""Pictures of a report: stress fields and maps, pressures, with titles and captions."""
+"""Pictures of a report with titles and captions: stress fields, maps, pressures."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FIELD = Path("fields") / "stress.vtkhdf"
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A raster, or the reason for which it is missing.
+    """Raster picture, or the reason why it is missing.
 
     `name` is its file in ``figures/``. A picture that cannot be drawn has no `png` and states the
     reason in `note`.
@@ -224,7 +224,7 @@ PICTURES: tuple[Callable[[ReportMaterial], Sequence[Picture]], ...] = (
 
 
 def pictures(material: ReportMaterial) -> list[Picture]:
-    """Pictures of the report, those begun ahead from their worker."""
+    """Pictures of the report; those begun ahead are taken from their worker."""
     every: list[Picture] = []
     for draw in PICTURES:
         task = material.ahead.get(_key(draw, material))
@@ -233,7 +233,7 @@ def pictures(material: ReportMaterial) -> list[Picture]:
 
 
 def begun(material: ReportMaterial, workers: Crew) -> dict[str, PendingCall]:
-    """Pictures that need no certificate handed to worker processes, by kind and load case."""
+    """Pictures independent of the certificate, submitted to workers, by kind and load case."""
     return {
         _key(draw, material): workers.submit(draw, material)
         for draw in PICTURES

@@ -1,4 +1,4 @@
-"""Pressure in both guides and along the line of contact: over the turn, at its maximum."""
+"""Figures of the pressure in both guides and along the line of contact."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _LOBE = 0.75  # of the bore's radius, in the cross-section
 
 @dataclass(frozen=True, eq=False)
 class GuidePressure:
-    """Pressure in one guide.
+    """Line load of one guide over the turn, and bore pressure at its worst angle.
 
     along (k,) position from the middle of the guide, mm, away from the roller; angle (n,) deg and
     line (n, k) line load on the stem, N/mm, over the turn of a load case; round (m,) deg from the
@@ -93,7 +93,7 @@ def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressur
 
 
 def drawn(guides: tuple[GuidePressure, GuidePressure]) -> bytes:
-    """PNG of both guides."""
+    """PNG of the pressure in both guides."""
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
@@ -199,7 +199,7 @@ def _across(polar: PolarAxes, guide: GuidePressure, norm: Normalize) -> None:
 
 @dataclass(frozen=True, eq=False)
 class AxialPressure:
-    """Pressure along the line of contact, MPa, means over cells of ends (k + 1,), mm.
+    """Pressure along the line of contact, MPa, means over cells between edges (k + 1,), mm.
 
     angle (n,) deg and whole (n, k) over the turn of a load case, at the greatest moment; level and
     tilted (k,) without tilt and at that moment, at `worst_angle`, deg, of load case `worst_case`;
@@ -227,7 +227,7 @@ class AxialPressure:
 
 
 def read_axial(path: Path, load_case: str, worst: tuple[str, float] | None) -> AxialPressure:
-    """Pressure over the turn of one load case, and at a load case and cam angle, deg.
+    """Axial pressure over the turn of one load case, and at one cam angle, deg.
 
     worst : tuple   None: the maximum over the turn of the load case
 
@@ -258,7 +258,7 @@ def read_axial(path: Path, load_case: str, worst: tuple[str, float] | None) -> A
 
 @dataclass(frozen=True, eq=False)
 class CertifiedPressure:
-    """Pressure by finite elements, MPa: in the middle, mean at either end; their error bars.
+    """Axial pressure by finite elements, MPa: middle and both ends, with error bars.
 
     along, line (m,): positions, mm, and pressure there.
     """
@@ -277,7 +277,7 @@ class CertifiedPressure:
         return bool((self.ends[1] - self.ends[0]) * (axial.tilted[-1] - axial.tilted[0]) < 0)
 
     def over(self, axial: AxialPressure) -> tuple[Array, Array, Array]:
-        """Places, mm, values and error bars, the more loaded end where the half-spaces have it."""
+        """Positions, mm, values and error bars, the loaded end on the side of the half-spaces."""
         places = np.array([0.5 * (axial.edges[0] + axial.edges[1]), 0.0,
                            0.5 * (axial.edges[-1] + axial.edges[-2])])  # fmt: skip
         values = np.array([self.ends[0], self.centre, self.ends[1]])
@@ -293,7 +293,7 @@ class CertifiedPressure:
 
 
 def shown_place(check: Record | None, records: Sequence[Record]) -> tuple[str, float] | None:
-    """Load case and cam angle, deg, of the pressure along the line; None: not known.
+    """Load case and cam angle, deg, of the shown axial pressure; None if not known.
 
     The worst certified angle, of the load case of the check if it has one; else that of the check.
     """
@@ -313,7 +313,7 @@ def shown_place(check: Record | None, records: Sequence[Record]) -> tuple[str, f
 def certified_pressure(
     records: Sequence[Record], axial: AxialPressure, plane: float | None
 ) -> CertifiedPressure | None:
-    """Finite elements at the worst angle; None where they are not certified there.
+    """Axial pressure by finite elements at the worst angle; None if not certified there.
 
     Parameters
     ----------
@@ -344,7 +344,7 @@ def drawn_axial(
     centre: float | None,
     certified: CertifiedPressure | None = None,
 ) -> bytes:
-    """PNG: pressure along the line at the worst angle, and over line and cam angle.
+    """PNG of the axial pressure at the worst angle, and over line and cam angle.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Contents of a report by section: text, tables, figures. Page and PDF render it."""
+"""Contents of a report by section, for page and PDF: text, tables, figures."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ CHECKS_HEAD = ("Check", "Status", "Demand", "Limit", "Utilisation", "Where")
 
 @dataclass(frozen=True)
 class Checks:
-    """Table of checks with utilisation bars; `filtered` by status and part in the page."""
+    """Block: table of checks with utilisation bars, on the page filtered by status and part."""
 
     kind: ClassVar[str] = "checks"
     head: Sequence[str]
@@ -77,20 +77,20 @@ class Checks:
 
     @property
     def parts(self) -> list[str]:
-        """Parts that the rows judge, in the order of the flow of force."""
+        """Parts of the rows, in the order of the force flow."""
         judged = {row.part for row in self.rows}
         return [part for part in PARTS if part in judged]
 
     @property
     def statuses(self) -> list[Status]:
-        """Statuses that occur, in the order of the rows."""
+        """Statuses of the rows, in their order."""
         return list({row.status.id: Status(row.status.id, STATUS[row.status.id])
                      for row in self.rows}.values())  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Tabular:
-    """A table."""
+    """Block: a table."""
 
     kind: ClassVar[str] = "table"
     table: ReportTable
@@ -98,7 +98,7 @@ class Tabular:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Names and values in one or two columns; `code` sets values in a monospaced font."""
+    """Block: names and values in one or two columns; `code`: monospaced values."""
 
     kind: ClassVar[str] = "pairs"
     label: str
@@ -109,7 +109,7 @@ class Pairs:
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """Figures of the sheet."""
+    """Block: figures of the analysis sheet."""
 
     kind: ClassVar[str] = "figures"
     figures: Sequence[Drawn]
@@ -117,7 +117,7 @@ class Figures:
 
 @dataclass(frozen=True, eq=False)
 class Pictures:
-    """Pictures of fields."""
+    """Block: pictures of fields."""
 
     kind: ClassVar[str] = "pictures"
     pictures: Sequence[Picture]
@@ -125,7 +125,7 @@ class Pictures:
 
 @dataclass(frozen=True)
 class Inputs:
-    """Sections of the case file."""
+    """Block: sections of the case file."""
 
     kind: ClassVar[str] = "inputs"
     tables: Sequence[InputTable]
@@ -133,7 +133,7 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Points:
-    """List of statements."""
+    """Block: list of statements."""
 
     kind: ClassVar[str] = "points"
     points: Sequence[str]
@@ -141,7 +141,7 @@ class Points:
 
 @dataclass(frozen=True)
 class Sheets:
-    """Hand-check sheets: all on the page, the governing ones in the PDF."""
+    """Block: hand-check sheets, all on the page, governing ones in the PDF."""
 
     kind: ClassVar[str] = "sheets"
     sheets: Sequence[PrintedSheet]
@@ -149,7 +149,7 @@ class Sheets:
 
 @dataclass(frozen=True)
 class Note:
-    """Paragraph in small type."""
+    """Block: paragraph in small type."""
 
     kind: ClassVar[str] = "note"
     text: str
@@ -157,7 +157,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Signatures:
-    """Fields for signatures."""
+    """Block: fields for signatures."""
 
     kind: ClassVar[str] = "signatures"
     roles: Sequence[str] = ("Prepared", "Checked", "Approved")
@@ -171,7 +171,7 @@ Content = (
 
 @dataclass(frozen=True, eq=False)
 class SectionBlock:
-    """Part of a section: title, introduction, content; `narrow` ones are set side by side."""
+    """Part of a section: title, introduction, block; `narrow` ones stand side by side."""
 
     content: Content | None
     title: str = ""
@@ -181,7 +181,7 @@ class SectionBlock:
 
 @dataclass(frozen=True, eq=False)
 class ReportSection:
-    """Section of a report; `brief` is its title in the contents."""
+    """Section of a report; `brief`: title in the table of contents."""
 
     id: str
     title: str
@@ -256,7 +256,7 @@ def verdict_of(material: ReportMaterial) -> Verdict:
 
 
 def titled(text: str, checks: Sequence[Record]) -> str:
-    """A statement with ids of checks replaced by their titles."""
+    """Statement with check ids replaced by titles."""
     titles = {str(check["id"]): f"\u201c{isolated(check['title'])}\u201d" for check in checks}
     return re.sub(r"\b\w+\b", lambda word: titles.get(word.group(), word.group()), text)
 
@@ -292,7 +292,7 @@ def _checks(material: ReportMaterial) -> ReportSection:
 
 
 def failed_checks(material: ReportMaterial) -> ReportSection:
-    """Checks that fail, required ones first; required ones without data."""
+    """Failed checks, required ones first, and required checks without data."""
     rows = [row for row in report_tables.check_rows(material.run.final.checks) if not row.judged_at]
     groups = (
         ("", [row for row in rows if row.status.id == "fail" and row.must_have]),
@@ -535,7 +535,7 @@ def _hashes(material: ReportMaterial) -> list[tuple[str, str]]:
 
 
 def residuals(turn: SheetTurn) -> list[tuple[str, str]]:
-    """Maximum relative residual of each equation over the turn."""
+    """Greatest relative residual of each equilibrium equation over the turn."""
     names = {
         "residual_equilibrium": "contact pressure and load",
         "residual_complementarity": "contact pressure times gap",

@@ -29,7 +29,7 @@ _ENTRIES = {
 
 @dataclass(frozen=True, eq=False)
 class ReportMaterial:
-    """A run, the folder of its report, and the load case that the sheet draws.
+    """Run, report folder and drawn load case of a report.
 
     Compared by identity, so that drawings can be cached by it. `ahead` are drawings begun before
     the run was complete, by the key of what they show.
@@ -43,7 +43,7 @@ class ReportMaterial:
 
 
 def read_material(folder: Path, ahead: Mapping[str, PendingCall] | None = None) -> ReportMaterial:
-    """Data of a run folder, into which its report is written.
+    """Report data of a run folder, into which the report is written.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def read_material(folder: Path, ahead: Mapping[str, PendingCall] | None = None) 
 
 
 def governing_turn(run: Run, case: Record) -> SheetTurn:
-    """The governing load case of the final trial among those that keep the follower on the cam.
+    """Governing load case of the final trial among those with valid loads.
 
     Of all of them where it leaves the cam or locks in each.
     """
@@ -84,6 +84,6 @@ def _compared(run: Run) -> tuple[TrialRecord, ...]:
 
 
 def title_block(case: Record) -> Sequence[tuple[str, str]]:
-    """Names and values of the entries; "" is a field to fill by hand."""
+    """Entries of the title block by name; "" for a field to fill by hand."""
     stated = case.get("document", {})
     return [(words, shortened(str(stated.get(key, "")), 60)) for key, words in _ENTRIES.items()]

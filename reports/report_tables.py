@@ -1,4 +1,4 @@
-"""Values of a run as text: digits, units, and rows of tables."""
+"""Text of a run's values: digits, units, rows of tables."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ STATUS = {
 
 
 def number(value: Scalar, digits: int = 4) -> str:
-    """A number with `digits` significant digits; a dash for a missing value.
+    """Number with `digits` significant digits; a dash if missing.
 
     Integers keep all digits. Trailing zeros are omitted where the value is exact (30, not 30.00).
     Magnitudes outside 1e-4 to 1e6 are written with a power of ten. The minus is U+2212.
@@ -111,14 +111,14 @@ def number(value: Scalar, digits: int = 4) -> str:
 
 
 def listed(value: Scalar | Sequence[Scalar]) -> str:
-    """A number, or the items of a list; "none" for an empty list."""
+    """Number or list as text; "none" for an empty list."""
     if value is None or isinstance(value, (str, int, float)):
         return number(value)
     return ", ".join(words(str(one)) for one in value) or "none"
 
 
 def quantity(value: Scalar, unit: str = "", digits: int = 4) -> str:
-    """A number with its unit; SI units are converted to those of a drawing (MPa, mm, deg)."""
+    """Number with unit, SI units converted to drawing units (MPa, mm, deg)."""
     if isinstance(value, (int, float)) and not isinstance(value, bool) and unit in SHOWN_AS:
         unit, scale = SHOWN_AS[unit]
         value = value * scale if scale != 1.0 else value
@@ -129,7 +129,7 @@ def quantity(value: Scalar, unit: str = "", digits: int = 4) -> str:
 
 
 def in_unit(value: float, unit: str, wanted: str) -> float | None:
-    """A value converted to the unit of a figure; None for a unit of another dimension."""
+    """Value in the unit of a figure; None for another dimension."""
     shown, scale = SHOWN_AS.get(unit, (unit, 1.0))
     if shown == wanted:
         return value * scale
@@ -142,32 +142,32 @@ def plain(text: str) -> str:
 
 
 def shortened(text: str, length: int) -> str:
-    """Text on one line, cut to `length` characters."""
+    """Text in one line, cut to `length` characters."""
     line = " ".join(plain(text).split())
     return line if len(line) <= length else line[: length - 1] + "…"
 
 
 def printed(text: str) -> str:
-    """A line of the terminal with the signs of print: minus, arrow, comparisons."""
+    """Terminal text with typographic minus, arrows and comparison signs."""
     for typed, sign in (("->", "→"), (">=", "≥"), ("<=", "≤")):
         text = text.replace(f" {typed} ", f" {sign} ")
     return _TYPED_MINUS.sub(MINUS, text)
 
 
 def isolated(text: str) -> str:
-    """Text with a right-to-left part confined to itself by Unicode isolates."""
+    """Text whose right-to-left parts are isolated by Unicode controls."""
     turns = any(unicodedata.bidirectional(character) in TURNING for character in text)
     return f"\u2068{text}\u2069" if turns else text
 
 
 def words(name: str) -> str:
-    """A snake_case name with spaces."""
+    """Words of a snake_case name."""
     return name.replace("_", " ").strip()
 
 
 @dataclass(frozen=True)
 class Status:
-    """Status of a check, or verdict: id (selects the colour) and words."""
+    """Status of a check or verdict: id, which selects the colour, and words."""
 
     id: str
     words: str
@@ -200,7 +200,7 @@ class ReportTable:
 
 @dataclass(frozen=True)
 class CheckRow:
-    """One check as text. `bar` is the utilisation clipped to `BAR_TOP`; None if it is unknown."""
+    """Row of a check as text; `bar`: utilisation clipped to `BAR_TOP`, None if unknown."""
 
     id: str
     title: str
@@ -250,7 +250,7 @@ class CheckRow:
 
 
 def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
-    """Checks as text, in the order of `verdict.in_order`."""
+    """Rows of checks as text, in the order of `verdict.in_order`."""
     rows = []
     for one in in_order(of_records(checks)):
         check, value = one.record, one.utilisation
@@ -294,7 +294,7 @@ def _finite(value: Json) -> float | None:
 
 
 def worst_corner(check: Record) -> tuple[str, str] | None:
-    """Governing tolerance corner of a check and the demand there.
+    """Governing tolerance corner of a check, with its demand.
 
     None if the check has none, or if its demand equals the nominal one in all digits shown.
     """
@@ -317,7 +317,7 @@ def _waiver(check: Record, unit: str) -> str:
 
 @dataclass(frozen=True)
 class Tile:
-    """A key figure in large type, with a second line below."""
+    """Key figure in large type with a second line."""
 
     title: str
     value: str
@@ -325,7 +325,7 @@ class Tile:
 
 
 def tiles(headline: Record) -> list[Tile]:
-    """Key figures of a run; missing ones are omitted."""
+    """Key figures of a run as tiles; missing ones are omitted."""
     made = []
     before, after = (headline.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
     if before and after is not None:
@@ -384,7 +384,7 @@ def headline_rows(headline: Record) -> list[tuple[str, str]]:
 
 @dataclass(frozen=True)
 class InputTable:
-    """A section of the case file; rows are (name, value, source)."""
+    """Section of the case file; rows are (name, value, source)."""
 
     title: str
     rows: tuple[tuple[str, str, str], ...]
@@ -392,7 +392,7 @@ class InputTable:
 
 
 def input_tables(case: Record) -> list[InputTable]:
-    """The resolved case as tables; each value with its source, if the file states one."""
+    """Resolved case as tables, with the source of each value if stated."""
     general = {key: v for key, v in case.items() if not isinstance(v, (Mapping, list))}
     tables = [_input_table("general", general)] if general else []
     for title, section in _sections(case):

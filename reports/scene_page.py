@@ -56,7 +56,7 @@ _READOUT = (
 
 @dataclass(frozen=True, eq=False)
 class TurnView:
-    """Outlines and positions of both bodies at f cam angles of one load case.
+    """Outlines and poses of both bodies at f cam angles of one load case.
 
     position (f,) rows of the cycle; angle (f,) deg; contour and bore (2, stations), mm, in the
     frame of the cam; follower (2, n), mm, points of the follower in its own frame, which has its
@@ -83,7 +83,7 @@ class TurnView:
         return 0.5 * np.pi - np.radians(self.angle)
 
     def lab_origin(self) -> Array:
-        """Origin (2, f), mm, of the follower in the frame in which it moves along +y."""
+        """Origin (2, f), mm, of the follower in the frame of the guides, motion along +y."""
         cosine, sine = np.cos(self.to_lab), np.sin(self.to_lab)
         x, y = self.origin.T
         return np.stack([cosine * x - sine * y, sine * x + cosine * y])
@@ -96,7 +96,7 @@ class TurnView:
 
 
 def read_turn_view(folder: Path) -> TurnView:
-    """The recorded turn of a run.
+    """Recorded turn of a run.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def read_turn_view(folder: Path) -> TurnView:
 
 
 def write(material: ReportMaterial) -> Sequence[Path]:
-    """Write ``scene.html``; nothing for a run without a recorded turn."""
+    """Write ``scene.html``; none for a run without a recorded turn."""
     try:
         view = read_turn_view(material.run.path)
     except ResultError:
@@ -140,7 +140,7 @@ def write(material: ReportMaterial) -> Sequence[Path]:
 
 
 def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
-    """Data of the page: bodies as triangles, mm, their positions, values at each angle.
+    """Data of the page: triangulated bodies, mm, poses, values at each angle.
 
     The axis of the cam is z; the follower moves along y.
     """

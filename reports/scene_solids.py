@@ -1,4 +1,4 @@
-"""Solids as triangles for the scene: rings, boxes, rods."""
+"""Triangulated solids of the 3-D scene: rings, boxes, rods."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _ROUND = 48
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """Points (3, n) and triangles (3, m) of their indices."""
+    """Triangulated solid: points (3, n), triangles (3, m) of their indices."""
 
     points: Array
     triangles: NDArray[np.int64]
 
     def upright(self, height: float) -> Solid:
-        """The solid turned from the z axis to the y axis, its middle at `height`."""
+        """Solid turned from the z to the y axis, its middle at `height`."""
         x, y, z = self.points
         return Solid(np.stack([x, z + height, -y]), self.triangles)
 
@@ -41,7 +41,7 @@ class Solid:
 
 
 def ring(outline: Array, width: float) -> Solid:
-    """A closed outline (2, n) extruded along z, centred at z = 0, without end faces."""
+    """Extrusion along z of a closed outline (2, n), centred at z = 0, without end faces."""
     count = outline.shape[1]
     low, high = (np.vstack([outline, np.full(count, side * width / 2)]) for side in (-1, 1))
     here = np.arange(count)
@@ -72,7 +72,7 @@ def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> So
 
 
 def joined(solids: Sequence[Solid]) -> Solid:
-    """Several solids as one."""
+    """Union of several solids as one."""
     starts = np.cumsum([0, *(solid.points.shape[1] for solid in solids)])
     triangles = [solid.triangles + start for solid, start in zip(solids, starts, strict=False)]
     return Solid(np.hstack([solid.points for solid in solids]), np.hstack(triangles))
@@ -80,12 +80,12 @@ def joined(solids: Sequence[Solid]) -> Solid:
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """Points (i, j, k, 3) of a block of hexahedra."""
+    """Points (i, j, k, 3) of a structured block of hexahedra."""
 
     points: Array
 
     def surface(self) -> tuple[Solid, NDArray[np.int64], NDArray[np.int64]]:
-        """Faces of the block, the first that of k = 0.
+        """Faces of the block, beginning with k = 0.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Parts of a report by name, and the files that each of them writes."""
+"""Parts of a report by name, with the files that each writes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from camwright.reports.report_data import FIGURES, ReportMaterial, read_material
 
 @dataclass(frozen=True)
 class ReportPart:
-    """A part of a report.
+    """Part of a report: name, files, writer.
 
     `write` writes the files of the part into the run folder and returns them; `files` is the
     pattern of their names. A part `on_request` is written only if its name is stated; those
@@ -92,7 +92,7 @@ PARTS = (
 
 
 def chosen(names: Iterable[str] = (), *, png: bool = False) -> tuple[ReportPart, ...]:
-    """Parts of these names, in order; without names all parts that are not on request.
+    """Parts of given names, in order; without names all that are not on request.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def chosen(names: Iterable[str] = (), *, png: bool = False) -> tuple[ReportPart,
 
 @dataclass
 class Ahead:
-    """Report of a run whose drawings begin in worker processes while its certificate is solved.
+    """Report whose drawings begin in worker processes while the certificate is solved.
 
     A figure that the certificate changes, such as by another governing load case, is drawn again.
     """
@@ -126,7 +126,7 @@ class Ahead:
     _begun: dict[str, PendingCall] = field(default_factory=dict)
 
     def begin(self, folder: Path, workers: Crew) -> None:
-        """Begin the drawings of a run folder, unless there is but one process."""
+        """Begin the drawings of a run folder; nothing with a single process."""
         if workers.workers > 1:
             material = read_material(folder)
             self._begun |= picture_list.begun(material, workers)
@@ -168,7 +168,7 @@ def draw(
     ahead: Mapping[str, PendingCall] | None = None,
     progress: Progress = SILENT,
 ) -> dict[str, Sequence[Path]]:
-    """Write parts of the report of a run, also of one that has no record yet; see `report`.
+    """Write parts of the report of a run, recorded or not yet; see `report`.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ def draw(
 
 
 def redraw(folder: Path, names: Collection[str]) -> None:
-    """Write the parts to which files of these names belong; see `report`.
+    """Write the parts that contain files of given names; see `report`.
 
     Those on request come last, as they are added to a run that has its page already.
     """

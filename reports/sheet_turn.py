@@ -1,4 +1,4 @@
-"""One load case over a cam turn, as the figures of the sheet use it."""
+"""Load case over a cam turn, as the figures of the analysis sheet use it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LOW_HEIGHT = 0.6  # of a panel for small curves
 
 @dataclass(frozen=True, eq=False)
 class SheetTurn:
-    """One load case of the final trial.
+    """Load case of the final trial over a cam turn.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class SheetTurn:
 
     @property
     def balanced(self) -> SheetTurn:
-        """The same of the first load case with a torque of the machine; itself without one."""
+        """First load case with a machine torque; itself if there is none."""
         for table in (self.columns, *self.others):
             torque = table.get("torque_before_Nm")
             if torque is not None and np.isfinite(torque).all():
@@ -135,7 +135,7 @@ class SheetTurn:
         raise ResultError("5_cycle.csv: no half-width at the maximum contact pressure")
 
     def length(self, *path: str, unit: str = "mm") -> float | None:
-        """A value of the case in a unit; None if it is absent or of another dimension."""
+        """Value of the case in a unit; None if absent or of another dimension."""
         value: object = self.case
         for key in path:
             value = value.get(key) if isinstance(value, Mapping) else None
@@ -159,18 +159,18 @@ class SheetTurn:
         return () if value is None or not np.isfinite(value) else (LimitLine(value, label),)
 
     def static_rating(self, label: str, check_id: str, *path: str) -> tuple[LimitLine, ...]:
-        """Static rating of the case, N, over the safety that a check requires of it."""
+        """Static rating of the case, N, over its required safety factor."""
         rating, safety = self.length(*path, unit="N"), self.bound(check_id)
         return (LimitLine(rating / safety, label),) if rating and safety else ()
 
 
 def both_ways(limits: Sequence[LimitLine]) -> tuple[LimitLine, ...]:
-    """Limits of a magnitude, above and below zero."""
+    """Limits of a magnitude above and below zero."""
     return (*limits, *(LimitLine(-line.value, line.label) for line in limits))
 
 
 def lowest(*limits: LimitLine) -> tuple[LimitLine, ...]:
-    """The limit that is reached first; empty without any."""
+    """Lowest limit; empty without any."""
     return tuple(sorted(limits, key=lambda line: line.value)[:1])
 
 

@@ -1,4 +1,4 @@
-"""Maps of the maximum stress below the contour over the turn: unrolled, and along the contour."""
+"""Maps of the maximum subsurface stress over the turn: unrolled, and along the contour."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def read_envelope(path: Path, load_case: str) -> dict[str, Array]:
 
 
 def unrolled(values: Array, depth: Array, levels: Array) -> Array:
-    """Values (n, k) at depths (n, k), interpolated to common depths (m,): (m, n).
+    """Values (n, k) at depths (n, k) interpolated to common depths (m,), (m, n).
 
     NaN below the deepest value of a station.
     """
@@ -47,7 +47,7 @@ def unrolled(values: Array, depth: Array, levels: Array) -> Array:
 
 
 def drawn(envelope: dict[str, Array]) -> bytes:
-    """PNG of the maps over cam angle and depth."""
+    """PNG of the stress maps over cam angle and depth."""
     from matplotlib.figure import Figure
 
     angle, depth = envelope["cam_angle_deg"], envelope["depth_mm"]
@@ -69,7 +69,7 @@ def drawn(envelope: dict[str, Array]) -> bytes:
 
 
 def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Array) -> bytes:
-    """PNG of the von Mises stress as a band along the contour, depths enlarged.
+    """PNG of the von Mises stress as a band along the contour, depth exaggerated.
 
     The contour (2, n), mm, and its outward normals (2, n) belong to cam angles (n,), deg.
     """

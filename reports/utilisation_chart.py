@@ -1,4 +1,4 @@
-"""Chart of the greatest utilisations, grouped by the part of the mechanism."""
+"""Bar chart of the greatest utilisations, grouped by part of the mechanism."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LIMIT_SHARE = 1.0 / BAR_TOP
 
 @dataclass(frozen=True)
 class Bar:
-    """A check: title, status, utilisation in words, share of the axis; whether beyond it."""
+    """Bar of a check: title, status, utilisation in words, length; whether it is cut off."""
 
     title: str
     status: str
@@ -34,7 +34,7 @@ class Bar:
 
 @dataclass(frozen=True)
 class BarGroup:
-    """Bars of a part, the greatest first, and the number of its required checks without data."""
+    """Bars of a part, the greatest first, and its number of required checks without data."""
 
     part: str
     bars: tuple[Bar, ...]
@@ -42,7 +42,7 @@ class BarGroup:
 
 
 def utilisation_chart(checks: Sequence[Record]) -> tuple[BarGroup, ...]:
-    """The twelve greatest utilisations of required checks of the design, by part.
+    """Bars of the twelve greatest utilisations of required design checks, by part.
 
     Parts follow by their greatest utilisation; the others with missing data are one last group.
     """

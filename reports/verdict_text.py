@@ -1,4 +1,4 @@
-"""The verdict in sentences, from the checks of the final trial."""
+"""Verdict of a run in sentences."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Verdict:
 
     @property
     def brief(self) -> str:
-        """The word; of a pass with what it rests on."""
+        """The verdict in a word; for a pass with the values it rests on."""
         return self.line if self.outcome == "pass" else self.word
 
     @property
@@ -198,7 +198,7 @@ def _sentence(checks: Sequence[Check], required: Sequence[Check], missing: Seque
 
 
 def governing(checks: Sequence[Check]) -> str:
-    """The governing check in a sentence, see `verdict.governing`; empty if none is evaluated."""
+    """Sentence on the governing check, see `verdict.governing`; empty without one."""
     first = governing_of(of_records(checks))
     if first is None:
         return ""
@@ -213,7 +213,7 @@ def governing(checks: Sequence[Check]) -> str:
 
 
 def governing_load_case(checks: Sequence[Check], names: Sequence[str]) -> str:
-    """Load case of the governing one of the checks made in a load case; else the first name."""
+    """Load case of the governing check made in a load case; else the first load case."""
     made = [check for check in checks if check["load_case"] in names]
     first = governing_of(of_records(made))
     return names[0] if first is None else str(first.record["load_case"])

@@ -1,4 +1,4 @@
-"""Tables of the evidence: certificate, benchmarks, tolerance corners, prices, consistency."""
+"""Tables of evidence: certificate, benchmarks, tolerance corners, prices, consistency."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def machine_prices(records: Json) -> ReportTable:
 
 
 def consistency(records: Sequence[Record] | None) -> tuple[ReportTable, bool]:
-    """Inputs beside the values that other inputs imply, and whether any of them is flagged."""
+    """Inputs beside their implied values, and whether any is flagged."""
     compared = records or ()
     rows = [
         [
@@ -129,7 +129,7 @@ def consistency(records: Sequence[Record] | None) -> tuple[ReportTable, bool]:
 
 
 def crank_speed(record: Json, machine: MachineWords) -> ReportTable:
-    """Ripple of the speed of the shaft with and without the cam, by load case."""
+    """Shaft speed ripple with and without the cam, by load case."""
     rows = [
         [
             name, shown.format(alone=machine.alone),
@@ -145,7 +145,7 @@ def crank_speed(record: Json, machine: MachineWords) -> ReportTable:
 
 
 def valve_train(record: Json) -> ReportTable:
-    """Machine motion of a valve cam; reconstructed values are marked as such."""
+    """Machine motion of a valve cam; reconstructed values are marked."""
     rows = [
         [
             str(one["name"]), str(one["load_case"]) or DASH, str(one["note"]),
@@ -157,7 +157,7 @@ def valve_train(record: Json) -> ReportTable:
 
 
 def benchmarks(record: Json) -> list[tuple[str, str]]:
-    """(benchmark, relative difference to the reference solution)."""
+    """(benchmark, relative difference from its reference solution)."""
     known = record if isinstance(record, Mapping) else {}
     return [
         (title, quantity(100.0 * value, "%", 2))
@@ -177,7 +177,7 @@ def measurement(record: Json) -> list[tuple[str, str]]:
 
 
 def measurement_notes(record: Json) -> list[str]:
-    """Sentences on what a measured speed shows of wheel and cycle."""
+    """Sentences on wheel and cycle of a measured speed."""
     notes = record.get("notes") if isinstance(record, Mapping) else None
     listed = notes if isinstance(notes, list) else []
     return [sentence(note) for note in listed if isinstance(note, str)]
@@ -217,7 +217,7 @@ def certified(points: Sequence[Record]) -> ReportTable:
 
 
 def ends(points: Sequence[Record]) -> ReportTable:
-    """Signed pressure at the ends of the contact over plane strain by both tiers."""
+    """End pressures over plane strain by half-spaces and finite elements."""
     rows = []
     for point in points:
         blocks = _figure(point, "finite_elements")
@@ -250,7 +250,7 @@ def stress_below(points: Sequence[Record]) -> ReportTable:
 
 
 def of_ends(trial: Record) -> list[tuple[ReportTable, str, str]]:
-    """Tables of the finite-element ends of a trial, their titles and introductions."""
+    """Tables of the finite-element ends of a trial, with titles and introductions."""
     points = _records(trial.get("length_certificate"))
     return [
         (
@@ -269,13 +269,13 @@ def of_ends(trial: Record) -> list[tuple[ReportTable, str, str]]:
 
 
 def ends_refused(trial: Record) -> str:
-    """Why finite elements did not solve the ends; "" where they did."""
+    """Reason why finite elements did not solve the ends; "" where they did."""
     refused = trial.get("length_refused")
     return f"The ends of the contact are solved by half-spaces alone: {refused}." if refused else ""
 
 
 def hertz_difference(record: Json) -> str:
-    """One sentence on what finite elements add to p0 of Hertz here; "" without them."""
+    """Sentence on the change of Hertz p0 by finite elements; "" without them."""
     if not isinstance(record, Mapping):
         return ""
     ranges = {

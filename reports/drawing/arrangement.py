@@ -1,4 +1,4 @@
-"""Arrangement of cam, follower, guides and spring at a cam angle, with the forces to scale.
+"""Line drawing of cam, follower, guides and spring at a cam angle, with forces to scale.
 
 The follower moves along y; the cam turns clockwise about the origin. Forces are those on the
 follower: the contact force along the normal of the contact, the reactions across the stem.
@@ -43,7 +43,7 @@ COLOURS = {"contact": "vermillion", "spring": "green", "guide-a": "blue", "guide
 
 @dataclass(frozen=True)
 class DrawnBush:
-    """Guide of the stem: height of its middle, length and bore, mm."""
+    """Guide bush: height of its middle, length and bore, mm."""
 
     middle: float
     length: float
@@ -57,7 +57,7 @@ class DrawnBush:
 
 @dataclass(frozen=True, eq=False)
 class DrawnMechanism:
-    """Sizes in mm, angles in rad.
+    """Sizes of the mechanism for its drawing, mm and rad.
 
     contour : array (2, n)   in the frame of the cam, angle zero along x
     bore, keyway             radius; width, depth and angle; None: not stated
@@ -92,7 +92,7 @@ class DrawnMechanism:
 
     @cached_property
     def envelope(self) -> Box:
-        """Box that holds the mechanism over the turn, mm."""
+        """Bounding box of the mechanism over the turn, mm."""
         return self.sizes.envelope
 
     @cached_property
@@ -133,7 +133,7 @@ class DrawnMechanism:
 
 @dataclass(frozen=True, eq=False)
 class DrawnMotion:
-    """One load case over the turn; arrays (n,), SI but for lengths in mm.
+    """Motion and forces of one load case over the turn; arrays (n,), SI but lengths in mm.
 
     theta : cam angle, rad; lift, mm; pressure_angle, rad; contact_offset : of the contact from the
     axis of a flat face, mm, None of a roller; forces : N by the names of `FORCES`, reactions
@@ -156,12 +156,12 @@ class DrawnMotion:
 
 
 def cam_turn(theta: float) -> float:
-    """Rotation of the cam, rad, at a cam angle."""
+    """Rotation of the drawn cam, rad, at a cam angle."""
     return 0.5 * np.pi - theta
 
 
 def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing:
-    """The mechanism at one row of the motion."""
+    """Drawing of the mechanism at one row of the motion."""
     m, lift = mechanism, float(motion.lift[row])
     behind, before = m.spring.groups(m.axis, lift)
     theta = float(motion.theta[row])
@@ -184,7 +184,7 @@ def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing
 
 
 def alt(motion: DrawnMotion, row: int) -> str:
-    """Text alternative: angle and forces."""
+    """Text alternative of the drawing: angle and forces."""
     forces = ", ".join(f"{name.lower()} {_newtons(motion, key, row)}" for key, name in
                        FORCES.items())  # fmt: skip
     return (
@@ -328,7 +328,7 @@ def _guides(m: DrawnMechanism) -> list[Shape]:
 
 
 def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
-    """Contact (2, n), mm."""
+    """Contact points (2, n), mm."""
     m, height = mechanism, mechanism.lowest + motion.lift
     if m.roller is None:
         across = np.zeros_like(height) if motion.contact_offset is None else motion.contact_offset
@@ -338,7 +338,7 @@ def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
 
 
 def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arrow]:
-    """Forces on the follower at one row, to one scale over the turn."""
+    """Force arrows on the follower at one row, to a scale common to the turn."""
     m = mechanism
     scale = m.arrow_length / motion.greatest_force if motion.greatest_force > 0.0 else 0.0
     touch = contact_point(m, motion)[:, row]
@@ -364,7 +364,7 @@ def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arr
 
 
 def label_places(mechanism: DrawnMechanism) -> dict[str, tuple[float, float]]:
-    """Places of the values, in a column right of all that moves; none overlaps another."""
+    """Positions of the value labels, in a column right of the mechanism, without overlap."""
     m, pitch = mechanism, 2.7 * mechanism.text
     wanted = sorted(
         {
@@ -434,7 +434,7 @@ def _box(m: DrawnMechanism) -> tuple[float, float, float, float]:
 def moving_record(
     mechanism: DrawnMechanism, motion: DrawnMotion, rows: Sequence[int]
 ) -> dict[str, Json]:
-    """Poses of the moving groups, arrows and values at rows of the motion, for a page.
+    """Poses, arrows and values at rows of the motion, for an animated page.
 
     Poses are turn (deg, counter-clockwise), shift x and y (mm) and stretch of each row.
     """

@@ -1,4 +1,4 @@
-"""Parts of a line drawing: outlines, arrows and texts, in groups that move together; mm."""
+"""Shapes of a line drawing: outlines, arrows and texts in groups with poses; mm."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ROUND = 97  # points of a circle
 
 @dataclass(frozen=True)
 class Pen:
-    """Colours by name, empty for none; width of the line, mm; dash: solid, dashed or dashdot."""
+    """Line style: colours by name, empty for none; width, mm; solid, dashed or dashdot."""
 
     stroke: str = ""
     width: float = 0.0
@@ -28,7 +28,7 @@ class Pen:
 
 @dataclass(frozen=True, eq=False)
 class DrawnOutline:
-    """Lines (2, n), mm; the second and further ones are holes of a closed first one."""
+    """Lines (2, n), mm; those after a closed first one are its holes."""
 
     lines: tuple[Array, ...]
     pen: Pen
@@ -37,7 +37,7 @@ class DrawnOutline:
 
 @dataclass(frozen=True)
 class Arrow:
-    """Arrow from tail to tip, mm; shorter than its head it is left out."""
+    """Arrow from tail to tip, mm; omitted if shorter than its head."""
 
     name: str
     tail: tuple[float, float]
@@ -53,7 +53,7 @@ class Arrow:
 
 @dataclass(frozen=True)
 class Text:
-    """Text on its baseline; align: start, middle or end; name: of a value that moves."""
+    """Text on its baseline; align: start, middle or end; name: of a changing value."""
 
     words: str
     place: tuple[float, float]
@@ -77,7 +77,7 @@ Shape = DrawnOutline | Arrow | Text
 
 @dataclass(frozen=True)
 class Pose:
-    """Place of a group: stretched along y, then turned (rad), then shifted (mm)."""
+    """Pose of a group: stretch along y, then rotation (rad), then translation (mm)."""
 
     turn: float = 0.0
     shift: tuple[float, float] = (0.0, 0.0)
@@ -91,7 +91,7 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class ShapeGroup:
-    """Shapes that move together, from the bottom layer to the top one."""
+    """Shapes with a common pose, from bottom to top layer."""
 
     name: str
     shapes: tuple[Shape, ...]
@@ -100,7 +100,7 @@ class ShapeGroup:
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """Groups from the bottom layer to the top one; box: left, bottom, right, top, mm."""
+    """Groups of shapes from bottom to top layer, with the bounding box, mm."""
 
     title: str
     alt: str
@@ -121,7 +121,7 @@ class Drawing:
 
 
 def circle(radius: float, centre: tuple[float, float] = (0.0, 0.0)) -> Array:
-    """Circle (2, n), first point not repeated."""
+    """Circle (2, n) without a repeated end point."""
     angle = np.linspace(0.0, 2.0 * np.pi, _ROUND)[:-1]
     return np.array(centre)[:, None] + radius * np.stack([np.cos(angle), np.sin(angle)])
 
@@ -132,12 +132,12 @@ def rectangle(left: float, bottom: float, right: float, top: float) -> Array:
 
 
 def segment(start: tuple[float, float], end: tuple[float, float]) -> Array:
-    """Two points (2, 2)."""
+    """Line of two points (2, 2)."""
     return np.array([start, end], dtype=float).T
 
 
 def hatching(box: tuple[float, float, float, float], spacing: float) -> tuple[Array, ...]:
-    """Lines at 45 deg within a rectangle: the sign of a part that is held fast."""
+    """Hatching at 45 deg within a rectangle, the sign of a fixed part."""
     left, bottom, right, top = box
     lines = []
     for cross in np.arange(left - (top - bottom) + 0.5 * spacing, right, spacing):

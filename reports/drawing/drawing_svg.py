@@ -1,4 +1,4 @@
-"""A drawing as SVG; mm become user units, y points up."""
+"""SVG of a line drawing; mm become user units, y points up."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _group(group: ShapeGroup, colours: Mapping[str, str]) -> str:
 
 
 def transform(turn: float, x: float, y: float) -> str:
-    """Transform of a group; turn in rad counter-clockwise, mm."""
+    """SVG transform of a pose; rotation in rad counter-clockwise, mm."""
     return f"translate({_n(x)} {_n(-y)}) rotate({_n(-np.degrees(turn))})"
 
 

@@ -1,4 +1,4 @@
-"""Views of the cam with dimensions: front view, section, detail of the bore; mm on paper."""
+"""Dimensioned views of the cam: front view, section, bore detail; mm on paper."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _PROFILE_AT, _ROUGH_AT = 105.0, 75.0  # deg, of the leaders: between two labels
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """Axial section of the surface in contact; mm.
+    """Axial section of the running surface; mm.
 
     flat : float              width without the ends
     end                       kind and size of both ends; None: not stated
@@ -103,7 +103,7 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class DrawnCam:
-    """A cam to draw; lengths in mm, angles in rad.
+    """Data of the cam to draw; lengths in mm, angles in rad.
 
     contour : array (2, n)   angle zero along x
     keyway                   width, depth beyond the bore and angle of its middle; None: none
@@ -155,19 +155,19 @@ class DrawnCam:
 
 
 def standard_scale(room: float, size: float) -> float:
-    """Greatest scale of ISO 5455 at which a size fits into a room."""
+    """Greatest scale of ISO 5455 at which a size fits into a space."""
     power = 10.0 ** np.floor(np.log10(room / size))
     steps = (*_STEPS, 10.0)
     return float(max(step * power for step in steps if step * power * size <= room * (1 + 1e-9)))
 
 
 def scale_words(scale: float) -> str:
-    """A scale as ``2:1`` or ``1:5``."""
+    """Scale as text, ``2:1`` or ``1:5``."""
     return f"{scale:.6g}:1" if scale >= 1.0 else f"1:{1.0 / scale:.6g}"
 
 
 def views(part: DrawnCam) -> Drawing:
-    """Front view at the top left, section beside it, detail of the bore below."""
+    """Front view at the top left, section beside it, bore detail below."""
     middle = (0.5 * _FRONT, HEIGHT - 0.5 * _FRONT - 12.0)
     groups = (
         ShapeGroup("front", tuple(_front(part, *middle))),

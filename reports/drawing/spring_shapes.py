@@ -1,4 +1,4 @@
-"""Coil, gas and torsion springs between their seats."""
+"""Drawings of coil, gas and torsion springs between their seats."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ROD_SHARE, _WALL_SHARE = 0.45, 0.1  # of the bore of a gas spring
 
 @dataclass(frozen=True)
 class Coil:
-    """Helical spring from a seat that moves with the follower to a fixed one above it; mm.
+    """Helical spring between the seat on the follower and the fixed seat above; mm.
 
     seat : height of the moving seat at zero lift; length : between the seats at zero lift;
     turns : all coils
@@ -87,7 +87,7 @@ class Coil:
 
 @dataclass(frozen=True)
 class DrawnGasSpring:
-    """Gas spring: rod on a seat that moves with the follower, cylinder held above it; mm."""
+    """Gas spring: rod on the seat of the follower, cylinder held above; mm."""
 
     bore: float
     seat: float
@@ -139,7 +139,7 @@ class DrawnGasSpring:
 
 @dataclass(frozen=True)
 class Torsion:
-    """Torsion spring beside the follower; its arm presses on a pin of the follower; mm, rad.
+    """Torsion spring beside the follower, its arm on a pin of the follower; mm, rad.
 
     arm_angle : of the arm at zero lift from square to the axis, positive outwards
     """

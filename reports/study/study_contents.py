@@ -1,4 +1,4 @@
-"""Contents of the page of a study as text and shares: yield, failures, effects, front, inputs."""
+"""Contents of a study's page: yield, failures, effects, front, inputs."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class YieldShare:
 
 @dataclass(frozen=True)
 class FailureRow:
-    """A check that fails or lacks data: shares of the designs, and figures as text."""
+    """Row of a check that fails or lacks data: shares of the designs."""
 
     title: str
     fails: float
@@ -56,7 +56,7 @@ class FailureRow:
 
 @dataclass(frozen=True)
 class TornadoBar:
-    """Bar of a tornado; positions as shares of its width."""
+    """Bar of a tornado chart; positions as shares of its width."""
 
     factor: str
     levels: str
@@ -70,7 +70,7 @@ class TornadoBar:
 
 @dataclass(frozen=True)
 class Index:
-    """Sensitivity index drawn with its interval, all clipped to 0 to 1."""
+    """Sensitivity index with its confidence interval, clipped to 0 to 1."""
 
     shown: float
     low: float
@@ -80,7 +80,7 @@ class Index:
 
 @dataclass(frozen=True)
 class IndexRow:
-    """Indices of one factor."""
+    """Sensitivity indices of one factor."""
 
     factor: str
     first: Index
@@ -107,7 +107,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class DesignRow:
-    """Design in a table, with the page of its run where that is kept."""
+    """Row of a design, with the page of its run if kept."""
 
     cells: Sequence[str]
     link: str
@@ -124,7 +124,7 @@ class DesignTable:
 
 @dataclass(frozen=True)
 class Page:
-    """Contents of the page."""
+    """Contents of a study's page."""
 
     title: str
     kicker: str
@@ -166,6 +166,7 @@ def page_of(
     links: Mapping[int, str],
     drawn: int,
 ) -> Page:
+    """Contents of the page of a study."""
     counts = answers["designs"]
     failures, silent = _failures(answers["failures"])
     front = answers["front"]

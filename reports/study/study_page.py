@@ -1,4 +1,4 @@
-"""Page of a study: its contents, and the designs with a selection that all views share."""
+"""HTML page of a study, with a selection of designs shared by all views."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class DesignRows:
     links: Mapping[int, str]
 
     def thinned(self, needed: Sequence[int], most: int = MOST_ROWS) -> DesignRows:
-        """At most about `most` designs: evenly spaced ones, those kept and the `needed`."""
+        """At most about `most` designs, evenly spaced, those kept and `needed` included."""
         count = self.design.size
         if count <= most:
             return self
