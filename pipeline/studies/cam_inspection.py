@@ -1,4 +1,4 @@
-"""Inspection of a measured cam: fit to the drawing, cycle and checks of the real contour."""
+"""Inspection of a measured cam: fit to the nominal contour, cycle and checks of the real one."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _POLAR = (("polar_angle_deg", "measured_radius_mm"), ("angle_deg", "radius_mm"))
 
 @dataclass(frozen=True, eq=False)
 class RealPart:
-    """A measured cam: fit to the nominal contour, real contour, trial on it."""
+    """Measured cam: fit to the nominal contour, real contour, and trial on it."""
 
     fit: Inspection
     contour: Contour
@@ -91,7 +91,7 @@ def inspect_part(
     jobs: int | None = None,
     progress: Progress = SILENT,
 ) -> RealPart:
-    """Fit a measured contour to the nominal one, solve and check it.
+    """Measured contour fitted to the nominal one, solved and checked.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def inspect_part(
 def write_inspection(
     run: Path, part: RealPart, tolerance: float, folder: Path
 ) -> InspectionDocument:
-    """Write the files of an inspection into a folder: deviations, cycle, checks and record.
+    """Write the files of an inspection: deviations, cycle, checks and record.
 
     Returns
     -------
@@ -180,7 +180,7 @@ def _figures_of(cycle: Table) -> CycleFigures:
 
 
 def lines(record: InspectionDocument) -> list[str]:
-    """Lines of text of a record."""
+    """Lines of text of an inspection record."""
     side = "within" if record["within_tolerance"] else "outside"
     text = [
         f"phase {record['phase_deg']:.4f} deg, size {record['size_um']:+.2f} um",

@@ -1,4 +1,4 @@
-"""Ends, crown and tilt in `camwright contact`: from options to a document."""
+"""Body ends, crown and tilt in `camwright contact`: from options to a document."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _DEPTH = 2.0
 
 
 def quantity(text: str, unit: str, option: str) -> float:
-    """SI value of a number with a unit, or in `unit`."""
+    """SI value of a text with unit, or of a number in `unit`."""
     try:
         float(text)
     except ValueError:
@@ -72,7 +72,7 @@ class LengthOptions:
 
     @property
     def stated(self) -> bool:
-        """Whether a length or anything that needs one is given."""
+        """Whether a length, or an option that needs one, is stated."""
         return self != LengthOptions()
 
     def bodies(
@@ -201,7 +201,7 @@ def _tabulated(text: str) -> TabulatedCrown:
 
 @dataclass(frozen=True, eq=False)
 class FiniteLength:
-    """A contact of finite length at both tiers."""
+    """Finite-length contact by half-spaces and by finite elements."""
 
     pair: FinitePair
     tiers: tuple[TierResult, TierResult]
@@ -261,7 +261,7 @@ class FiniteLength:
 def finite_length(
     options: LengthOptions, pair: TwoCylinders, depths: Sequence[float | None]
 ) -> FiniteLength:
-    """Both tiers of the contact of the options.
+    """Contact of the options by half-spaces and by finite elements.
 
     Raises
     ------
@@ -288,7 +288,7 @@ def finite_length(
 
 
 def lines(records: Sequence[Document]) -> Iterator[str]:
-    """Lines of text of both tiers."""
+    """Lines of text of a finite-length contact."""
     mean = f"{records[0]['mean_length_mm']:g} mm"
     titles = ("centre", "greatest", f"last {mean}, y < 0", f"last {mean}, y > 0")
     yield f"{'over plane strain':22}" + "".join(f"{_TITLES[r['tier']]:>24}" for r in records)

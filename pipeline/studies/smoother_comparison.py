@@ -1,4 +1,4 @@
-"""Comparison of the smoothers on one case by previews: rank, recommendation, lines."""
+"""Comparison of the smoothers on one case by previews: ranking, recommendation."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _USELESS = 0.99  # of the ripple without the cam
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """A smoother with its parameter in words, lift and record; lift None: no such cam.
+    """Smoother with parameter in words, lift and record; lift None: it gives no cam.
 
     width: of the filter, rad of crank angle; None without a filter.
     """
@@ -66,7 +66,7 @@ class Compared:
 
     @property
     def failing(self) -> tuple[str, ...]:
-        """Ids of the must-have checks that fail, the worst first."""
+        """Ids of the failing must-have checks, worst first."""
         return self._names("failing")
 
     @property
@@ -85,7 +85,7 @@ class Compared:
 
     @property
     def rank(self) -> tuple[bool, bool, int, float]:
-        """Place as `RANK` states it; the least is the best."""
+        """Rank by `RANK`, least is best."""
         return self.lift is None, not self.reduces, len(self.failing), self.ripple()
 
     @property
@@ -131,7 +131,7 @@ def ranked(results: Sequence[Compared]) -> list[Compared]:
 
 
 def recommendation(best: Compared) -> str:
-    """The best of the ranked results with the reason, in one sentence."""
+    """Best of the ranked results with its reason, in one sentence."""
     if best.lift is None:
         return "no smoother gives a cam"
     left, before = best.ripple(), best.ripple("initial")
@@ -149,14 +149,14 @@ def recommendation(best: Compared) -> str:
 
 
 def common_missing(results: Sequence[Compared]) -> tuple[str, ...]:
-    """Must-have checks without data whatever the smoother."""
+    """Must-have checks without data under every smoother."""
     known = [one for one in results if one.lift is not None]
     shared = set.intersection(*(set(one.missing) for one in known)) if known else set()
     return tuple(sorted(shared))
 
 
 def lines(results: Sequence[Compared]) -> list[str]:
-    """Recommendation, a line a smoother in the order of the rank, and the missing data once.
+    """Lines: recommendation, smoothers by rank, missing data once.
 
     No line is longer than `WIDTH`.
 

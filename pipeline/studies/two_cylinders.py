@@ -1,4 +1,4 @@
-"""Line contact of two cylinders: Hertz, finite elements with an error bar, pin in hole.
+"""Line contact of two cylinders: Hertz, finite elements with error bar, pin in a hole.
 
 Bodies are half-planes with the gap of the circles. Conforming contacts, a pin in a hole of nearly
 its radius, are solved by `pin_in_hole`.
@@ -49,7 +49,7 @@ _FLATNESS = 0.35
 
 @dataclass(frozen=True)
 class TwoCylinders:
-    """Radii (m; infinite: flat, negative: concave), materials, line load (N/m), friction.
+    """Two cylinders: radii (m; infinite: flat, negative: concave), materials, N/m, friction.
 
     Stresses are those of body 1, with a traction of `friction` times pressure.
     """
@@ -125,7 +125,7 @@ class LineContact:
 
 @dataclass(frozen=True, eq=False)
 class FiniteElementContact:
-    """Results by finite elements, with relative error bar, degrees of freedom and residual.
+    """Contact by finite elements, with relative error bar, unknowns and residual.
 
     stresses (3, m) Pa of bodies 1 and 2 at the points of their finer templates, components along
     the surface and into the depth; half_width_hertz (m): unit of length of the templates.
@@ -187,7 +187,7 @@ def is_conforming(pair: TwoCylinders) -> bool:
 
 
 def finite_elements(pair: TwoCylinders) -> FiniteElementContact:
-    """Contact by finite elements; error bar by a coarser template.
+    """Contact by finite elements; error bar by a coarser mesh.
 
     Raises
     ------
@@ -209,7 +209,7 @@ def finite_elements(pair: TwoCylinders) -> FiniteElementContact:
 
 
 def conforming(pair: TwoCylinders) -> ConformingContact:
-    """Frictionless pin in a hole beyond the validity of Hertz.
+    """Frictionless pin in a hole, beyond the validity of Hertz.
 
     Raises
     ------
@@ -248,7 +248,7 @@ def conforming(pair: TwoCylinders) -> ConformingContact:
 
 
 def approach(pair: TwoCylinders, depths: tuple[float | None, float | None]) -> float:
-    """Approach of two points far from the contact, m.
+    """Approach of two points remote from the contact, m.
 
     Of the centres of discs, or of points at depths (m, much larger than the half-width) below the
     contact: in plane strain the approach depends on the reference points.

@@ -1,4 +1,4 @@
-"""Answers of a study from its dataset: yield, failures, effects of the factors, front, extremes."""
+"""Answers of a study from its dataset: yield, failures, factor effects, front, extremes."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ _OUTPUT_FIGURES = (".demand", ".utilisation")
 
 
 def states(data: Dataset) -> tuple[NDArray[np.uint8], str]:
-    """State (n,) of each design, and the column that decides; see `states_of`."""
+    """State (n,) of each design with its deciding column; see `states_of`."""
     return states_of(data["verdict"], data["screen"])
 
 
 def answered(data: Dataset, study: Study) -> Answer:
-    """Answers of a study as a record, a function of its rows alone.
+    """Record of a study's answers, a function of its rows alone.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def answered(data: Dataset, study: Study) -> Answer:
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """Rows of a dataset that are independent designs of one distribution.
+    """Rows of a dataset that are independent samples of one distribution.
 
     rows (k,) of them; probabilistic: whether their share that passes is a yield; blocks: number of
     rows at the beginning that are whole blocks of Saltelli, 0 for another sample; factors: of a
@@ -104,7 +104,7 @@ class Sample:
 
 
 def number_column(data: Dataset, name: str) -> Array:
-    """A column of numbers; InputError for a text."""
+    """Numeric column of a dataset; InputError for a text column."""
     if not np.issubdtype(data[name].dtype, np.number):
         raise InputError("objective.column", name, "a column of numbers")
     return np.asarray(data[name], dtype=float)

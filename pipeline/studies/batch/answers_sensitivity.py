@@ -1,4 +1,4 @@
-"""Effect of the factors of a study on an output: main effects and Sobol indices.
+"""Sensitivity of a study's outputs to its factors: main effects, Sobol indices.
 
 Main effects come from any sample, by means over levels of a factor. Sobol indices need the sample
 of Saltelli: blocks of `factors` + 2 designs, the first of matrix A, the last of B, the others of A
@@ -25,7 +25,7 @@ _ROWS_OF_LEVEL = 8
 
 @dataclass(frozen=True)
 class MainEffect:
-    """Mean of an output by level of one factor, and the share of its variance.
+    """Mean of an output by level of one factor, with the factor's share of the variance.
 
     levels: value or range of the factor, ascending, (k,); means, errors: mean of the output and
     its standard error (k,); share: first-order share of the variance, with its interval.
@@ -46,7 +46,7 @@ class MainEffect:
 
 @dataclass(frozen=True)
 class SobolIndex:
-    """First-order and total index of one factor, each with its interval."""
+    """First-order and total Sobol index of one factor with confidence intervals."""
 
     first: float
     first_interval: tuple[float, float]
@@ -55,7 +55,7 @@ class SobolIndex:
 
 
 def main_effect(values: NDArray[np.generic], output: Array) -> MainEffect | None:
-    """Main effect of one factor on an output, from any sample of independent designs.
+    """Main effect of one factor on an output, from a sample of independent designs.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def main_effect(values: NDArray[np.generic], output: Array) -> MainEffect | None
 
 
 def sobol_indices(output: Array, factors: int) -> tuple[SobolIndex, ...] | None:
-    """Sobol indices of every factor from the sample of Saltelli, by SALib.
+    """Sobol indices of every factor from a Saltelli sample, by SALib.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def sobol_indices(output: Array, factors: int) -> tuple[SobolIndex, ...] | None:
 
 
 def independent(count: int, factors: int) -> NDArray[np.int64]:
-    """Rows of the sample of Saltelli that are independent: those of its matrices A and B."""
+    """Mask of the independent rows of a Saltelli sample: its matrices A and B."""
     block = factors + 2
     starts = np.arange(0, count, block)
     return np.sort(np.concatenate([starts, starts + block - 1]))

@@ -1,4 +1,4 @@
-"""Yield: state of each design, share that passes, with its confidence interval."""
+"""Yield of a study: share of passing designs with confidence interval."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PASSES, FAILS, UNKNOWN = 0, 1, 2
 
 
 def states_of(verdict: NDArray[np.str_], screen: NDArray[np.str_]) -> tuple[NDArray[np.uint8], str]:
-    """State (n,) of each design, and the column that decides: verdict or screen.
+    """State (n,) of each design with its deciding column, verdict or screen.
 
     The verdict decides if every design has one or no result; else the screen, of every design. A
     design without a result is neither: yield and stop rule leave it out.
@@ -36,7 +36,7 @@ def states_of(verdict: NDArray[np.str_], screen: NDArray[np.str_]) -> tuple[NDAr
 
 @dataclass(frozen=True)
 class Yield:
-    """Number of designs that pass among `count` independent ones."""
+    """Number of passing designs among `count` independent ones."""
 
     passed: int
     count: int
@@ -47,11 +47,11 @@ class Yield:
 
     @property
     def value(self) -> float | None:
-        """Share of designs that pass; None without designs."""
+        """Share of passing designs; None without designs."""
         return self.passed / self.count if self.count else None
 
     def interval(self, confidence: float = CONFIDENCE) -> tuple[float, float]:
-        """Exact interval of the share: it covers the true one at least at this level.
+        """Exact (Clopper-Pearson) confidence interval of the share.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Base cases of a study as text with their files: sent once to each worker."""
+"""Base cases of a study as text with their files, sent once to each worker."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CASE_FILE = "case.toml"
 
 @dataclass(frozen=True)
 class Template:
-    """A case file with the files that it reads.
+    """Case file with the contents of the files it reads.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Template:
         return digest.hexdigest()
 
     def case(self, folder: Path) -> Case:
-        """The case, read from its files, which are written under `folder`."""
+        """Case read from its files, which are written under `folder`."""
         from camwright.pipeline.case.case_file import parse_case
 
         home = folder / self.name
@@ -95,7 +95,7 @@ def _files(case: Case, tables: Tables) -> list[str]:
 
 
 class UnpackedTemplates:
-    """Cases by name, unpacked into a temporary folder when first used."""
+    """Cases by name, unpacked into a temporary folder on first use."""
 
     def __init__(self, templates: Sequence[Template]) -> None:
         self._templates = {each.name: each for each in templates}

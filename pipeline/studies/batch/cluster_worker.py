@@ -1,4 +1,4 @@
-"""Part of a Dask worker: keeps the templates, and solves one shard after another.
+"""Dask worker side of a study: keeps the templates, solves one shard after another.
 
 Imported where Dask is, by `task_scheduler` and by the workers.
 """
@@ -22,7 +22,7 @@ Bare = tuple[str, Files]
 
 
 class StudyPlugin(WorkerPlugin):
-    """The templates on a worker: sent once, to later workers as well."""
+    """Worker plugin with the templates, sent once, to later workers as well."""
 
     def __init__(self, name: str, templates: Sequence[Template], settings: Settings) -> None:
         self.name, self.templates, self.settings = name, tuple(templates), settings
@@ -38,7 +38,7 @@ class StudyPlugin(WorkerPlugin):
 
 
 def solve_shard(task: Task, plugin: str, wanted: Wanted | None) -> Shard:
-    """Rows of a task, in the process of this worker; `wanted` as of `SolverProcess.rows`."""
+    """Rows of a task, solved in the worker's process; `wanted`: see `SolverProcess.rows`."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
         return study.process.rows(task, wanted)
@@ -47,7 +47,7 @@ def solve_shard(task: Task, plugin: str, wanted: Wanted | None) -> Shard:
 
 
 def solve_run(task: Task, plugin: str) -> Files:
-    """Files of the run folder of the one design of a task."""
+    """Run-folder files of a task with one design."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
         return study.process.run_folder(task, 0)
@@ -56,7 +56,7 @@ def solve_run(task: Task, plugin: str) -> Files:
 
 
 def make_page(run: Bare, plugin: str) -> Files:
-    """Files of a run with its page."""
+    """Run-folder files with the page added."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
         return study.process.presented(run[1])

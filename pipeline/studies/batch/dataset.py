@@ -1,4 +1,4 @@
-"""Dataset of a study: columns with unit and meaning, shards, and the table of all rows.
+"""Dataset of a study: columns with unit and meaning, shards, table of all rows.
 
 One row per design. A column that no row of the study has is left out; a value that a design does
 not have is null.
@@ -77,14 +77,14 @@ Rows = Mapping[str, Values]
 
 
 def is_text(name: str, units: Mapping[str, str | None]) -> bool:
-    """Whether a column holds text; `units` as in `column_of`."""
+    """Whether a column holds text; `units`: see `column_of`."""
     if name.startswith(FACTOR):
         return units.get(name.removeprefix(FACTOR), "") is None
     return name in _TEXTS or name.endswith(STATUS)
 
 
 def column_of(name: str, units: Mapping[str, str | None]) -> Column:
-    """Unit and meaning of a column of a dataset.
+    """Unit and meaning of a dataset column.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def _checks() -> Mapping[str, tuple[str, str]]:
 
 
 def in_order(names: Sequence[str]) -> list[str]:
-    """Column names in the order of a dataset: fixed, factors, headline, mesh, checks."""
+    """Column names in dataset order: fixed, factors, headline, mesh, checks."""
     fixed = [each.name for each in FIXED]
     checks = {check: place for place, check in enumerate(_checks())}
     figures = list(FIGURES)
@@ -143,7 +143,7 @@ def in_order(names: Sequence[str]) -> list[str]:
 
 
 def table_of(rows: Rows, units: Mapping[str, str | None]) -> pa.Table:
-    """Rows as an Arrow table: columns in order, unit and meaning in the metadata of each field.
+    """Arrow table of rows: ordered columns, unit and meaning in the field metadata.
 
     Columns without a value are left out, but for the fixed ones; NaN and infinity become null.
     """
@@ -171,7 +171,7 @@ def table_of(rows: Rows, units: Mapping[str, str | None]) -> pa.Table:
 
 
 def whole_numbers(values: NDArray[np.integer[Any]]) -> pa.Array:
-    """Arrow array of whole numbers (n,)."""
+    """Arrow array (n,) of integers."""
     import pyarrow as pa
 
     whole = np.ascontiguousarray(values, dtype=np.int64)
@@ -206,7 +206,7 @@ def _validity(known: NDArray[np.bool_]) -> pa.Buffer | None:
 
 
 def parquet_bytes(table: pa.Table) -> bytes:
-    """A table as a Parquet file; the same bytes for the same rows."""
+    """Parquet file of a table; equal rows give equal bytes."""
     import pyarrow.parquet as pq
 
     buffer = io.BytesIO()
@@ -223,7 +223,7 @@ WRITING: Mapping[str, Any] = {
 
 
 def timings_of(rows: Rows, walls: Sequence[float]) -> pa.Table:
-    """Clock figures of the rows of a shard: id, depth, wall time of the solution in s."""
+    """Clock figures of a shard's rows: id, depth, wall time, s."""
     import pyarrow as pa
 
     texts = {each: _texts([str(value) for value in rows[each]]) for each in (ID.name, DEPTH.name)}
@@ -231,7 +231,7 @@ def timings_of(rows: Rows, walls: Sequence[float]) -> pa.Table:
 
 
 def joined(tables: Sequence[pa.Table]) -> pa.Table:
-    """Tables of one dataset below one another: all columns, in order."""
+    """Tables of one dataset concatenated, with the union of their columns in order."""
     import pyarrow as pa
 
     fields = {field.name: field for table in tables for field in table.schema}
@@ -240,7 +240,7 @@ def joined(tables: Sequence[pa.Table]) -> pa.Table:
 
 
 def table_from(content: bytes) -> pa.Table:
-    """The table of the bytes of a Parquet file; ValueError for more rows than a study has."""
+    """Table from the bytes of a Parquet file; ValueError for too many rows."""
     import pyarrow.parquet as pq
 
     from camwright.pipeline.studies.batch.study_file import DESIGNS_MAX
@@ -363,7 +363,7 @@ class _StoredColumns(Mapping[str, NDArray[Any]]):
 
 
 def read_dataset(folder: Path) -> Dataset:
-    """The dataset of a study folder.
+    """Dataset of a study folder.
 
     Raises
     ------

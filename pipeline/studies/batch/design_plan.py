@@ -31,7 +31,7 @@ CASE = "case"
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Designs of a study by number, and the unique ones among them.
+    """Numbered designs of a study, with the unique ones among them.
 
     Parameters
     ----------
@@ -79,11 +79,11 @@ class Plan:
         return several | ({} if self.designs is None else self.designs.units)
 
     def whole(self, unique: int) -> int:
-        """Number of the designs before the first that is none of so many unique ones."""
+        """Number of leading designs that lie among the first so many unique ones."""
         return len(self.place) if unique >= len(self.ids) else int(self._first[unique])
 
     def tasks(self, tier: Tier, chosen: Sequence[int] | None = None) -> Iterator[Task]:
-        """Tasks of all unique designs, or of those chosen, at a depth; in order."""
+        """Tasks in order at a depth, of all unique designs or of chosen ones."""
         places = range(len(self.ids)) if chosen is None else chosen
         count = 1 if self.designs is None else self.designs.count
         blocks: dict[int, list[int]] = {}
@@ -115,7 +115,7 @@ class Plan:
 
 
 def shard_size(left: int, most: int) -> int:
-    """Designs of the next shard: fewer towards the end, so that all processes end together.
+    """Designs in the next shard, fewer towards the end so that processes finish together.
 
     It does not depend on the number of processes, nor do the bytes of a study.
 
@@ -132,7 +132,7 @@ def shard_size(left: int, most: int) -> int:
 
 
 def study_versions() -> dict[str, str]:
-    """Versions of the program and of the libraries that the rows and their bytes depend on."""
+    """Versions of program and libraries on which the rows and their bytes depend."""
     return versions() | {"pyarrow": importlib.metadata.version("pyarrow")}
 
 

@@ -32,24 +32,27 @@ CLOCK = "timings.json"
 
 
 def lost(message: str) -> Row:
-    """Cells of a design without a result: refused, or not solved."""
+    """Cells of a design without a result, refused or unsolved."""
     return {SCREEN.name: NO_RESULT, MESSAGE.name: message}
 
 
 def out_of_time(settings: Settings) -> Row:
+    """Cells of a design that exceeded its time limit."""
     return lost(OUT_OF_TIME.format(seconds=settings.seconds))
 
 
 def out_of_memory(settings: Settings) -> Row:
+    """Cells of a design that exceeded its memory limit."""
     return lost(OUT_OF_MEMORY.format(megabytes=settings.bytes / 1e6))
 
 
 def died(times: int) -> Row:
+    """Cells of a design whose process died."""
     return lost(DIED.format(times=times))
 
 
 def columns_of(rows: Sequence[Row]) -> dict[str, list[Any]]:
-    """Columns of a shard from the rows of its designs."""
+    """Columns of a shard from the cells of its designs."""
     names = dict.fromkeys(name for row in rows for name in row)
     return {name: [row.get(name) for row in rows] for name in names}
 
@@ -57,7 +60,7 @@ def columns_of(rows: Sequence[Row]) -> dict[str, list[Any]]:
 def completed(
     task: Task, columns: Mapping[str, Sequence[Any]], outputs: Sequence[str]
 ) -> dict[str, Any]:
-    """Columns of a shard with id, depth and factors; only those that `outputs` names, if any.
+    """Columns of a shard with id, depth and factors, restricted to `outputs` if any.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Solution of designs: one at its depth, thousands screened as arrays; files of a run."""
+"""Solution of designs: singly at their depth, or thousands screened as arrays; run files."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
 
 
 def row_of(trial: Trial, headline: HeadlineRecord) -> Row:
-    """Cells of a solved design, in the units of the records."""
+    """Cells of a solved design in the units of the records."""
     row: Row = {
         SCREEN.name: screen(trial.checks),
         VERDICT.name: trial.verdict,
@@ -81,7 +81,7 @@ def _number(value: float | None, unit: str = "") -> float | None:
 
 @dataclass
 class DesignSolver:
-    """Solves designs of the templates of a study; one in each process.
+    """Solver of designs of the templates of a study; one per process.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class DesignSolver:
         return self.settings.positions or case.solver.positions
 
     def solved(self, task: Task, row: int) -> Row:
-        """Cells of one design; its refusal is a row with the message."""
+        """Cells of one design; a refusal gives a row with its message."""
         try:
             return self._solved(task, row)
         except CamError as error:
@@ -142,7 +142,7 @@ class DesignSolver:
         return row_of(trial, headline(trial))
 
     def design(self, task: Task, row: int) -> tuple[Case, Lift | None]:
-        """Case of one design, and its lift where the study has one cam for all.
+        """Case of one design, and the lift common to all, if the study has one.
 
         Raises
         ------
@@ -179,7 +179,7 @@ class DesignSolver:
     def solved_and_run(
         self, task: Task, row: int, wanted: Wanted, send: Callable[[Row | Files], object]
     ) -> None:
-        """Send the cells of one design, then the files of its run, made from the same solution.
+        """Send the cells of a design, then its run files, made from one solution.
 
         The files lack the page, see `presented`.
 
@@ -204,7 +204,7 @@ class DesignSolver:
         send(files)
 
     def run_folder(self, task: Task, row: int) -> Files:
-        """Files of the run of one design, by relative name; its clock figures as `CLOCK`.
+        """Run files of a design by relative name; clock figures as `CLOCK`.
 
         Raises
         ------
@@ -216,7 +216,7 @@ class DesignSolver:
         return self.presented(files)
 
     def presented(self, files: Files) -> Files:
-        """Files of a run with its page and pictures, which are made from the others."""
+        """Run files with page and pictures, which are made from the others."""
         from camwright.pipeline.results import signoff
         from camwright.reports.sections import report
 
@@ -274,7 +274,7 @@ def _without_clock(folder: Path) -> bytes:
 
 
 def trial_at(case: Case, tier: Tier, lift: Lift | None, *, corners: bool) -> Trial:
-    """Trial of a case at a depth, of its own cam or of a lift.
+    """Trial of a case at a depth, with its own cam or a given lift.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Task of a study: designs of one case solved together, the settings of all, the runs wanted.
+"""Tasks of a study: designs of one case solved together, common settings, runs to keep.
 
 A worker of the cluster reads them; none needs a case.
 """
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Settings:
-    """What the rows depend on besides the designs.
+    """Settings, besides the designs, on which the rows depend.
 
     templates: hash by case name; versions: of the program and its libraries.
     """
@@ -46,7 +46,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Wanted:
-    """Designs whose run folder is made from the solution of their row.
+    """Rule for which designs a run folder is made with their row.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Wanted:
     bars: tuple[tuple[float, ...], ...] = ()
 
     def takes(self, screen: str, cells: Mapping[str, object]) -> bool:
-        """Whether the run of a design of these cells may be kept."""
+        """Whether the run of a design with given cells may be kept."""
         if screen != self.screen or any(name not in cells for name, _ in self.objectives):
             return screen == self.screen  # a factor is no cell of a solution
         values = [(sign, cells[name]) for name, sign in self.objectives]
@@ -77,7 +77,7 @@ class Wanted:
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Designs of one case at one depth, solved together: one shard.
+    """Shard: designs of one case at one depth, solved together.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class Task:
     units: Mapping[str, str | None]
 
     def alone(self, row: int) -> Task:
-        """The task of one of its designs."""
+        """Task of a single one of its designs."""
 
         def one(columns: Mapping[str, Array | Levels]) -> dict[str, Array | Levels]:
             return {key: values[row : row + 1] for key, values in columns.items()}

@@ -37,7 +37,7 @@ Levels = tuple[str | bool | int | float, ...]
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """A factor ready for sampling.
+    """Factor ready for sampling: unit, levels or distribution.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class Axis:
 
 
 def axis_of(factor: Factor, case: Case) -> Axis:
-    """Axis of a factor; a mean that is left out is the value of the case.
+    """Axis of a factor; a missing mean is taken from the case.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Designs that a study takes deeper or keeps: the best, the borderline, the front, the failed."""
+"""Selection of designs to solve deeper or to keep: best, borderline, front, failed."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _MESSAGES_MOST = 50
 
 @dataclass
 class RowFigures:
-    """What the selection needs of the rows seen so far, by id of the design.
+    """Figures of the rows so far that the selection needs, by design id.
 
     A later row of a design, of a deeper stage, replaces the earlier one.
     """
@@ -79,7 +79,7 @@ class RowFigures:
         return [name for _, name in ranked[:count]]
 
     def borderline(self, count: int) -> list[str]:
-        """Ids of the designs whose governing utilisation is nearest to one."""
+        """Ids of the designs with governing utilisation nearest to one."""
         ranked = sorted(
             (abs(row[4] - 1.0), name) for name, row in self._rows.items() if np.isfinite(row[4])
         )
@@ -93,17 +93,17 @@ class RowFigures:
         return [rows[known[k]][0] for k in front([pairs[k] for k in known])]
 
     def failed(self) -> list[str]:
-        """Ids of the designs that fail; those without a result have no run."""
+        """Ids of the failed designs; those without a result have no run."""
         return [name for name, row in self._rows.items() if row[1] == FAILED]
 
     def kept(self, kind: str, count: int) -> list[str]:
-        """Ids of the designs that `Study.keep` names."""
+        """Ids of the designs selected by `Study.keep`."""
         if kind == "best":
             return self.best(count)
         return self.front() if kind == "pareto" else self.failed() if kind == "failed" else []
 
     def of(self, tier: Tier, ids: Collection[str] | None = None) -> RowFigures:
-        """Those of the rows of one depth, of all designs or of some."""
+        """Figures of the rows of one depth, of all designs or of some."""
         rows = {
             name: row
             for name, row in self._rows.items()
@@ -112,7 +112,7 @@ class RowFigures:
         return RowFigures(self.objectives, rows)
 
     def taken(self, ids: Iterable[str], wanted: Wanted) -> set[str]:
-        """Those of some designs whose run may be kept."""
+        """Figures of the designs whose run may be kept."""
         return {
             name
             for name in ids
@@ -121,7 +121,7 @@ class RowFigures:
         }
 
     def wanted(self, kind: str, count: int) -> Wanted:
-        """Designs that `Study.keep` may name, whatever rows follow.
+        """Designs that `Study.keep` may still select, whatever rows follow.
 
         A design that one on the front dominates, or that is worse than the last of the best, is
         not kept in the end either.

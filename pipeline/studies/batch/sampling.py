@@ -1,4 +1,4 @@
-"""Designs of a study: values of every factor by grid, list or samples of the unit cube."""
+"""Sampling of designs: factor values by grid, list or points of the unit cube."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class SampledDesigns:
         return {axis.key: axis.unit for axis in self.axes}
 
     def si(self) -> dict[str, Array | Levels]:
-        """Values (n,) by key in SI; whole numbers and names as in the study file."""
+        """Values (n,) by key, SI; integers and names as in the study file."""
         return {axis.key: _plain(axis, self.columns[axis.key]) for axis in self.axes}
 
 
@@ -58,7 +58,7 @@ def _plain(axis: Axis, values: Array | Levels) -> Array | Levels:
 def designs_of(
     axes: Sequence[Axis], sampling: Sampling, correlations: Sequence[Correlation] = ()
 ) -> SampledDesigns:
-    """Designs of a study; the same for the same seed.
+    """Designs of a study, reproducible by its seed.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Process that solves designs, and its supervision: time, memory, death.
+"""Supervised process that solves designs: limits of time and memory, restart.
 
 A worker of the cluster supervises one such process. What a design does to it, by a hang in gmsh, a
 crash or all of the memory, is a row of the dataset, and the worker lives on.
@@ -49,12 +49,12 @@ class _DiedError(Exception):
 
 
 class EndedError(Exception):
-    """The process was ended for good while it solved."""
+    """Process ended for good while it solved."""
 
 
 @dataclass
 class SolverProcess:
-    """A supervised process; restarted after a death.
+    """Supervised solver process, restarted after a death.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class SolverProcess:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def begin(self) -> tuple[Connection, subprocess.Popen[bytes]]:
-        """Start the process, unless it runs; it imports while others work."""
+        """Start the process unless it runs; it imports while others work."""
         if self._process is not None and self._pipe is not None and self._process.poll() is None:
             return self._pipe, self._process
         self.close()
@@ -131,12 +131,12 @@ class SolverProcess:
         return design_rows.encoded(task, columns, walls, self.settings.outputs)
 
     def run_folder(self, task: Task, row: int) -> Files:
-        """Files of the run of a design; none where it has no result."""
+        """Run files of a design; none without a result."""
         with self._lock:
             return self._files(lambda: self._asked("run_folder", task, row))
 
     def presented(self, files: Files) -> Files:
-        """Files of a run with its page; none where it cannot be made."""
+        """Run files with their page; none where it cannot be made."""
         with self._lock:
             return self._files(lambda: self._asked("presented", files))
 
@@ -148,7 +148,7 @@ class SolverProcess:
         return {}
 
     def end(self) -> None:
-        """End the process for good; who waits for it receives `EndedError`."""
+        """End the process for good; a waiting caller receives `EndedError`."""
         self._ended = True
         if self._process is not None:
             self._process.kill()
@@ -245,7 +245,7 @@ def resident(pid: int) -> int:
 
 
 def serve(pipe: Connection) -> None:
-    """Solve what comes through the pipe until its other end closes."""
+    """Loop of the process: solve the requests of the pipe until it is closed."""
     from camwright.pipeline.studies.batch.design_plan import study_versions
     from camwright.pipeline.studies.batch.design_solver import DesignSolver
 
@@ -270,7 +270,7 @@ def _answer(method: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
 
 
 def main() -> None:
-    """Entry of the process: the number of its end of the pipe is the argument."""
+    """Entry point of the process; the argument is the number of its pipe end."""
     as_worker(os.getppid())
     with contextlib.suppress(EOFError, OSError):
         serve(Connection(int(sys.argv[1])))

@@ -1,4 +1,4 @@
-"""Study file: base cases, factors with their distributions, sampling, depth, what is kept."""
+"""Study file: base cases, factors with distributions, sampling, depth, runs to keep."""
 
 from __future__ import annotations
 
@@ -293,7 +293,7 @@ class Study(Section):
 
 
 def read_study(path: Path) -> Study:
-    """Read and check a study file; the cases are not read.
+    """Study read from its file and checked; the cases are not read.
 
     Raises
     ------
@@ -356,7 +356,7 @@ def case_path(folder: Path, name: str) -> Path:
 
 
 def chosen_study(files: Sequence[Path], depth: str | None) -> tuple[Study, str, Path]:
-    """Study of the arguments of the command: its file, or one made of case files.
+    """Study of a command's arguments: a study file, or one made from case files.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Study folder: shards, dataset and records, each written in one step; one process at a time."""
+"""Study folder: shards, dataset and records, each written in one step."""
 
 from __future__ import annotations
 
@@ -64,13 +64,13 @@ _BLOCK = 2000
 
 @dataclass(frozen=True)
 class Shard:
-    """A shard of the folder: name, and ids of its rows."""
+    """Shard of the folder: name, and ids of its rows."""
 
     name: str
     ids: tuple[str, ...]
 
     def fits(self, rows: pa.Table) -> bool:
-        """Whether a table is of a study, and its rows are those of the shard."""
+        """Whether a table is of a study and holds the rows of the shard."""
         try:
             require_columns(rows, [each for each in FIXED if each is not DESIGN], Path(self.name))
         except ResultError:
@@ -79,7 +79,7 @@ class Shard:
 
 
 class StudyFolder:
-    """The folder of a study while it is written; a context manager.
+    """Study folder being written; a context manager.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class StudyFolder:
         self._home = OwnedFolder(out, _OURS, "study")
 
     def require_free(self) -> None:
-        """Refuse a folder that holds anything but a study, or one without `resume`; ResultError."""
+        """Refuse a foreign folder, and a study without `resume`; ResultError."""
         if self.path.is_symlink():
             raise ResultError(f"{self.path}: is a link; choose a folder")
         entries = self._home.entries()
@@ -141,7 +141,7 @@ class StudyFolder:
         self._home.release()
 
     def write_inputs(self, text: str, templates: Sequence[Template]) -> None:
-        """Write the study file and the cases; those of an earlier study are replaced."""
+        """Write study file and cases, in place of those of an earlier study."""
         earlier = self.path / STUDY
         if earlier.is_file() and earlier.read_bytes() != text.encode():
             shutil.rmtree(self.path / RUNS, ignore_errors=True)
@@ -152,7 +152,7 @@ class StudyFolder:
                 write_atomic(self.path / CASES / each.name / name, content)
 
     def read_whole(self, shard: Shard) -> pa.Table | None:
-        """Rows of a shard; None if it is missing or damaged, and then deleted."""
+        """Rows of a shard; None if missing, or damaged and then deleted."""
         shards = self._store(SHARDS)
         table = shards.get(shard.name, shard.fits)
         if table is None:
@@ -183,7 +183,7 @@ class StudyFolder:
                 shutil.rmtree(each)
 
     def holds_run(self, name: str, depth: str, versions: Mapping[str, str]) -> bool:
-        """Whether the run folder of a design is there, of this depth and these versions."""
+        """Whether the run folder of a design exists at this depth and version."""
         try:
             summary = read_json(self.path / RUNS / name / "run.json")
         except ResultError:
@@ -194,7 +194,7 @@ class StudyFolder:
         return all(versions.get(each) == version for each, version in made.items())
 
     def write_run(self, name: str, files: Files) -> None:
-        """Write the run folder of a design; a design without result has an empty one."""
+        """Write the run folder of a design, empty without a result."""
         final = self.path / RUNS / name
         aside = final.with_name(f".{name}.tmp")
         shutil.rmtree(aside, ignore_errors=True)
@@ -227,7 +227,7 @@ class StudyFolder:
         (self.path / TIMINGS / f"{name}.json").unlink(missing_ok=True)
 
     def write_summary(self, record: StudyDocument) -> None:
-        """Write the record of the study; last, as it tells a finished one."""
+        """Write the record of the study, last, as it marks a finished one."""
         write_atomic(self.path / SUMMARY, json_text(record) + "\n")
 
     def _shard(self, name: str) -> Path:

@@ -1,4 +1,4 @@
-"""Tasks on a Dask cluster: local processes, or a running cluster by its address."""
+"""Task scheduling on a Dask cluster: local processes, or a running cluster."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?(?:[\w.-]+|\[[0-9A-Fa-f:.]+\]):([0-9]
 
 
 def require_address(address: str) -> None:
-    """Refuse text that is no address of a scheduler; InputError."""
+    """Refuse text that is no scheduler address; InputError."""
     match = _ADDRESS.fullmatch(address)
     if match is None or not 1 <= int(match[1]) <= 65535:
         raise InputError("--scheduler", repr(address)[:80], "tcp://HOST:PORT or tls://HOST:PORT")
@@ -89,7 +89,7 @@ def _client_at(address: str) -> Client:
 
 
 class TaskScheduler:
-    """Runs the tasks of a study on a cluster, begun with the first; a context manager.
+    """Scheduler of a study's tasks on a cluster, started with the first task.
 
     Parameters
     ----------
@@ -188,13 +188,13 @@ class TaskScheduler:
         return self._completed(solve_shard, tasks, apart, wanted)
 
     def runs(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, Files]]:
-        """Tasks of one design each with the files of its run; none where it has no result."""
+        """Single-design tasks with their run files; none without a result."""
         from camwright.pipeline.studies.batch.cluster_worker import solve_run
 
         return self._completed(solve_run, tasks, lambda _: {})
 
     def pages(self, runs: Iterable[Bare]) -> Iterator[tuple[Bare, Files]]:
-        """Runs without their page, each with its files and page; none where it cannot be made."""
+        """Runs without page, each with files and page; none where it cannot be made."""
         from camwright.pipeline.studies.batch.cluster_worker import make_page
 
         return self._completed(make_page, runs, lambda _: {})
