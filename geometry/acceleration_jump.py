@@ -15,7 +15,7 @@ _DEGREE = 4
 """Of the polynomial of the smooth part."""
 _PLACES = 9
 """Places of a discontinuity within the interval; eight times as many for a kink alone."""
-_PROOF = 0.3
+_JUMP_OVER_KINK = 0.3
 """A jump explains the values if it leaves at most this share of the residual of a kink."""
 _UNRESOLVED = 0.15
 """Residual, as an acceleration over its range, above which the values resolve no law."""
@@ -23,9 +23,9 @@ _NOISE_SHARE = 0.05
 """Noise of a jump, over the range, up to which the spacing is fine enough."""
 _CONFIDENCE = 4.0
 """Standard deviations of the noise."""
-_FINE, _COARSE = np.radians(1.0), np.radians(6.0)
+_NARROWEST_STEP, _WIDEST_STEP = np.radians(1.0), np.radians(6.0)
 """Least and greatest spacing to which values are thinned."""
-_ROUND_OFF = 1e-12
+_SCATTER_ROUND_OFF = 1e-12
 """Of the greatest value: smaller residuals are those of a dwell."""
 
 
@@ -66,8 +66,8 @@ def acceleration_jump(values: Array) -> Jump:
     """
     spacing = FULL_TURN / values.size
     best = None
-    for stride in range(max(1, round(_FINE / spacing)), values.size // (2 * _BESIDE) + 1):
-        if best is not None and stride * spacing > _COARSE:
+    for stride in range(max(1, round(_NARROWEST_STEP / spacing)), values.size // (2 * _BESIDE) + 1):
+        if best is not None and stride * spacing > _WIDEST_STEP:
             break
         here = _at_spacing(values, stride)
         if best is None or here.noise * best.span < best.noise * here.span:
@@ -90,11 +90,11 @@ def _at_spacing(values: Array, stride: int) -> Jump:
     with_kink, _ = _residual(window, kinks.complement)
     size = np.abs(np.sum(jumps.row[place] * window, axis=1)) / step**2
     gain = jumps.gain[place] / step**2
-    scatter = with_jump[with_jump > _ROUND_OFF * np.abs(values).max()]
+    scatter = with_jump[with_jump > _SCATTER_ROUND_OFF * np.abs(values).max()]
     free = jumps.complement.shape[2]
     middle = median(scatter) if scatter.size else 0.0
     noise = _CONFIDENCE * median(gain) * middle / float(np.sqrt(free))
-    proven = (with_jump <= _PROOF * with_kink) & (size > noise)
+    proven = (with_jump <= _JUMP_OVER_KINK * with_kink) & (size > noise)
     greatest = float(np.max(size, where=proven, initial=0.0))
     # a jump in the other intervals of its window explains the residual there
     strong = np.flatnonzero(proven & (size > 0.5 * greatest))

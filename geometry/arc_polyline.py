@@ -17,7 +17,7 @@ AREA_ERROR = 1e-6
 """Greatest error of the enclosed area, over the area."""
 
 _FIRST_PARTS = 16
-_HALVINGS = 16  # of a part, up to parts of a few micrometres
+_PART_HALVINGS = 16  # of a part, up to parts of a few micrometres
 _SAMPLES = np.arange(1, 16) / 16  # of a part, at which its distance from the contour is measured
 
 
@@ -83,7 +83,7 @@ def _fitted(contour: Contour, error: float) -> ArcPolyline:
     start, stop = edges[:-1], edges[1:]
     kept: list[Array] = []
     worst = 0.0
-    for _ in range(_HALVINGS + 1):
+    for _ in range(_PART_HALVINGS + 1):
         apart = _distance(contour, start, stop)
         close = apart <= error
         kept.append(start[close])

@@ -22,22 +22,22 @@ from camwright.geometry.lift import Jet
 from camwright.geometry.lift_parts import LiftPart, LiftParts
 from camwright.geometry.pitch_curve import RollerMotion
 
-_BALANCED = 1e-9
+_ZERO_OFFSET = 1e-9
 """Offset over the range of its search, below which rise and return are alike: no offset."""
-_HALVINGS = 60
+_ROOT_HALVINGS = 60  # of the bracket of a prime radius, to round-off
 _SCANNED = 25
 """Offsets of a scan where a curvature limits the radius, which need not be convex in the offset."""
 _SECTIONS = 32
 """Of the two steps of the scan about its least: 2e-8 of the greatest offset is left."""
 _REAL = 1e-6
 """Imaginary over real part up to which a computed root is real: a double root within round-off."""
-_CLEAR = 1e-9
+_BESIDE_AXIS = 1e-9
 """Least distance of the prime radius from the offset, over the offset."""
 _OFFSET_SHARE = 0.999
 """Greatest offset over the prime radius."""
 _SAMPLES = 721
 # Share of a radius of curvature left for the rounding of an offset; use of an offset beyond it.
-_ROUNDING, _BEYOND = 1e-3, 100.0
+_OFFSET_ROUNDING, _REFUSED_USE = 1e-3, 100.0
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ class RollerCam(ABC):
 
         def within(offset: float) -> float:
             share = curved(offset)
-            return use(offset) if share <= 1.0 - _ROUNDING else _BEYOND + share
+            return use(offset) if share <= 1.0 - _OFFSET_ROUNDING else _REFUSED_USE + share
 
         return _balanced(least_argument(within, -most, most), most)
 
@@ -263,11 +263,11 @@ class EccentricCam(RollerCam):
             # sin(alpha) = (l1 cos(phi) - e) / l2, greatest with the crank square to the travel
             rise, back = np.sin(limits.rise), np.sin(limits.back)
             rod = max((self.eccentricity - offset) / rise, (self.eccentricity + offset) / back)
-            return float(max(rod - self.eccentricity, abs(offset) * (1.0 + _CLEAR)))
+            return float(max(rod - self.eccentricity, abs(offset) * (1.0 + _BESIDE_AXIS)))
         sine = np.sin(min(limits.rise, limits.back))
-        low = abs(offset) * (1.0 + _CLEAR)
+        low = abs(offset) * (1.0 + _BESIDE_AXIS)
         high = max((self.eccentricity + abs(offset)) / sine - self.eccentricity, low)
-        for _ in range(_HALVINGS):
+        for _ in range(_ROOT_HALVINGS):
             middle = 0.5 * (low + high)
             if not low < middle < high:
                 break
@@ -377,7 +377,7 @@ def _height_of_curvature(slope: Array, lift_d2: Array, offset: float, curvature:
 
 
 def _balanced(offset: float, most: float) -> float:
-    return 0.0 if abs(offset) <= _BALANCED * most else offset
+    return 0.0 if abs(offset) <= _ZERO_OFFSET * most else offset
 
 
 def _least_of_scan(function: Callable[[float], float], most: float) -> float:

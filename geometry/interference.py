@@ -21,7 +21,7 @@ _LOOP_REACH = 3.0
 _POLISH_STEPS = 30
 _POLISHED = 1e-12
 """rad: step at which Newton's method has converged; in the smallest loops round-off is larger."""
-_RESOLVED = 0.01
+_ANGLE_RESOLVED = 0.01
 """Maximum last step, over the angle between the two passes, of an accepted crossing."""
 
 _POSITIONS_MAX = 720
@@ -161,7 +161,7 @@ def _polished(points: Curve, velocity: Curve, first: Array, second: Array) -> tu
         change = np.abs(step).max(axis=0)
         if not (change > _POLISHED).any():
             break
-    true = (change <= _RESOLVED * apart) & (np.abs(two - one) > 0.25 * apart)
+    true = (change <= _ANGLE_RESOLVED * apart) & (np.abs(two - one) > 0.25 * apart)
     return one[true], two[true]
 
 
@@ -170,7 +170,7 @@ def _distinct(first: Array, second: Array) -> tuple[tuple[float, float], ...]:
     pairs = np.sort(np.mod([first, second], FULL_TURN), axis=0)
     kept: list[tuple[float, float]] = []
     for one, two in sorted(zip(*pairs.tolist(), strict=True)):
-        same = _RESOLVED * min(two - one, FULL_TURN - two + one)
+        same = _ANGLE_RESOLVED * min(two - one, FULL_TURN - two + one)
         start = bisect_left(kept, (one - same, 0.0))
         if all(abs(two - other) > same for _, other in kept[start:]):
             kept.append((one, two))

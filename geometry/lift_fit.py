@@ -15,7 +15,7 @@ from camwright.geometry.periodic_spline import DEGREE, LEAST_SAMPLES, interpolan
 
 POINTS_MIN = DEGREE + 1
 _SAMPLED = 1440
-_GROWTH = 1.25
+_PARTS_GROWTH = 1.25
 """Ratio of successive numbers of spline parts."""
 _POINTS_PER_PART = 2.0
 """Minimum: fewer would fit the noise."""
@@ -220,7 +220,7 @@ def _fit_within(angle: Array, value: Array, noise: float) -> tuple[FittedLift | 
             return fit, fit.residual_rms
         if parts == parts_max:
             return None, fit.residual_rms
-        parts = min(int(np.ceil(parts * _GROWTH)), parts_max)
+        parts = min(int(np.ceil(parts * _PARTS_GROWTH)), parts_max)
 
 
 def _least_squares(angle: Array, value: Array, parts: int, noise: float) -> FittedLift:

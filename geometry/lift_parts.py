@@ -21,7 +21,7 @@ AngleFunction = Callable[[Array], Array]
 
 _SAMPLES = 33
 """Per half of a segment: extremes of a law are further apart than a step."""
-_AT_REST = 2
+_DWELL_SAMPLES = 2
 """Samples of half a dwell."""
 _ZOOMS = 7
 _LEAVES_MIDDLE = np.nextafter(0.5, 1.0)
@@ -88,7 +88,7 @@ class LiftParts:
             half = 0.5 * segment.angle
             for k in range(2):
                 law = partial(_half, segment, float(level), k)
-                count = _AT_REST if segment.law == DWELL else _SAMPLES
+                count = _DWELL_SAMPLES if segment.law == DWELL else _SAMPLES
                 parts.append(LiftPart(float(start) + k * half, half, law, count))
         return cls(tuple(parts))
 

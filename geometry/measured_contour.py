@@ -18,7 +18,7 @@ HARMONICS_MAX = 60
 """Maximum waves per turn of a form deviation; above are roughness and noise."""
 
 _STEPS_MAX = 50
-_ROUND_OFF = 1e-13
+_LAST_STEP = 1e-13  # m or rad, of a converged fit
 _TURNS_TRIED = 72
 _POLYGON = 5760
 _SAMPLES = 1440
@@ -97,7 +97,7 @@ def inspected(contour: Contour, points: ArrayLike) -> Inspection:
         system = np.column_stack([lever, np.full(lever.size, -1.0)])
         step = np.linalg.lstsq(system, -(distance - size), rcond=None)[0]
         phase, size = phase + step[0], size + step[1]
-        if np.hypot(step[0] * contour.pitch.radius_base, step[1]) < _ROUND_OFF:
+        if np.hypot(step[0] * contour.pitch.radius_base, step[1]) < _LAST_STEP:
             break
     else:
         raise GeometryError("phase of the measured contour = any, must be unique: is it a circle?")
@@ -202,7 +202,7 @@ def _feet(contour: Contour, points: Array) -> tuple[Array, Array]:
         rate = contour.speed(theta) * np.maximum(1.0 + height * contour.curvature(theta), 0.1)
         step = np.clip(along / rate, -0.1, 0.1)
         theta = theta + step
-        if np.abs(step).max() < _ROUND_OFF:
+        if np.abs(step).max() < _LAST_STEP:
             break
     else:
         raise GeometryError("measured points = far from the nominal contour, must be near it")

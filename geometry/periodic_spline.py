@@ -24,7 +24,7 @@ LEAST_SAMPLES = 12
 
 
 _KEPT_FROM, _KEPT_TO = 64, 1500  # angles: fewer are quick to compute, more are used once
-_KEPT = 12  # sets of angles per function
+_CACHED_ANGLES = 12  # sets of angles per function
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class PeriodicPolynomial:
             rows = self._evaluate(angles, 0, order)
             rows.setflags(write=False)
         kept[key] = rows  # the last in the order of use
-        if len(kept) > _KEPT:
+        if len(kept) > _CACHED_ANGLES:
             kept.pop(next(iter(kept)))
         return rows[: order + 1]
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from camwright.pipeline.records.trial_contents import SynthesisRecord
 
 _CONVERGENCE = 2.0  # of a preview over that of a run
-_ROUNDS = 3  # of synthesis and correction
+_PREVIEW_ROUNDS = 3  # of synthesis and correction
 _ENDED_ROUNDS = 2  # of them, where the effort ends the search
 _ENDED = "the preview ends the search for the cam before it has converged; a run goes on"
 _EFFORT = 16  # tried steps of a search: most need fewer
@@ -160,7 +160,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
             break
         settled = each.compare(solved).settled
         # After a search that its effort has ended, corrections do not settle.
-        most = _ENDED_ROUNDS if design.ended else _ROUNDS
+        most = _ENDED_ROUNDS if design.ended else _PREVIEW_ROUNDS
         if not design.feasible or each.number >= most or (settled and not each.rises):
             break
     if len(tried) == 1 or settled:

@@ -147,7 +147,7 @@ SEAT = one("cam.bore_radius", -1, 2.0)
 
 
 def guide(side: Side, rating: str) -> tuple[Lever, ...]:
-    """Levers of a limit on guide A or B: a bush of a better `rating`, length, preload, lift."""
+    """Levers of a limit on guide A or B: bush by `rating`, length, overhang, radius, spring."""
     bush, length = _of(side)
     return (Catalogued(bush, rating), length, OVERHANG, PRIME, *SPRING, *GENTLER)
 

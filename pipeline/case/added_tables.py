@@ -173,7 +173,7 @@ def _card_of(table: str, materials: Mapping[str, Material]) -> str:
     return name if card is not None and card.source.text.startswith(f"card {name}: ") else ""
 
 
-_WORTH = 2  # least number of required keys that a card spares
+_KEYS_SPARED = 2  # least number of required keys that a card spares
 _SAME = {f"guides.{side}.diameter": "follower.stem_diameter" for side in "ab"}
 """Keys whose example is the value of another."""
 
@@ -219,7 +219,7 @@ def _within(path: str) -> Iterator[tuple[str, Key]]:
     spared: Tables = {}
     for card in keys_at(f"{path}.card")[:1]:
         filled = _filled(path, card)
-        if sum(key.name in filled for key in required) >= _WORTH:
+        if sum(key.name in filled for key in required) >= _KEYS_SPARED:
             yield f"{path}.card", card
             spared = filled
     yield from ((f"{path}.{key.name}", key) for key in required if key.name not in spared)

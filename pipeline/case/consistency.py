@@ -36,10 +36,10 @@ if TYPE_CHECKING:
 
 _NAMED = re.compile(r"{([^}]+)}")  # keys in the words of a limit
 _KEYWAY_WIDTH = 1.8  # greatest, over the bore radius
-_DIGITS = (4, 8, 17)  # more where a value and its limit would read alike
-_ROUND_OFF = 1e-9  # of a share of the friction, and of an angle
+_MESSAGE_DIGITS = (4, 8, 17)  # more where a value and its limit would read alike
+_RULE_ROUND_OFF = 1e-9  # of a share of the friction, and of an angle
 _POSITIONS_MIN = 36  # of the cam per cycle of the machine
-_SHARES = 1e-6  # of the sum of the duty
+_DUTY_TOLERANCE = 1e-6  # of the sum of the duty
 _OUTSIDE, _WIDE = 4.0, 2.0  # of a rolling bearing over its bore, more than dimension series 4
 
 
@@ -241,18 +241,18 @@ def _period(case: Case) -> Iterator[Rule]:
     if case.balances:
         words = f"a cycle of {cycle} over {{smoothing.spacing}}"
         key = "smoothing.points"
-        over = lambda at: at(key) > fill(at) * (1.0 + _ROUND_OFF)  # noqa: E731
+        over = lambda at: at(key) > fill(at) * (1.0 + _RULE_ROUND_OFF)  # noqa: E731
         yield Rule(key, over, f"<= {{}}, {words}", fill)
         if smoothing.kind == "moving_average":
             limit = f"< {{}}, {words}: over all of it the average is zero"
-            whole = lambda at: at(key) >= fill(at) * (1.0 - _ROUND_OFF)  # noqa: E731
+            whole = lambda at: at(key) >= fill(at) * (1.0 - _RULE_ROUND_OFF)  # noqa: E731
             yield Rule(key, whole, limit, fill)
         for name in ("width", "cutoff"):
-            most = period.angle * (1.0 + _ROUND_OFF)
+            most = period.angle * (1.0 + _RULE_ROUND_OFF)
             yield _at_most(f"smoothing.{name}", _fixed(most), f"<= {cycle}, a cycle")
     for order in smoothing.harmonic_orders:
         waves = order * period.angle / FULL_TURN
-        if abs(waves - round(waves)) > _ROUND_OFF * waves:
+        if abs(waves - round(waves)) > _RULE_ROUND_OFF * waves:
             limit = f"a multiple of {FULL_TURN / period.angle:g}: whole waves in a cycle of {cycle}"
             raise InputError("smoothing.harmonic_orders", order, limit)
     least = _POSITIONS_MIN * period.cycles
@@ -274,7 +274,7 @@ def _no_tighter() -> Iterator[Rule]:
     }
     for key, bound in least.items():
         yield _at_least(key, _fixed(bound), ">= {}")
-    share = usual.friction * (1.0 - _ROUND_OFF)
+    share = usual.friction * (1.0 - _RULE_ROUND_OFF)
 
     def band(side: str, end: int) -> Callable[[At], Any]:
         return lambda at: friction_limits(at(f"guides.{side}.friction"), None, None, share)[end]
@@ -486,7 +486,7 @@ def _roller(case: Case) -> Iterator[Rule]:
 
 def _refusal(case: Case, rule: Rule, at: At) -> InputError:
     """Refusal of the number at the key of a broken rule, with more digits where two read alike."""
-    for digits in _DIGITS:
+    for digits in _MESSAGE_DIGITS:
         value = text_of(case, rule.key, digits)
         texts = {"": _bound_text(rule, at, digits)}
         for other in _NAMED.findall(rule.limit):
@@ -515,7 +515,7 @@ def _check_duty(case: Case) -> None:
         if share is None:
             limit = "given, 0 where it takes no time, as other load cases have one"
             raise InputError(f"load_case[{k}].duty", "missing", limit)
-    if not abs(sum(stated) - 1.0) <= _SHARES:
+    if not abs(sum(stated) - 1.0) <= _DUTY_TOLERANCE:
         raise InputError("load_case.duty", f"{sum(stated):.6g} in sum", "1 in sum")
 
 

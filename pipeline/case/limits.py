@@ -32,7 +32,7 @@ _RATIO = In(at_least=1, at_most=100)
 _LIFE = In("h", above=0, at_most=1e6)
 _RESIDUAL = In(above=0, at_most=1e-3)
 _REQUIREMENT = Source("requirement of the case", confirmed=True)
-_ROUND_OFF = 1e-9  # of units
+_DEFAULT_ROUND_OFF = 1e-9  # of units
 
 
 @dataclass(frozen=True)
@@ -611,7 +611,7 @@ def is_weaker(limit: AnyLimit, value: float | None) -> bool:
     default = limit.default
     if default is None:
         return False
-    least, most = default * (1.0 - _ROUND_OFF), default * (1.0 + _ROUND_OFF)
+    least, most = default * (1.0 - _DEFAULT_ROUND_OFF), default * (1.0 + _DEFAULT_ROUND_OFF)
     return value < least if floor else value > most
 
 

@@ -70,7 +70,7 @@ _UNLOADED = {
 }
 NO_TORQUES: Mapping[str, Torque] = MappingProxyType({})
 # Greatest depth of a body under the contact, over the length of contact.
-_DEPTH = 2.0
+_DEPTH_OVER_LENGTH = 2.0
 # Crank speed of a load case at rest, rad/s: inertia, film and heat are negligible.
 CREEP = 1e-3
 
@@ -270,7 +270,9 @@ class Machine(Displayed):
                 overhang = 0.5 * part.line_width + side * middle - reach
                 whole = length + 2.0 * (overhang + end.size)
                 material = Elastic(part.material.E, part.material.nu)
-                bodies.append(FiniteBody(material, whole, end, min(depth, _DEPTH * length)))
+                bodies.append(
+                    FiniteBody(material, whole, end, min(depth, _DEPTH_OVER_LENGTH * length))
+                )
             crown = self._crown(0.5 * (low + high), side)
             pairs.append(FinitePair((bodies[0], bodies[1]), self._base_curvature, crown))
         return tuple(pairs)

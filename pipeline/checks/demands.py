@@ -21,7 +21,8 @@ CONTACT_FLOOR = 0.01
 NORMAL_FORCE, CAM_TORQUE, TOOTH_TORQUE = "roller_static", "key_pressure", "gear_bending"
 PRESSURE = "contact_pressure"
 """Groups of checks of one measure, which are one constraint of the synthesis; see `Kept`."""
-_MARGIN = 0.2  # of the least spring force, where the case keeps no contact force margin
+_DEFAULT_FORCE_MARGIN = 0.2
+"""Contact over least spring force below which quotients rise linearly, if no margin is stated."""
 
 
 class FatiguePoint(NamedTuple):
@@ -142,7 +143,7 @@ def over_normal_force(cam: LoadedCam, needed: Array) -> Array:
     For the synthesis: the quotient has a pole where the search passes through a loss of contact.
     """
     stated = cam.numbers.get(f"limits.{CONTACT_FORCE_MARGIN.id}")
-    margin = _MARGIN if stated is None else stated
+    margin = _DEFAULT_FORCE_MARGIN if stated is None else stated
     normal, least = cam.normal, margin * cam.least_spring
     scale = np.where(np.real(normal) > np.real(least), normal, least)
     return 1.0 + (needed - normal) / scale

@@ -37,9 +37,9 @@ class Extreme(NamedTuple):
 
 
 NOWHERE = Extreme(np.nan)
-_LEAST = 5  # samples, for the bends on either side of a peak
-_KINK = 3.0  # second difference at a kink over those two samples away; 1 on a parabola
-_SAFETY = 1.25
+_LEAST_SAMPLES = 5  # samples, for the bends on either side of a peak
+_KINK_SHARPNESS = 3.0  # second difference at a kink over those two samples away; 1 on a parabola
+_VERTEX_SAFETY = 1.25  # on the vertex of the parabola: bound of the sampling error
 
 
 def cycle_of(cycles: Iterable[Cycle], worst: Extreme) -> Cycle:
@@ -238,7 +238,7 @@ def _sampling_error(values: Array, sign: float) -> float:
     Every peak counts: another than that of the greatest sample may be the greatest.
     """
     known = np.isfinite(values)
-    if values.size < _LEAST or not known.any() or np.isnan(values).any():
+    if values.size < _LEAST_SAMPLES or not known.any() or np.isnan(values).any():
         return 0.0
     # an infinite value, such as a ratio without load, has no peak beside it
     peaks = np.where(known, sign * values, 0.0)
@@ -247,7 +247,7 @@ def _sampling_error(values: Array, sign: float) -> float:
     vertex = np.divide(
         (after - before) ** 2, -8.0 * second, out=np.zeros_like(peaks), where=second < 0.0
     )
-    above = _SAFETY * vertex
+    above = _VERTEX_SAFETY * vertex
     for way in (1, -1):
         rise, fall = peaks - np.roll(peaks, way), np.roll(peaks, -way) - np.roll(peaks, -2 * way)
         drop = peaks - np.roll(peaks, -way)
@@ -255,7 +255,7 @@ def _sampling_error(values: Array, sign: float) -> float:
         line = np.maximum(rise, 0.0) * np.where(part < 0.0, 1.0, np.minimum(part, 1.0))
         sharp = np.abs(second) + np.abs(np.roll(second, -way))
         outer = np.abs(np.roll(second, 2)) + np.abs(np.roll(second, -2))
-        above = np.where(sharp > _KINK * outer, np.maximum(above, line), above)
+        above = np.where(sharp > _KINK_SHARPNESS * outer, np.maximum(above, line), above)
     beside = np.all([np.roll(known, shift) for shift in (-2, -1, 0, 1, 2)], axis=0)
     peaked = (peaks >= before) & (peaks >= after) & beside
     top = float(peaks[known].max())

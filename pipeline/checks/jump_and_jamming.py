@@ -49,7 +49,7 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, highest_speed
 from camwright.pipeline.follower.follower_flight import LONGEST, Flight
 
-_DIGITS = 5  # of the force and of the preload of a follower that leaves the cam
+_FORCE_DIGITS = 5  # of the force and of the preload of a follower that leaves the cam
 _TIE = 1e-9  # relative difference up to which two forces are equal, and one is none
 _LEAST_FORCE = dict.fromkeys(("N", "F_0"), f"{STATED} [N]")
 
@@ -490,8 +490,8 @@ def _lifts_off(cycles: Sequence[Cycle], worst: Extreme) -> str:
     preload = max(each.machine.spring.preload for each in cycles) - worst.value
     return (
         "the follower leaves the cam: axial force without friction"
-        f" {shown(worst.value, 'N', _DIGITS)} at {shown(worst.cam_angle or 0.0, 'deg')};"
-        f" a preload above {shown_up(preload, 'N', _DIGITS)} keeps it on the cam"
+        f" {shown(worst.value, 'N', _FORCE_DIGITS)} at {shown(worst.cam_angle or 0.0, 'deg')};"
+        f" a preload above {shown_up(preload, 'N', _FORCE_DIGITS)} keeps it on the cam"
     )
 
 

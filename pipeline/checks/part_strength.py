@@ -114,7 +114,7 @@ roller_pin = check(
 )(normal_force)
 
 
-_FIBRES = 180  # around the pin; between two of them the stress differs by 1e-4 at most
+_PIN_FIBRES = 180  # around the pin; between two of them the stress differs by 1e-4 at most
 
 
 def _sources(*cards: Material) -> tuple[str, ...]:
@@ -159,7 +159,7 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     card, per_newton = pin.material, roller.pin_stress_per_newton
     tensile, endured = card.tensile_strength, card.fatigue_bending
     missing = lacking_of_card(card, "fatigue_bending", "tensile_strength")
-    along, across = np.cos(uniform_turn(_FIBRES)), np.sin(uniform_turn(_FIBRES))
+    along, across = np.cos(uniform_turn(_PIN_FIBRES)), np.sin(uniform_turn(_PIN_FIBRES))
 
     def of_fibres(cycle: Cycle) -> tuple[Array, Array]:
         """Amplitude and mean of the stress, Pa."""

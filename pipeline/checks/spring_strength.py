@@ -70,7 +70,7 @@ BENDING_STRENGTH = 0.54  # permissible bending stress over R_m, above 1e6 stroke
 HARDEST = "preload and rate high"
 STABLE = "stable at any deflection"
 _SAMPLES = 720  # of the turn, among which the rises of the lift are counted
-_AT_REST = 1e-6  # of the greatest slope of the lift: a dwell
+_DWELL_SLOPE = 1e-6  # of the greatest slope of the lift: a dwell
 
 
 _HIGH = "spring.preload (1 + spring.preload_tolerance)"
@@ -723,7 +723,7 @@ gas_force_lost = _gas_check(
 def _strokes(solution: Solution) -> int:
     """Rises of the lift in a turn."""
     slope = solution.contour.pitch.lift(uniform_turn(_SAMPLES), 1)
-    way = np.sign(slope[np.abs(slope) > _AT_REST * np.abs(slope).max()])
+    way = np.sign(slope[np.abs(slope) > _DWELL_SLOPE * np.abs(slope).max()])
     return int(np.sum((way > 0) & (np.roll(way, -1) < 0)))
 
 

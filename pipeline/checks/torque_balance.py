@@ -382,7 +382,7 @@ def friction_power(solution: Solution) -> Demand | None:
     return Demand(worst.value, allowed, worst, note="; ".join(words), stated=stated)
 
 
-_BALANCED = 1e-12  # of the heat: round-off of the works that cancel
+_HEAT_ROUND_OFF = 1e-12  # of the heat: round-off of the works that cancel
 _STATED = (
     "lubricant.temperature",
     "roller.bearing.temperature",
@@ -523,7 +523,7 @@ def _heat_mismatch(cycle: Cycle) -> float:
     heat = _heat(cycle)
     loss = _friction_loss(cycle, cycle.loads.cam_torque)
     share = _relative(loss - heat, max(heat, 1e-9 * _stored(cycle)))
-    return 0.0 if share < _BALANCED else share  # no load case is the worst by its round-off
+    return 0.0 if share < _HEAT_ROUND_OFF else share  # no load case is the worst by its round-off
 
 
 def _relative(part: float, whole: float) -> float:

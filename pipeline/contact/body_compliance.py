@@ -37,7 +37,7 @@ _BLIND_SHARE = 0.05
 # Contacts solved together, limited by memory.
 _BATCH = 180
 # Contacts up to which the full body is faster than its condensation.
-_FEW = 8
+_FEW_CONTACTS = 8
 # Parts of the displacements kept in memory: a turn of 720 positions.
 _PARTS_KEPT = 4
 # Surface nodes about a contact for the fit of its stress and bending.
@@ -169,7 +169,7 @@ class LoadedBody:
         At the nodes of `condensed_nodes` (m,). The last parts are kept in memory: corrections and
         stress at a bore follow from the same displacement.
         """
-        few = contacts.shape[1] <= _FEW
+        few = contacts.shape[1] <= _FEW_CONTACTS
         for start in range(0, contacts.shape[1], _BATCH):
             part = slice(start, start + _BATCH)
             at, up = contacts[:, part], normals[:, part]

@@ -48,9 +48,9 @@ class StandardKey(NamedTuple):
     fillet: float
 
 
-_MM = 1e-3
+_MILLIMETRE = 1e-3  # m
 STANDARD_KEYS: Mapping[int, StandardKey] = {
-    width: StandardKey(height * _MM, depth * _MM, chamfer * _MM, fillet * _MM)
+    width: StandardKey(*(_MILLIMETRE * each for each in (height, depth, chamfer, fillet)))
     for width, height, depth, chamfer, fillet in (
         (2, 2, 1.2, 0.25, 0.08), (3, 3, 1.8, 0.25, 0.08), (4, 4, 2.5, 0.25, 0.08),
         (5, 5, 3.0, 0.40, 0.16), (6, 6, 3.5, 0.40, 0.16), (8, 7, 4.0, 0.40, 0.16),
@@ -208,7 +208,9 @@ class CamBody(Part):
     @property
     def _standard_key(self) -> StandardKey | None:
         width = 0.0 if self.keyway is None else self.keyway.width
-        return next((row for b, row in STANDARD_KEYS.items() if abs(b * _MM - width) < 1e-6), None)
+        return next(
+            (row for b, row in STANDARD_KEYS.items() if abs(b * _MILLIMETRE - width) < 1e-6), None
+        )
 
     @property
     def key_flanks(self) -> KeyFlanks | None:

@@ -29,7 +29,7 @@ REFINEMENT = 2.0
 EDGES = (4.0, 8.0, 16.0)
 # Distance of equal elements from the contact, in half-widths, and growth beyond. Finer elements
 # change the extrapolated values by less than 2e-4 and take 1.5 times as long.
-_REACH, _GROWTH = 1.8, 0.2
+_MESH_REACH, _MESH_GROWTH = 1.8, 0.2
 # Elements along the contour at the size far from the contact.
 _FAR_ON_OUTLINE = 50
 
@@ -59,8 +59,8 @@ def contact_meshes(
             far_size,
             contact_point=contact,
             edges=edges,
-            reach=_REACH,
-            growth=_GROWTH,
+            reach=_MESH_REACH,
+            growth=_MESH_GROWTH,
         )
 
     far = float(pair.contour.perimeter()) / _FAR_ON_OUTLINE

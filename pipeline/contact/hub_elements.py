@@ -39,13 +39,13 @@ from camwright.pipeline.contact.elasticity.elastic_body import (
 
 CONTACTS = 90
 """Contacts along the contour at which the unit force is solved; between them a periodic spline."""
-_SAMPLES = 3600  # of the contour, for the key of the cache
+_KEY_SAMPLES = 3600  # of the contour, for the key of the cache
 _FAR_SIZE = 0.12  # element length over the bore radius
 _SOFT = 1e-5  # of the modulus: springs against rigid motion, which carry no force
 _ITERATIONS = 25
-_SETTLED = 1e-9  # over the greatest nodal force, or over the greatest gap
+_SEAT_CONVERGED = 1e-9  # over the greatest nodal force, or over the greatest gap
 _HEAVY = 1e3  # weight of the equilibrium in the first set of nodes in contact
-_ROUND_OFF = 1e-12  # over the greatest compliance
+_COMPLIANCE_ROUND_OFF = 1e-12  # over the greatest compliance
 _LEAST_NODES = 3  # in contact, which hold the cam on its shaft
 _ROOT = 1.6  # root radii from a corner of the floor up to which the boundary counts as the root
 
@@ -91,7 +91,7 @@ class SeatedCam:
     @cached_property
     def units(self) -> HubUnits:
         """Solutions under unit loads, cached on disk."""
-        theta = uniform_turn(_SAMPLES)
+        theta = uniform_turn(_KEY_SAMPLES)
         outline = np.ascontiguousarray(self.contour.points(theta), dtype="<f8")
         inputs = (
             hashlib.sha256(np.round(outline, 12).tobytes()).hexdigest(),
@@ -180,7 +180,7 @@ class HubUnits:
         rows = np.concatenate([-known["gap"], -known["resultant"]])
         right = closed_seat[:, None] + self._amplitudes(rows, loads)
         forces = self._bonded(right)
-        torn = (forces < -_SETTLED * np.abs(forces).max()).any(axis=0)
+        torn = (forces < -_SEAT_CONVERGED * np.abs(forces).max()).any(axis=0)
         if torn.any():
             forces[:, torn] = self._searched(right[:, torn], forces[:, torn])
         stress = known["of_seat"] @ forces + self._amplitudes(known["stress"], loads)
@@ -232,7 +232,7 @@ class HubUnits:
     ) -> tuple[Array, NDArray[np.bool_]] | None:
         """As `_touching` from one first set; None where the nodes do not settle."""
         count, known = closed.size, self._arrays["compliance"]
-        deep, give = _SETTLED * float(np.abs(right[:count]).max()), np.diag(known)
+        deep, give = _SEAT_CONVERGED * float(np.abs(right[:count]).max()), np.diag(known)
         for _ in range(_ITERATIONS):
             if closed.sum() < _LEAST_NODES:
                 return None
@@ -261,7 +261,7 @@ class HubUnits:
     def _roots(self) -> tuple[Array, Array]:
         """Square root of the compliance and its inverse."""
         values, ways = np.linalg.eigh(self._arrays["compliance"])
-        size = np.sqrt(np.maximum(values, _ROUND_OFF * values[-1]))
+        size = np.sqrt(np.maximum(values, _COMPLIANCE_ROUND_OFF * values[-1]))
         return (ways * size) @ ways.T, (ways / size) @ ways.T
 
 

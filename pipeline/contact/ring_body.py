@@ -26,7 +26,7 @@ from camwright.pipeline.contact.follower_body import EDGES_ACROSS_WALL, RollerBo
 # Over the ball stiffness: supports against rotation of the ring on its balls.
 _HOLD = 1e-6
 # Quadrature points over the footprint of a ball, under an elliptic pressure.
-_POINTS = 32
+_QUADRATURE_POINTS = 32
 # Modules whose source enters the cache key.
 RECIPE = (
     *(sys.modules[__name__], follower_body),
@@ -168,9 +168,9 @@ def _mean_way(mesh: BodyMesh, centre: Array, angle: float, half: float, inwards:
     facets = mesh.facet_triples("hub")
     arm = mesh.points[:, facets] - np.reshape(centre, (2, 1, 1))
     radius = float(np.hypot(*arm[:, 0]).mean())
-    place = np.pi * np.arange(1, _POINTS + 1) / (_POINTS + 1)
+    place = np.pi * np.arange(1, _QUADRATURE_POINTS + 1) / (_QUADRATURE_POINTS + 1)
     at = angle + half / radius * np.cos(place)
-    share = 2.0 / (_POINTS + 1) * np.sin(place) ** 2
+    share = 2.0 / (_QUADRATURE_POINTS + 1) * np.sin(place) ** 2
     bearing = np.arctan2(arm[1], arm[0])
     # Facets of a hole run clockwise.
     length = (bearing[0] - bearing[1]) % FULL_TURN

@@ -19,13 +19,13 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_in_plane, von_mises
 
-_SHARES = 21
+_TABLE_SHARES = 21  # traction coefficients of a table, from none to full sliding
 _LEAST_STICK = 1e-9
 # Places of the greatest stress: reach beside and below the contact in half-widths, cells to the
 # reach and, of each zoom, to a cell.
-_REACH, _CELLS, _NEARBY, _ZOOMS = 1.25, 25, 5, 4
+_GRID_REACH, _CELLS, _NEARBY, _ZOOMS = 1.25, 25, 5, 4
 _TURNS_MAX = 50
-_SETTLED = 1e-9
+_SPEED_CONVERGED = 1e-9  # relative speed of a periodic roller
 
 
 def stick_half_width(ratio: ArrayLike) -> Array:
@@ -78,7 +78,7 @@ def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Arr
 @lru_cache(maxsize=16)
 def _increase(poisson: float, friction: float) -> tuple[Array, Array, Array]:
     """Shares of the friction, and the increases of the maxima at them."""
-    shares = np.linspace(0.0, 1.0, _SHARES)
+    shares = np.linspace(0.0, 1.0, _TABLE_SHARES)
     stick = np.maximum(stick_half_width(shares), _LEAST_STICK)[:, None]
 
     def stress(x: Array, depth: Array) -> Array:
@@ -98,8 +98,8 @@ def _sliding_stress(x: Array, depth: Array) -> Array:
 
 def _greatest(measure: Callable[[Array, Array], Array]) -> Array:
     """Maxima (m,) under a contact of a measure (m, n) at places x and depth (m, n), half-widths."""
-    half = _REACH / _CELLS
-    sides = np.linspace(-_REACH, _REACH, 2 * _CELLS + 1)
+    half = _GRID_REACH / _CELLS
+    sides = np.linspace(-_GRID_REACH, _GRID_REACH, 2 * _CELLS + 1)
     x, depth = (each.ravel()[None] for each in np.meshgrid(sides, sides[_CELLS:]))
     nearby = np.meshgrid(*[np.linspace(-1.0, 1.0, 2 * _NEARBY + 1)] * 2)
     for zoom in range(_ZOOMS):
@@ -250,7 +250,7 @@ def rolling_contact(
     demand = rolling_demand(drag.inertia, resisting, rolling, rate, radius)
     tangential, turning = _steps(rolling, demand, limit, resisting, drag.inertia, radius, step)
     slip = radius * (rolling - turning)
-    sliding = np.abs(slip) > _SETTLED * radius * np.abs(rolling).max(initial=1e-300)
+    sliding = np.abs(slip) > _SPEED_CONVERGED * radius * np.abs(rolling).max(initial=1e-300)
     share = np.divide(np.abs(tangential), limit, out=np.zeros_like(limit), where=limit > 0)
     creep = creepage(np.clip(share, 0, 1), drag.friction, half_width, relative_radius)
     gross = np.divide(np.abs(slip), speed, out=np.zeros_like(slip), where=speed > 0)
@@ -298,7 +298,7 @@ def _steps(
             else:
                 omega = _braked(omega + pull * radius * step / inertia, drag * step / inertia)
             tangential[k], turning[k], before = pull, omega, target
-        if abs(omega - start) <= _SETTLED * scale:
+        if abs(omega - start) <= _SPEED_CONVERGED * scale:
             break
     return tangential, turning
 

@@ -21,7 +21,7 @@ from camwright.pipeline.follower.elastic_follower import (
 from camwright.pipeline.follower.follower_flight import Flight, bounce
 
 BOUNCE_TURNS = 1.0
-_BEFORE = 0.1  # of a turn before a loss of contact, from where the motion is integrated
+_START_BEFORE = 0.1  # of a turn before a loss of contact, from where the motion is integrated
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,15 +95,15 @@ def elastic_history(
 def _held(contact_force: Array) -> int:
     """Index of a position in the longest contact (n,); of the greatest force without any.
 
-    `_BEFORE` its end, at least in its middle: the response with the contact kept is least disturbed
-    there by what would follow a loss of contact.
+    `_START_BEFORE` its end, at least in its middle: the response with the contact kept is least
+    disturbed there by what would follow a loss of contact.
     """
     lost, count = np.flatnonzero(contact_force < 0.0), contact_force.size
     if lost.size == count:
         return first_greatest(contact_force)
     spans = np.diff(lost, append=lost[0] + count)
     k = first_greatest(spans)
-    back = min(spans[k] // 2, int(_BEFORE * count))
+    back = min(spans[k] // 2, int(_START_BEFORE * count))
     return int((lost[k] + spans[k] - max(back, 1)) % count)
 
 

@@ -25,8 +25,8 @@ SLICES = 81
 
 _MM, _MPA, _N_PER_MM = 1e3, 1e-6, 1e-3
 _KNOTS = 48  # of the pressure on half a contact; the peak is within 1e-3 of that of 96
-_LOADS, _LEAST = 8, 0.01
-_SHARES = np.sin(np.linspace(0.0, 0.5 * np.pi, 65))  # densest where the pressure falls
+_TABLE_LOADS, _LEAST_LOAD = 8, 0.01  # of a table, the least over the greatest
+_ANGLE_SHARES = np.sin(np.linspace(0.0, 0.5 * np.pi, 65))  # densest where the pressure falls
 
 
 GUIDE_ARRAYS = (
@@ -91,15 +91,15 @@ def bore_pressure(machine: Machine, guide: Guide, line_load: Array) -> Array:
     """Pressure (k, m), Pa, around a guide's bore under line loads (k,), N/m.
 
     Each slice of the guide is an independent pin in a hole; a negative load acts on the other side
-    of the bore. Solved at `_LOADS` loads, interpolated between them at equal shares of the contact
-    angle, and scaled as a Hertz contact below the least of them. NaN where the pin in the hole has
-    no solution.
+    of the bore. Solved at `_TABLE_LOADS` loads, interpolated between them at equal shares of the
+    contact angle, and scaled as a Hertz contact below the least of them. NaN where the pin in the
+    hole has no solution.
     """
     size = np.abs(line_load)
     pressure = np.zeros((line_load.size, ANGLES))
     if not size.any():
         return pressure
-    loads = float(size.max()) * np.geomspace(_LEAST, 1.0, _LOADS)
+    loads = float(size.max()) * np.geomspace(_LEAST_LOAD, 1.0, _TABLE_LOADS)
     try:
         solved = [_slice(machine, guide, float(load)) for load in loads]
     except ContactError:
@@ -108,15 +108,15 @@ def bore_pressure(machine: Machine, guide: Guide, line_load: Array) -> Array:
     half = np.array([one.contact_angle for one in solved])
     shapes = np.stack([_shape(one) for one in solved])
     for k in np.flatnonzero(size):
-        at = np.interp(np.log(size[k]), np.log(loads), np.arange(_LOADS))
+        at = np.interp(np.log(size[k]), np.log(loads), np.arange(_TABLE_LOADS))
         low, share = int(at), at % 1.0
-        high = min(low + 1, _LOADS - 1)
+        high = min(low + 1, _TABLE_LOADS - 1)
         light = np.sqrt(min(size[k] / loads[0], 1.0))
         # Both are nearly powers of the load.
         angle = light * half[low] ** (1 - share) * half[high] ** share
         shape = light * shapes[low] ** (1 - share) * shapes[high] ** share
         away = np.abs(_round()) if line_load[k] > 0 else np.pi - np.abs(_round())
-        pressure[k] = np.interp(away / angle, _SHARES, shape, right=0.0)
+        pressure[k] = np.interp(away / angle, _ANGLE_SHARES, shape, right=0.0)
     return pressure
 
 
@@ -127,10 +127,10 @@ def _slice(machine: Machine, guide: Guide, load: float) -> Conforming:
 
 
 def _shape(contact: Conforming) -> Array:
-    """Pressure at `_SHARES` of the contact angle; zero at its end."""
+    """Pressure at `_ANGLE_SHARES` of the contact angle; zero at its end."""
     inside = contact.angle < contact.contact_angle
     at = np.append(contact.angle[inside], contact.contact_angle) / contact.contact_angle
-    return np.interp(_SHARES, at, np.append(contact.pressure[inside], 0.0))
+    return np.interp(_ANGLE_SHARES, at, np.append(contact.pressure[inside], 0.0))
 
 
 def _round() -> Array:

@@ -42,9 +42,10 @@ from camwright.pipeline.follower.guide_reactions import GuideReactions
 from camwright.pipeline.follower.shaft_strength import slope_of
 
 _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
-_ROUND_OFF = 1e-9
-_TOGETHER = 1000  # contacts evaluated at once: the interpolation of more takes a sparse matrix
-_LIGHTEST = 1e-3  # of the greatest force: a thirtieth of its pressure
+_MOMENT_LIMIT_ROUND_OFF = 1e-9  # of the moment at which the contact tips over
+_CONTACTS_AT_ONCE = 1000
+"""Contacts evaluated together; the interpolation of more takes a sparse matrix."""
+_LIGHTEST_SHARE = 1e-3  # of the greatest force: a thirtieth of its pressure
 
 CORNER_ERROR, BOUNDED_ERROR = 0.05, 0.02
 """Stated difference of the half-spaces from finite elements, where these are not solved: of a mean
@@ -259,12 +260,12 @@ def length_histories(turns: Sequence[TurnOfLine]) -> tuple[LengthHistory | None,
 
 
 def _parts(turns: Sequence[TurnOfLine], members: Sequence[int]) -> Iterator[list[int]]:
-    """Members of up to `_TOGETHER` contacts; one turn at least."""
+    """Members of up to `_CONTACTS_AT_ONCE` contacts; one turn at least."""
     part: list[int] = []
     contacts = 0
     for index in members:
         count = turns[index].force.size
-        if part and contacts + count > _TOGETHER:
+        if part and contacts + count > _CONTACTS_AT_ONCE:
             yield part
             part, contacts = [], 0
         part.append(index)
@@ -369,7 +370,7 @@ def greatest_moment(lines: TiltedPair, loads: ContactLoads) -> Array:
     that one if it is greater. Of both directions the greater.
     """
     force, couple = loads.raised * loads.force, loads.raised * loads.couple
-    limit = (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * lines.pair.contact_length
+    limit = (1.0 - _MOMENT_LIMIT_ROUND_OFF) * GREATEST_MOMENT * force * lines.pair.contact_length
     held, rigid = np.minimum(couple, limit), np.zeros_like(force)
     rows = np.flatnonzero(loads.forced > 0)
     moments = np.zeros_like(force)
@@ -390,7 +391,7 @@ def raised_load(force: Array) -> Array:
 
     A vanishing load, of no pressure that counts, has the factor of pressure of that one.
     """
-    return np.maximum(_LIGHTEST * force.max() / force, 1.0)
+    return np.maximum(_LIGHTEST_SHARE * force.max() / force, 1.0)
 
 
 def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:

@@ -24,7 +24,7 @@ from camwright.pipeline.records.trial_contents import (
     StressPeakRecord,
 )
 
-_DIGITS = 7
+_FACTOR_DIGITS = 7  # of a factor in a record
 
 
 def length_record(
@@ -97,7 +97,7 @@ def _elements(point: LengthPoint, bodies: Sequence[str]) -> LengthElements:
 
 
 def _rounded(values: Iterable[float]) -> list[float]:
-    return [float(f"{value:.{_DIGITS}g}") for value in values]
+    return [float(f"{value:.{_FACTOR_DIGITS}g}") for value in values]
 
 
 def stress_peaks(pair: FinitePair, tier: TierResult) -> list[dict[str, StressPeakRecord]]:

@@ -102,7 +102,7 @@ def _support(root_radius: float, tensile: float) -> float:
 FIT_ROOT = 3.0
 CONTACT_TENSION, CONTACT_COMPRESSION = 1.40, 2.15
 KEY_TENSION, KEY_COMPRESSION = 1.15, 0.12
-_CORNER = 0.3
+_ROOT_EXPONENT = 0.3  # of the keyway depth over the root radius
 
 
 class FittedRoot(NamedTuple):
@@ -138,7 +138,7 @@ def fitted_root(hoop: Value, keyway_depth: float, root_radius: float) -> FittedR
     ----------
     `pipeline.contact.hub_elements`; tests/verification/test_hub_elements.py.
     """
-    sharp = (keyway_depth / root_radius) ** _CORNER
+    sharp = (keyway_depth / root_radius) ** _ROOT_EXPONENT
     return FittedRoot(
         fit=FIT_ROOT * sharp * hoop,
         contact=(CONTACT_TENSION * sharp, CONTACT_COMPRESSION * sharp),

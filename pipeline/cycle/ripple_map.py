@@ -21,8 +21,8 @@ from camwright.pipeline.records.run_summary import RippleMapRecord
 from camwright.pipeline.torque.torque import Torque
 
 ANGLES = 360
-_SPEEDS, _LOADS = 25, 4
-_LOADED = 0.9  # share of the pressure at full load, from which on a case has one load only
+_SPEEDS, _MAP_LOADS = 25, 4  # of a map, at most
+_ONE_LOAD_SHARE = 0.9  # share of the pressure at full load, from which on a case has one load only
 _MODELLED = (
     "Working cycle solved at the least, mean and greatest speed, at the mean one at full load too; "
     "gas torque interpolated between them, inertia by the square of the speed."
@@ -127,7 +127,7 @@ def _loads(engine: CylinderEngine, state: LoadCase) -> Array:
     """Intake pressures from that of a load case to full load, Pa."""
     own = engine.intake_pressure if state.intake_pressure is None else state.intake_pressure
     full = engine.exhaust_pressure
-    return np.linspace(own, full, _LOADS) if own < _LOADED * full else np.array([own])
+    return np.linspace(own, full, _MAP_LOADS) if own < _ONE_LOAD_SHARE * full else np.array([own])
 
 
 def _modelled(case: Case, state: LoadCase, speeds: Array, loads: Array) -> Array:

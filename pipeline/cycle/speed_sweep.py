@@ -31,7 +31,7 @@ SIGNIFICANT = 0.01  # force of a harmonic at resonance over the preload
 # Speeds about a resonance, in widths: the damping ratio times its speed.
 _ABOUT = np.array([-2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0])
 _WIDTH = 0.2  # at most, so that every speed is positive
-_REFINED = 17
+_REFINED_SPEEDS = 17  # between the neighbours of a worst speed
 _MODES = 100  # beyond, the damping merges the resonances
 _MET = 600  # resonances resolved, the strongest
 
@@ -393,7 +393,8 @@ def _between(grid: Array, worst: set[int]) -> Array:
     """Speeds between the neighbours of the worst ones."""
     last = grid.size - 1
     finer = [
-        np.linspace(grid[max(k - 1, 0)], grid[min(k + 1, last)], _REFINED + 2)[1:-1] for k in worst
+        np.linspace(grid[max(k - 1, 0)], grid[min(k + 1, last)], _REFINED_SPEEDS + 2)[1:-1]
+        for k in worst
     ]
     beside = distinct(np.concatenate(finer))
     return beside[grid.take(np.searchsorted(grid, beside), mode="clip") != beside]

@@ -35,7 +35,7 @@ SOURCE = Source("v1, e_C and a_ISO of ISO 281:2007", confirmed=False)
 
 _ROLLER_FACTOR = 1.15 * 89.0  # b_m f_c of radial roller bearings, greatest
 _STATIC_FACTOR = 44.0  # N/mm2, of radial roller bearings
-_BEYOND = 1.5  # makers' ratings over those of the standards
+_ABOVE_STANDARD = 1.5  # makers' ratings over those of the standards
 _SLIM = 35.0 / 108.0  # power of the roller diameter: 29/27 - 3/4
 
 
@@ -51,7 +51,7 @@ def rating_bound(outer_diameter: Value, width: Value) -> Value:
     ISO 281:2007, 5.1 and 7.1, tables of f_c and b_m, recalled: verify.
     """
     slim = _SLIM / (_SLIM + 0.75)
-    factor: float = _BEYOND * _ROLLER_FACTOR * slim**_SLIM * (pi * (1.0 - slim)) ** 0.75
+    factor: float = _ABOVE_STANDARD * _ROLLER_FACTOR * slim**_SLIM * (pi * (1.0 - slim)) ** 0.75
     length: Value = (1e3 * width) ** (7.0 / 9.0)
     diameter: Value = (1e3 * outer_diameter) ** (29.0 / 27.0)
     return factor * length * diameter
@@ -67,7 +67,7 @@ def static_rating_bound(outer_diameter: Value, width: Value) -> Value:
     ISO 76:2006, 8.1, recalled: verify.
     """
     area: Value = 1e6 * outer_diameter * width
-    return area * (_BEYOND * _STATIC_FACTOR * pi)
+    return area * (_ABOVE_STANDARD * _STATIC_FACTOR * pi)
 
 
 _VISCOSITY_LINES = (45_000.0, -0.83), (4500.0, -0.5)
@@ -181,14 +181,15 @@ def grease_life(
     JTEKT, Ball and Roller Bearings, sec. 12: log10 L = 6.10 - 4.40e-6 d n - 2.50 (P/C - 0.05)
     - (0.021 - 1.80e-8 d n) T; SKF for the outer ring: n D. Both recalled: verify.
     """
-    share = np.where(load_share <= HEAVY_GREASE, np.maximum(load_share, _LIGHT), np.nan)
+    share = np.where(load_share <= HEAVY_GREASE, np.maximum(load_share, _LIGHT_LOAD), np.nan)
     light = _light_grease(speed, outer_diameter, temperature)
-    return 3600.0 * np.exp(log(10.0) * (light - _LOSS * (share - _LIGHT)))
+    return 3600.0 * np.exp(log(10.0) * (light - _LOSS * (share - _LIGHT_LOAD)))
 
 
 HEAVY_GREASE = 0.2
 """Greatest P/C of the estimate of the life of the grease."""
-_LIGHT, _LOSS = 0.05, 2.50  # least P/C that shortens the life, loss of log10 of the life per P/C
+_LIGHT_LOAD, _LOSS = 0.05, 2.50
+"""Least P/C that shortens the life of the grease; loss of log10 of the life per P/C."""
 _NEWTON_STEPS = 60
 
 
@@ -223,11 +224,11 @@ def grease_load_share(
     unbounded : bool      of any load; NaN where speed or temperature is outside the range
     """
     light = _light_grease(speed, outer_diameter, temperature)
-    share = _LIGHT + (light - log(life / 3600.0) / log(10.0)) / _LOSS
+    share = _LIGHT_LOAD + (light - log(life / 3600.0) / log(10.0)) / _LOSS
     if unbounded:
         return share
     lasts: Values = np.where(np.real(share) < HEAVY_GREASE, share, HEAVY_GREASE)
-    return np.where(np.real(share) >= _LIGHT, lasts, np.nan)
+    return np.where(np.real(share) >= _LIGHT_LOAD, lasts, np.nan)
 
 
 def grease_load_factor(load_share: Array, allowed_share: Array, duty: Array) -> Array:
@@ -251,7 +252,7 @@ def grease_load_factor(load_share: Array, allowed_share: Array, duty: Array) -> 
     share, load = duty[running], load_share[..., running]
     # P/C at which a load case alone takes the whole life
     room = allowed_share[..., running] - np.log(share) / steep
-    sizes, least = np.real(load), np.exp(steep * (_LIGHT - np.real(room))).sum(axis=-1)
+    sizes, least = np.real(load), np.exp(steep * (_LIGHT_LOAD - np.real(room))).sum(axis=-1)
     solvable = (sizes > 0.0).any(axis=-1) & (least < 1.0)
     if not solvable.any():
         return np.zeros(load.shape[:-1], dtype=load.dtype)
@@ -261,8 +262,8 @@ def grease_load_factor(load_share: Array, allowed_share: Array, duty: Array) -> 
 
     def next_inverse(load: Array, room: Array) -> Array:
         """Newton's step for the logarithm of the sum, convex and rising in 1/f."""
-        heavy = np.real(load) * inverse[..., None] > _LIGHT
-        used = np.where(heavy, load * inverse[..., None], _LIGHT)
+        heavy = np.real(load) * inverse[..., None] > _LIGHT_LOAD
+        used = np.where(heavy, load * inverse[..., None], _LIGHT_LOAD)
         parts: Array = np.exp(steep * (used - room))
         total, slope = parts.sum(axis=-1), steep * (parts * np.where(heavy, load, 0.0)).sum(axis=-1)
         step: Array = np.log(total) * total / np.where(solvable, slope, 1.0)

@@ -249,7 +249,7 @@ MESH_DAMPING = 0.03
 _FLIGHT = 801  # moments of a flight across the backlash, and of the impact at its end
 _FASTEST = 0.5  # rad, of a swing in a step
 _LONGER = 1.5  # of the flight of a rigid rotor
-_BALANCED = 1e-9
+_ZERO_MOMENT = 1e-9
 """First moment over the area to the power 3/2, up to which the cam is balanced."""
 _PLACES = 400  # of a counter-hole, tried between bore and contour
 _CUTS, _PARTS = 6, 64  # of the step about the outermost place
@@ -574,7 +574,7 @@ class Unbalance:
     @property
     def balanced(self) -> bool:
         """Whether the first moment is round-off, such as by symmetry."""
-        return bool(np.hypot(*self.moment) <= _BALANCED * self.area**1.5)
+        return bool(np.hypot(*self.moment) <= _ZERO_MOMENT * self.area**1.5)
 
 
 def rotating_force(product: Value, direction: Value, cam_speed: Value, theta: Array) -> Array:

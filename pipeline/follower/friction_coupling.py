@@ -35,7 +35,7 @@ from camwright.pipeline.follower.stem_beam import Stem
 
 RESIDUAL = 1e-10  # of the axial equilibrium, over the axial force
 _ROUNDS_MAX = 100  # bisection alone converges in 40 from the bracket F to F/JAM_FLOOR
-_SHARE = 0.01  # of `RESIDUAL`, at which a position has converged
+_RESIDUAL_SHARE = 0.01  # of `RESIDUAL`, at which a position has converged
 _CLIMB = 40  # rounds without bisection at positions that have no upper bound yet
 
 # Values of a fixed-point map at positions, numbered by the second argument.
@@ -225,7 +225,9 @@ def balanced(mapping: FixedPointMap, low: Array, high: Array, start: Array) -> t
             return x, rounds
         now, value = x[at], mapping(x[at], at)
         miss = now - value
-        share = _SHARE if rounds < _CLIMB else 10.0 * _SHARE  # the guides have round-off as well
+        share = (
+            _RESIDUAL_SHARE if rounds < _CLIMB else 10.0 * _RESIDUAL_SHARE
+        )  # the guides have round-off as well
         open_ = np.abs(miss) > share * RESIDUAL * value
         low[at] = np.where(miss < 0.0, now, low[at])
         high[at] = np.where(miss > 0.0, now, high[at])

@@ -16,12 +16,12 @@ from camwright.geometry.errors import ContactError
 MAX_STEPS = 60
 TOLERANCE = 1e-10  # of the contact law, over the maximum indentation
 _UNCHANGED = 5e-10  # of the contact law over the terms of the deflection, in an unchanged contact
-_ROUND_OFF = 1e-14
+_TERMS_ROUND_OFF = 1e-14  # of the terms of a deflection
 _LEAST_DENT = 1e-10  # indentation over slack below which a load is scaled up
 _LEAST_GUESSED = 1e-7  # indentation over slack from which solutions are interpolated
 _LEAST_LENGTH = 1e-15  # lower bound of a step length
-_FEW = 500  # loads solved from the rigid beam each
-_SPACING = 16  # loads between those solved from the rigid beam
+_RIGID_STARTS = 500  # loads solved from the rigid beam each
+_START_SPACING = 16  # loads between those solved from the rigid beam
 _DIRECTIONS = 20  # of loads, per rad
 _TOUCH = 1e-9  # initial indentation of a rigid beam over the clearance
 
@@ -124,7 +124,7 @@ class BearingLine:
         allowed = TOLERANCE * (np.abs(push) / self.stiffness[:, None]).max(axis=0)
         miss = self.law_miss(self.deflection(push, rigid), push)
         left = np.flatnonzero(miss > allowed)
-        allowed[left] += _ROUND_OFF * self.terms(push[:, left], rigid[:, left])
+        allowed[left] += _TERMS_ROUND_OFF * self.terms(push[:, left], rigid[:, left])
         return np.asarray(miss <= allowed)
 
     def sides(self, push: Array, rigid: Array) -> NDArray[np.int8]:
@@ -280,12 +280,12 @@ def _first_guess(line: BearingLine, load: Array) -> tuple[Array, Array]:
     """
     count = load.shape[1]
     push, rigid = np.zeros((len(line.positions), count)), line.edge_contact(load)
-    if count <= _FEW:
+    if count <= _RIGID_STARTS:
         return push, rigid
     size = line.size(load)
     direction = np.round(np.arctan2(load[1] / line.positions[-1], load[0]) * _DIRECTIONS)
     order = np.lexsort((size, direction))
-    known = np.append(np.arange(0, count - 1, _SPACING), count - 1)
+    known = np.append(np.arange(0, count - 1, _START_SPACING), count - 1)
     solved = settle(line, *load[:, order[known]])
     place = np.interp(np.arange(count), known, np.arange(known.size))
     low = np.minimum(place.astype(np.intp), known.size - 2)

@@ -21,7 +21,7 @@ from camwright.pipeline.follower.camshaft_loads import (
     Surface,
 )
 
-_FIBRES = 72
+_SHAFT_FIBRES = 72  # around the shaft, 5 deg apart
 _SAME_PLACE = 1e-6  # m
 _FINISH: Mapping[Surface, tuple[float, float]] = {
     "ground": (1.58, -0.085),
@@ -182,11 +182,11 @@ def fibre_stresses(
     """
     angle = finite("theta", theta)
     if not (np.isfinite(moment).all() and np.isfinite(torque).all()):
-        unknown = np.full((len(moment), _FIBRES), np.nan)
+        unknown = np.full((len(moment), _SHAFT_FIBRES), np.nan)
         return unknown, unknown
     cosine, sine, (x, y) = np.cos(angle), np.sin(angle), np.moveaxis(moment, 1, 0)
     on_shaft = np.stack([x * cosine + y * sine, y * cosine - x * sine], axis=1)
-    fibre, modulus = uniform_turn(_FIBRES), sections.modulus
+    fibre, modulus = uniform_turn(_SHAFT_FIBRES), sections.modulus
     bending = np.stack([np.cos(fibre), np.sin(fibre)], axis=1) @ on_shaft / modulus[:, None, None]
     shear = torque / (2.0 * modulus)[:, None]
 
@@ -343,7 +343,8 @@ def in_the_normal(slope: Array, pressure_angle: Array) -> Array:
 
 
 ROOT_OF_PUSH, ROOT_OF_CONTACT = 0.70, 4.1
-_CORNER = 0.4555  # 1 - lambda of a re-entrant right angle: stress at the root of a small fillet
+_CORNER_EXPONENT = 0.4555
+"""1 - lambda of a re-entrant right angle: stress at the root of a small fillet."""
 
 
 def keyway_root_stress(
@@ -378,7 +379,7 @@ def keyway_root_stress(
             raise InputError(f"cam.keyway.{name}", value, "> 0 m")
     spread = np.asarray(normal_force, dtype=float) / (width * wall)
     push = ROOT_OF_PUSH * np.asarray(key_pressure, dtype=float)
-    stress = (push + ROOT_OF_CONTACT * spread) * (keyway_depth / root_radius) ** _CORNER
+    stress = (push + ROOT_OF_CONTACT * spread) * (keyway_depth / root_radius) ** _CORNER_EXPONENT
     return np.asarray(stress)
 
 

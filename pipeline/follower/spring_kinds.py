@@ -39,8 +39,9 @@ CHARGED_AT = 293.15
 """Temperature at which a charging pressure is stated, K: 20 degC."""
 STROKE_SHARE = 0.995
 """Share of the lift to the singularity of a force up to which the law holds; tangent beyond."""
-_ROUNDS = 100
-_CLOSE = 1e-13  # of a lift, and a hundredth of it of the reach: beyond round-off of the energy
+_NEWTON_ROUNDS = 100  # of the lift from its energy, at most
+_LIFT_CONVERGED = 1e-13
+"""Last step over the lift, plus a hundredth of it over the reach: round-off of the energy."""
 
 
 class Rise(NamedTuple):
@@ -104,19 +105,21 @@ def shaped_deflection(
     lift = 2.0 * wanted / (np.sqrt(start**2 + 2.0 * k * wanted) + start)
     low = np.minimum(lift, 0.0)
     high = np.where(wanted < 0.0, lift, wanted / start)
-    for _ in range(_ROUNDS):
+    for _ in range(_NEWTON_ROUNDS):
         law = rise(shape, lift)
         miss = start * lift + k * law.work - wanted
         low, high = np.where(miss < 0.0, lift, low), np.where(miss > 0.0, lift, high)
         step = lift - miss / (start + k * law.travel)
         inside = (step >= low) & (step <= high)
         nearer = np.where(inside, step, 0.5 * (low + high))
-        close = np.abs(nearer - lift) <= _CLOSE * (np.abs(nearer) + 0.01 * shape.reach)
+        close = np.abs(nearer - lift) <= _LIFT_CONVERGED * (np.abs(nearer) + 0.01 * shape.reach)
         lift = nearer
         if close.all():
             break
     else:
-        raise ContactError(f"spring: {np.sum(~close)} lifts not converged in {_ROUNDS} rounds")
+        raise ContactError(
+            f"spring: {np.sum(~close)} lifts not converged in {_NEWTON_ROUNDS} rounds"
+        )
     law = rise(shape, lift)
     if not any(np.iscomplexobj(each) for each in (energy, rate, preload)):
         return np.asarray(lift)

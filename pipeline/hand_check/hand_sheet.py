@@ -42,7 +42,7 @@ AS_SHOWN = 1e-3
 ROUNDING, BETWEEN = 1e-7, 1e-3
 """Relative difference up to which two evaluations agree, and that of a demand, or of its limit,
 which the check interpolates between the solved angles and the sheet evaluates there."""
-_LEAST = 1e-6
+_LEAST_SHARE = 1e-6
 """Share of the limit, without one of 0.001 in the unit of the record, that is no difference."""
 SAME_ANGLE = 1e-6  # deg, of a demand and a row of the cycle
 _UNITS = (
@@ -184,7 +184,7 @@ class Sheet:
             return self.gives(demand, BETWEEN, BETWEEN)
         return self.gives(demand, ROUNDING)
 
-    def gives(self, demand: float, share: float, of_limit: float = _LEAST) -> bool:
+    def gives(self, demand: float, share: float, of_limit: float = _LEAST_SHARE) -> bool:
         """Whether the formula reproduces a demand within a share of it, or of the limit."""
         least = of_limit * abs(self.record["limit"] or 1e-3)
         return self.result is not None and _same(self.result, demand, share, least)

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-_DIGITS = 1e-12
+_RECORD_DIGITS = 1e-12
 """Relative error of a sum of numbers with the 15 digits of a record."""
-_ROUNDING = 1.001e-9
+_RECORD_ROUNDING = 1.001e-9
 """Share of a demand up to which its error is that of rounding, no uncertainty."""
 
 
@@ -115,7 +115,7 @@ class RecordedCheck(Generic[AnyRecord]):
     @property
     def error(self) -> float:
         """Half of the error bar of the judged demand; 0 where it is round-off alone."""
-        return error_of_worst(self) if self.error_share > _ROUNDING else 0.0
+        return error_of_worst(self) if self.error_share > _RECORD_ROUNDING else 0.0
 
     @property
     def sense(self) -> str:
@@ -134,7 +134,7 @@ class RecordedCheck(Generic[AnyRecord]):
     def status_by_numbers(self) -> Status:
         """Status by worst demand, error bar, limit and value of the waiver, to their digits."""
         proven = not self.record["not_proven"]
-        return status(self, digits=_DIGITS, rounding=_ROUNDING, proven=proven)
+        return status(self, digits=_RECORD_DIGITS, rounding=_RECORD_ROUNDING, proven=proven)
 
 
 def of_records(records: Iterable[AnyRecord]) -> tuple[RecordedCheck[AnyRecord], ...]:

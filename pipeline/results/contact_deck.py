@@ -34,7 +34,7 @@ from camwright.pipeline.results.drawn_cam import drawn_cam
 PENALTY = 250.0
 """Penalty of a deck over E*/a: takes some 0.1 % off the pressure."""
 _FIRST_OVERLAP = 0.3  # over that of a rigid indenter of half the Hertz half-width and its radius
-_NEAR = 3.0  # Hertz half-widths from the contact within which the surfaces may touch
+_CONTACT_REACH = 3.0  # Hertz half-widths from the contact within which the surfaces may touch
 
 
 def force_at(cycle: Table, load_case: str, theta: float) -> float:
@@ -168,7 +168,7 @@ def _touching(
 ) -> TouchingBody:
     body, mesh = side.body, side.body.mesh
     middles = mesh.points[:, mesh.facet_triples(side.surface)[2]]
-    near = np.hypot(frame.along(middles), frame.above(middles)) <= _NEAR * half_width
+    near = np.hypot(frame.along(middles), frame.above(middles)) <= _CONTACT_REACH * half_width
     springs = body.springs
     return TouchingBody(
         mesh,

@@ -22,7 +22,7 @@ MIDDLE = 0
 
 # Rings from the contact: equal ones, in half-widths, that pass the depth of the maximum von Mises
 # stress, and a geometric series up to the edge of the zone.
-_SPACING, _EQUAL, _OUTER = 0.07, 25, 7
+_RING_SPACING, _EQUAL_RINGS, _OUTER_RINGS = 0.07, 25, 7
 _SECTORS = 32
 # Radius of the zone: at least these multiples of the longest element edge at the surface, so that
 # the elements about the contact lie within it, and of the half-width.
@@ -40,7 +40,7 @@ def zone_triangles() -> Index:
     ring = _SECTORS + 1
     first = 1 + np.arange(_SECTORS)
     core = np.stack([np.zeros_like(first), first + 1, first])
-    here = 1 + ring * np.arange(_EQUAL + _OUTER - 1)[:, None] + np.arange(_SECTORS)
+    here = 1 + ring * np.arange(_EQUAL_RINGS + _OUTER_RINGS - 1)[:, None] + np.arange(_SECTORS)
     inner, outer = here.ravel(), here.ravel() + ring
     split = [np.stack([inner, inner + 1, outer]), np.stack([inner + 1, outer + 1, outer])]
     return np.hstack([core, *split]).astype(np.int64)
@@ -48,7 +48,7 @@ def zone_triangles() -> Index:
 
 def zone_nodes() -> int:
     """Number of nodes of the zone."""
-    return 1 + (_SECTORS + 1) * (_EQUAL + _OUTER)
+    return 1 + (_SECTORS + 1) * (_EQUAL_RINGS + _OUTER_RINGS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ class ZoneSite:
         far = mesh.points[:, np.unique(np.concatenate([n.ravel() for n in others]))]
         wall = _WALL * np.asarray(scipy.spatial.cKDTree(far.T).query(contacts.T)[0])
         wanted = np.maximum(_EDGES * self._edge, _HALF_WIDTHS * half_width)
-        return np.maximum(np.minimum(wanted, wall), 1.1 * _SPACING * _EQUAL * half_width)
+        return np.maximum(np.minimum(wanted, wall), 1.1 * _RING_SPACING * _EQUAL_RINGS * half_width)
 
     def interpolated(
         self, correction: tuple[Array, Array], points: Array, normals: Array
@@ -121,8 +121,8 @@ def zone_places(half_width: Array, radius: Array) -> Array:
     half_width (k,), m, zero without contact; radius (k,) of the zone, m.
     """
     size = np.where(half_width > 0, half_width, radius / 16)
-    inner = _SPACING * np.arange(1, _EQUAL + 1)
-    share = np.arange(1, _OUTER + 1)[:, None] / _OUTER
+    inner = _RING_SPACING * np.arange(1, _EQUAL_RINGS + 1)
+    share = np.arange(1, _OUTER_RINGS + 1)[:, None] / _OUTER_RINGS
     rings = size * np.concatenate(
         [np.repeat(inner[:, None], size.size, axis=1),
          inner[-1] * (radius / (inner[-1] * size)) ** share]

@@ -42,9 +42,9 @@ FRAMES = 360
 """Maximum number of recorded positions."""
 
 _MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6
-_TOGETHER = 24  # positions whose fields are in memory at once
+_FIELDS_AT_ONCE = 24  # positions whose fields are in memory at once
 _TO_MM = 1e3
-_DIGITS = 9  # of a cam angle, deg
+_ANGLE_DIGITS = 9  # of a cam angle, deg
 
 
 class Shown(StrEnum):
@@ -118,7 +118,7 @@ def write_end_field(path: Path, final: Trial, workers: Crew = ALONE) -> None:
             "body": np.repeat([0, 1], [len(block.cells) for block in blocks]),
         },
         {
-            "cam_angle_deg": round(float(np.degrees(load.theta)), _DIGITS),
+            "cam_angle_deg": round(float(np.degrees(load.theta)), _ANGLE_DIGITS),
             "force_N": load.force,
             "moment_Nmm": load.moment * _TO_MM,
         },
@@ -169,15 +169,15 @@ def write_stress(
         blocks[cam].nodes,
         coarse[cam].points[:, : blocks[cam].nodes] / _MILLIMETRE,
     )
-    times = np.asarray(np.degrees(fields.cycle.theta[positions]), dtype=float).round(_DIGITS)
+    times = np.asarray(np.degrees(fields.cycle.theta[positions]), dtype=float).round(_ANGLE_DIGITS)
     notes = _notes(fields, positions, times)
     with field_file(path, times, blocks, FIELDS, notes) as file:
-        for start in range(0, positions.size, _TOGETHER):
-            part = positions[start : start + _TOGETHER]
+        for start in range(0, positions.size, _FIELDS_AT_ONCE):
+            part = positions[start : start + _FIELDS_AT_ONCE]
             shown = fields.at(part)
             for name, field in shown.items():
                 _write(file, name, start, field, fields.poisson[name], blocks[name])
-            advance(min(start + _TOGETHER, positions.size), positions.size)
+            advance(min(start + _FIELDS_AT_ONCE, positions.size), positions.size)
 
 
 def _notes(fields: TurnFields, positions: IntArray, times: Array) -> Notes:

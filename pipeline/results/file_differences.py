@@ -27,7 +27,7 @@ from camwright.pipeline.results import signoff
 
 SAME = 1e-6
 """Relative difference, of the greatest value of a column, that rounding may make."""
-_ROUND_OFF = 1e-9
+_REPRODUCED = 1e-9  # relative difference of numbers that are equal
 _ON_A_DRAWING = 1e-6
 """Difference of a coordinate, mm, that is none."""
 _OF_A_FIELD = 2.0**-14
@@ -40,7 +40,7 @@ _PICTURE = re.compile(r"data:image/png;base64,([A-Za-z0-9+/=]+)")
 _ENTITY = re.compile(r"#(\d+)=([^;]*);\n")
 _REFERENCE = re.compile(r"#(\d+)\b")
 _OFFSET = re.compile(r' offset="\d+"')
-_BEFORE = 40  # characters shown before a difference
+_CONTEXT = 40  # characters shown before a difference
 _PATCH = 8  # pixels
 _SHADE = 10.0  # of 255: mean over a patch, as another processor draws the edges of a field
 _UNREADABLE = (
@@ -291,7 +291,7 @@ def _members(file: Path) -> dict[str, np.ndarray]:
 # --- texts, solids, pages, pictures
 
 
-def text_difference(one: str, two: str, absolute: float = _ROUND_OFF) -> str:
+def text_difference(one: str, two: str, absolute: float = _REPRODUCED) -> str:
     """First difference of two texts: a word, or a number beyond round-off.
 
     A count, written without a decimal point, must be the same.
@@ -306,7 +306,7 @@ def text_difference(one: str, two: str, absolute: float = _ROUND_OFF) -> str:
             continue
         pairs = () if place % 2 else zip(a, b, strict=False)
         alike = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-        before = ("".join(parts[max(0, place - 4) : place]) + a[:alike])[-_BEFORE:]
+        before = ("".join(parts[max(0, place - 4) : place]) + a[:alike])[-_CONTEXT:]
         return f"'{_shown(before + a[alike:])}', recomputed '{_shown(b[alike:])}'"
     return ""
 
@@ -316,7 +316,7 @@ def _equal(one: str, two: str, absolute: float) -> bool:
     if not (_REAL.search(one) or _REAL.search(two)):
         return False
     a, b = float(one), float(two)
-    return abs(a - b) <= absolute + _ROUND_OFF * abs(b)
+    return abs(a - b) <= absolute + _REPRODUCED * abs(b)
 
 
 def _texts(file: Path, other: Path) -> str:
@@ -484,7 +484,7 @@ def _allowed(name: str, greatest: float, share: float = SAME) -> float:
     """
     if _RESIDUAL in name:
         return SAME
-    return share * (_TURN if name.endswith(_ANGLE) else greatest) + _ROUND_OFF
+    return share * (_TURN if name.endswith(_ANGLE) else greatest) + _REPRODUCED
 
 
 def _shown(value: object) -> str:

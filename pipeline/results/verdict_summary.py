@@ -32,10 +32,10 @@ WORST = 3
 """Failed checks that it names."""
 PREVIEW = "preview"
 """Depth of the check of a case."""
-_ROUND_OFF = 1e-9  # of a mean torque, over peak to peak
+_MEAN_ROUND_OFF = 1e-9  # of a mean torque, over peak to peak
 _CUT = "…"
 _TRIAL = "{:<5}  {:<26} {:<11}  {}"
-_LEAST = 24  # columns of a title
+_LEAST_TITLE = 24  # columns of a title
 
 
 class Places(NamedTuple):
@@ -145,7 +145,7 @@ def failure_words(check: CheckRecord, room: int | None = None) -> str:
     words += f" ({used(judged.utilisation)})" + (f", {where}" if where else "")
     title = check["title"]
     if room is not None:
-        title = shortened(title, max(room - len(words), _LEAST))
+        title = shortened(title, max(room - len(words), _LEAST_TITLE))
     return f"{title}{words}"
 
 
@@ -217,7 +217,7 @@ def torque_lines(torques: Mapping[str, Torque]) -> list[str]:
     lines = []
     for name, torque in torques.items():
         swing = torque.peak_to_peak
-        mean = torque.mean if abs(torque.mean) > _ROUND_OFF * swing else 0.0
+        mean = torque.mean if abs(torque.mean) > _MEAN_ROUND_OFF * swing else 0.0
         lines.append(
             f"torque to balance, {name}: mean {mean:.4g} N m, ripple {torque.std:.4g} N m, "
             f"peak to peak {swing:.4g} N m"

@@ -126,14 +126,14 @@ class ScreenedCam(LoadedCam):
         free = self._free.ravel()
         direction = np.broadcast_to(np.sign(self.slope), shape).ravel()
         axial, left = free.copy(), np.flatnonzero((free * load > 0.0) & (direction != 0.0))
-        for _ in range(_ROUNDS):
+        for _ in range(_FRICTION_ROUNDS):
             if not left.size:
                 break
             now, place = axial[left], supports.place.of(left)
             ratios = supports.table.rubbing(now * load[left], place)
             jam = ratios[0] * rubs[0][left] + ratios[1] * rubs[1][left]
             axial[left] = free[left] / share_left(direction[left], jam)
-            left = left[np.abs(axial[left] - now) > _SETTLED * now]
+            left = left[np.abs(axial[left] - now) > _FRICTION_SETTLED * now]
         on_a, on_b = supports.rubbing(axial.reshape(shape))
         return OfGuides(on_a * supports.factor, on_b * supports.factor)
 
@@ -218,4 +218,4 @@ class ScreenedCam(LoadedCam):
         return self.p0_line if has_many_shapes(self.block) else np.full_like(self.p0_line, np.nan)
 
 
-_ROUNDS, _SETTLED = 30, 1e-6  # of the guide friction
+_FRICTION_ROUNDS, _FRICTION_SETTLED = 30, 1e-6  # of the guide friction

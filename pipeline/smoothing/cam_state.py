@@ -243,24 +243,26 @@ class Mean(NamedTuple):
     def hessian(self, weights: Array) -> Array:
         """Second derivatives (m, m) of the utilisations by the means, weighted by (r,)."""
         means = self.means
-        steps = np.diag(_SHARE * np.maximum(np.abs(means), np.finfo(float).tiny / _SHARE))
+        steps = np.diag(
+            _SECOND_STEP * np.maximum(np.abs(means), np.finfo(float).tiny / _SECOND_STEP)
+        )
         up, down = (self._slopes(means + side * steps) @ weights for side in (1.0, -1.0))
         hessian = (up - down) / (2.0 * np.diag(steps)[:, None])
         return np.asarray(0.5 * (hessian + hessian.T))
 
     def _slopes(self, means: Array) -> Array:
         """Derivatives (..., m, r) at means (..., m), by complex steps."""
-        steps = 1j * _STEP * np.eye(means.shape[-1])
-        return np.imag(self._of(means[..., None, :] + steps)) / _STEP
+        steps = 1j * _COMPLEX_STEP * np.eye(means.shape[-1])
+        return np.imag(self._of(means[..., None, :] + steps)) / _COMPLEX_STEP
 
     def _of(self, means: Array) -> Array:
         of_one = not_negative(means) ** self.power if self.total is None else self.total.of(means)
         return np.asarray(self.factor * of_one)
 
 
-_STEP = 1e-30  # complex step of a mean
-_FAR = -10.0  # utilisation in a scenario to which a limit does not apply
-_SHARE = 1e-5  # of a mean: step of the second derivatives
+_COMPLEX_STEP = 1e-30  # complex step of a mean
+_INAPPLICABLE_USE = -10.0  # utilisation in a scenario to which a limit does not apply
+_SECOND_STEP = 1e-5  # of a mean: step of the second derivatives
 
 
 def duty_shares(scenario: Scenario) -> Array | None:
@@ -333,7 +335,7 @@ class Constraint(Generic[State]):
 
 def where_applies(applies: Value, use: Array) -> Array:
     """Utilisation where a limit applies; far below it in the other scenarios."""
-    return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
+    return np.where(np.asarray(applies) != 0.0, use, _INAPPLICABLE_USE + 0.0 * use)
 
 
 def kept(declared: Declaration) -> Constraint[LoadedCam]:

@@ -15,8 +15,8 @@ from camwright.geometry.arrays import Array
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 
 _ACCEPTED = ("Solved", "AlmostSolved")
-_FEW = 4  # norms that enter a program at first
-_BEYOND = 1e-7  # of a norm over its bound, ten times the tolerance of the solver
+_FIRST_NORMS = 4  # norms that enter a program at first
+_NORM_TOLERANCE = 1e-7  # of a norm over its bound, ten times the tolerance of the solver
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +230,7 @@ def solved(
     """
     # Of many norms few bind, and each is a dense cone: the others enter where they are exceeded.
     order = np.argsort([-norm.weight * np.linalg.norm(norm.level) for norm in norms], kind="stable")
-    chosen = sorted(order[:_FEW].tolist())
+    chosen = sorted(order[:_FIRST_NORMS].tolist())
     while True:
         some = [norms[k] for k in chosen]
         solution = _solved(some, rows, curvature, slope, box, penalty, ripple_weight, reach)
@@ -246,9 +246,9 @@ def solved(
 def _exceeds(norm: Norm, solution: ConeSolution) -> bool:
     """Whether a norm that a program left out is over its bounds after the step."""
     value = norm.after(solution.step)
-    allowed = solution.slack.get(TORQUE_REDUCTION.id, 0.0) + _BEYOND
+    allowed = solution.slack.get(TORQUE_REDUCTION.id, 0.0) + _NORM_TOLERANCE
     over = norm.ceiling is not None and value > norm.ceiling + allowed
-    return over or norm.weight * value > solution.ripple + _BEYOND
+    return over or norm.weight * value > solution.ripple + _NORM_TOLERANCE
 
 
 def _solved(

@@ -24,9 +24,9 @@ from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import FINEST, RESERVE, Design, Problem
 from camwright.pipeline.smoothing.trust_region import PENALTY, Descent, descended
 
-_ROUNDS = 4
+_REFINING_ROUNDS = 4  # descents, each with extra angles between the points
 _MULTIPLIER_LEAST = 1e-6
-_REFINED = 0.01  # of a limit: peaks this near to it, or the greatest, are refined between points
+_NEAR_PEAK = 0.01  # of a limit: peaks this near to it, or the greatest, are refined between points
 
 
 def synthesise(
@@ -50,7 +50,7 @@ def synthesise(
     search = started(problem, ripple_weight)
     descent = descended(search, ripple_weight, enough=enough, worth=worth)
     steps, peaks = descent.steps, _Peaks.of(search, descent.state)
-    for _ in range(_ROUNDS - 1):
+    for _ in range(_REFINING_ROUNDS - 1):
         between = _between(descent.state, peaks)
         if descent.stuck or not between.size:
             break
@@ -95,7 +95,7 @@ def _beside_peaks(search: Search, state: State) -> Grid:
     for each in state.pointwise.values():
         value = each.max(axis=0)[:points]
         peak = (value >= np.roll(value, 1)) & (value >= np.roll(value, -1))
-        near |= peak & (value >= min(1.0 - RESERVE - _REFINED, value.max()))
+        near |= peak & (value >= min(1.0 - RESERVE - _NEAR_PEAK, value.max()))
     offsets = np.arange(1 - FINEST, FINEST) * (step / FINEST)
     theta = np.unique(np.round((search.turn.theta[near, None] + offsets).ravel() / step, 6)) * step
     return search.problem.grid(theta)

@@ -25,7 +25,7 @@ LEAST_COEFFICIENTS = 12
 _FIT_ANGLES = 1440
 _REFINEMENTS = 3
 ORDERS = 4  # E, E', E'', E'''
-_BESIDE = 1e-200  # J/rad, E' beside a reversal: its sign alone counts
+_REVERSAL_SIDE = 1e-200  # J/rad, E' beside a reversal: its sign alone counts
 _REVERSAL_STEPS = 3
 _LEAST_CURVATURE = 1e-3  # of the greatest E'': of a reversal that is followed
 
@@ -120,7 +120,7 @@ class Grid:
         local = coefficients[self.columns]
         parts = [np.sum(entry * local, axis=1) for entry in self.entries]
         if self.side is not None:
-            parts[1] = parts[1] + _BESIDE * self.side
+            parts[1] = parts[1] + _REVERSAL_SIDE * self.side
         return tuple(parts)
 
     def joined(self, other: Grid) -> Grid:

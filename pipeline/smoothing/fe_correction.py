@@ -31,11 +31,12 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Prob
 
 SETTLED = 5e-3  # of a limit: maximum change of a utilisation at convergence
 SETTLED_RIPPLE = 2e-3  # of the residual ripple: maximum change by a further trial at convergence
-_LOADED = 0.05  # of the maximum: least load of a meaningful ratio
-_GUIDED = 1e-6  # the same for loads of the guides, of which little is needed to rub and to tilt
-_USED = 0.5  # utilisation below which a limit does not count
+_LOADED_SHARE = 0.05  # of the maximum: least load of a meaningful ratio
+_GUIDED_SHARE = 1e-6
+"""Least load of the guides over its maximum for a ratio: little is needed to rub and to tilt."""
+_COUNTED_USE = 0.5  # utilisation below which a limit does not count
 _JUDGED_MOST = 3.0  # utilisation at a tolerance corner over that of the synthesis
-_LATEST = 0.25  # least share of the latest corrections in those of the next trial
+_LATEST_SHARE = 0.25  # least share of the latest corrections in those of the next trial
 _SUM = 1e3  # weight of the sum of the shares in their least squares
 
 
@@ -85,7 +86,7 @@ class Comparison:
     @property
     def used(self) -> tuple[LimitShift, ...]:
         """Shifts of the limits used by at least one half, the greatest first."""
-        used = (each for each in self.shifts if max(each.before, each.after) > _USED)
+        used = (each for each in self.shifts if max(each.before, each.after) > _COUNTED_USE)
         return tuple(sorted(used, key=lambda each: -abs(each.change)))
 
     @property
@@ -255,9 +256,9 @@ def shares(changes: Array) -> Array:
     matrix = np.vstack([changes / scale, np.full(changes.shape[1], _SUM)])
     solution, _ = scipy.optimize.nnls(matrix, np.append(np.zeros(len(changes)), _SUM))
     weights = np.asarray(solution / np.sum(solution), dtype=float)
-    if weights[-1] < _LATEST:  # else a trial could be solved twice
-        weights[:-1] *= (1.0 - _LATEST) / (1.0 - weights[-1])
-        weights[-1] = _LATEST
+    if weights[-1] < _LATEST_SHARE:  # else a trial could be solved twice
+        weights[:-1] *= (1.0 - _LATEST_SHARE) / (1.0 - weights[-1])
+        weights[-1] = _LATEST_SHARE
     return weights
 
 
@@ -360,7 +361,7 @@ class _Statics(NamedTuple):
     def correction(self, place: int, solved: Array) -> Array:
         """Correction (n,) with which `Reaction` is the solved load; 1 where unloaded."""
         whole = self.whole[place]
-        return _ratio(np.abs(solved) + whole - self.both[place], whole, _GUIDED)
+        return _ratio(np.abs(solved) + whole - self.both[place], whole, _GUIDED_SHARE)
 
 
 def _over(force: Array, friction: float) -> Array:
@@ -368,7 +369,7 @@ def _over(force: Array, friction: float) -> Array:
     return force / friction if friction > 0.0 else np.zeros_like(force)
 
 
-def _ratio(solved: Array, closed: Array, least: float = _LOADED) -> Array:
+def _ratio(solved: Array, closed: Array, least: float = _LOADED_SHARE) -> Array:
     """Solved over closed-form result (n,), 1 where unloaded."""
     solved, closed = np.abs(solved), np.abs(closed)
     loaded = np.isfinite(solved) & (closed > least * closed.max())

@@ -14,8 +14,8 @@ from camwright.pipeline.smoothing.scenario import DesignVariables
 
 Function = Callable[[Jet, float, DesignVariables], Mapping[str, "Array | Mean"]]
 FREED = ("rate", "preload", "prime_radius")
-_STEP = 1e-30
-_SHARE = 1e-5  # of a variable: step of the second derivatives
+_COMPLEX_STEP = 1e-30  # of any variable: no difference is formed
+_SECOND_STEP = 1e-5  # of a variable: step of the second derivatives
 
 
 class Gradient(NamedTuple):
@@ -56,13 +56,14 @@ def differentiated(function: Function, at: Point, freed: bool) -> dict[str, Grad
     ----------
     Squire and Trapp, SIAM Review 40 (1998) 110: the complex step has no cancellation.
     """
-    slopes = [values_of(function, stepped) for stepped in _steps(at, 1j * _STEP, freed)]
+    slopes = [values_of(function, stepped) for stepped in _steps(at, 1j * _COMPLEX_STEP, freed)]
     orders = len(at.energy)
     gradients = {}
     for name, value in values_of(function, at).items():
         terms = np.asarray(_terms(value), dtype=float)
         sides = [
-            np.broadcast_to(np.imag(_terms(slope[name])) / _STEP, terms.shape) for slope in slopes
+            np.broadcast_to(np.imag(_terms(slope[name])) / _COMPLEX_STEP, terms.shape)
+            for slope in slopes
         ]
         mean = value if isinstance(value, Mean) else None
         gradients[name] = Gradient(terms, np.stack(sides[:orders]), np.stack(sides[orders:]), mean)
@@ -86,17 +87,18 @@ def second_derivatives(
         """Derivatives (len(places), n) in some of the q directions."""
         sides = []
         for place in places:
-            values = values_of(function, _step(point, place, 1j * _STEP))
+            values = values_of(function, _step(point, place, 1j * _COMPLEX_STEP))
             parts = (weight * np.imag(_terms(values[name])) for name, weight in weights.items())
             sides.append(
-                sum(np.sum(each, axis=tuple(range(each.ndim - 1))) for each in parts) / _STEP
+                sum(np.sum(each, axis=tuple(range(each.ndim - 1))) for each in parts)
+                / _COMPLEX_STEP
             )
         return np.stack(sides)
 
     sizes = [float(np.abs(part).max()) or 1.0 for part in at.energy]
     sizes.append(at.highest or 1.0)
     sizes += [getattr(at.variables, name) for name in FREED] if freed else []
-    steps, jerk = [_SHARE * size for size in sizes], len(at.energy) - 1
+    steps, jerk = [_SECOND_STEP * size for size in sizes], len(at.energy) - 1
     by_jerk = slopes(at, [jerk])
     second = np.zeros((len(steps), len(steps), *by_jerk.shape[1:]))
     # Loads do not depend on the third derivative.

@@ -20,8 +20,8 @@ from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem, coarsened
 
 _BISECTIONS = 5
-_MARGIN = 1.02  # factor of a relaxation over the least feasible one
-_FORCE_SHARE = 0.8  # of the necessary force: a larger roller lowers it
+_RELAXATION_MARGIN = 1.02  # factor of a relaxation over the least feasible one
+_ROLLER_FORCE_SHARE = 0.8  # of the necessary force: a larger roller lowers it
 
 Change = Callable[[Problem, float], Problem]
 
@@ -115,7 +115,7 @@ def infeasibility(
     conflict, _ = _conflicting(coarse, least_used_first)
     conflict.reverse()
     wide = _with_margin(coarse if solved is None else coarsened(solved), margin)
-    least = _MARGIN + margin
+    least = _RELAXATION_MARGIN + margin
     known = problem if solved is None else solved
     tried = [_smallest(wide, each, least) for each in _candidates(known, conflict)]
     relaxations = [item for item in tried if item is not None]
@@ -262,7 +262,7 @@ def _from_catalogue(
     if force is None:
         return []
     needed = max(
-        [_FORCE_SHARE * r.after for r in relaxations if r.unit == "N" and r.before == force],
+        [_ROLLER_FORCE_SHARE * r.after for r in relaxations if r.unit == "N" and r.before == force],
         default=force,
     )
     for name, other in rollers:

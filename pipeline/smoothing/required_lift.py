@@ -16,7 +16,7 @@ from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 from camwright.pipeline.torque.torque import Torque
 
-_ROUND_OFF = 1e-9  # of the torque
+_TORQUE_ROUND_OFF = 1e-9  # of the torque
 
 
 def cam_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None = None) -> Lift:
@@ -67,5 +67,5 @@ def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
 def _require_ripple(torque: Torque, target: Array, smoother: Smoother) -> None:
     """Refuse a smoothing that leaves nothing but round-off of the torque."""
     before, after = float(np.ptp(torque.total)), float(np.ptp(target))
-    if before > 0.0 and not after > _ROUND_OFF * before:
+    if before > 0.0 and not after > _TORQUE_ROUND_OFF * before:
         smoother.refuse_as_too_wide()

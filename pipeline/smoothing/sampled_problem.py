@@ -59,11 +59,11 @@ HIGHEST_PEAK = "highest_peak"
 KEPT_SIDE = "kept_side"
 SHAPE_LIMITS = frozenset(each.name for each in SHAPE)
 # Distance from a limit within which a row is in the model; from another scenario at that angle.
-_NEAR, _BEHIND = 0.05, 0.01
+_NEAR_LIMIT, _BEHIND_WORST = 0.05, 0.01
 _RIPPLE_BEHIND = 0.005  # of the engine's ripple: the same for the ripples of the scenarios
 _PEAKS = 0.1  # of the range of the energy, below its maximum, of peaks that may become the highest
 _FARTHEST = 1.0  # greatest step of a coefficient, of the scale
-_KEPT = 1e-6  # of the greatest slope of the energy: least slope where its sign is to be kept
+_SIGN_SLOPE = 1e-6  # of the greatest slope of the energy: least slope where its sign is to be kept
 
 
 class Means(NamedTuple):
@@ -439,8 +439,8 @@ class Search:
         rows = {}
         for name, value in state.pointwise.items():
             level = self.level(name, value)
-            least = level.max() * (1.0 - _NEAR) if name in self.costs else -_NEAR
-            rows[name] = (level >= least) & (level >= level.max(axis=0) - _BEHIND)
+            least = level.max() * (1.0 - _NEAR_LIMIT) if name in self.costs else -_NEAR_LIMIT
+            rows[name] = (level >= least) & (level >= level.max(axis=0) - _BEHIND_WORST)
         return rows
 
     def near_means(self, state: State) -> dict[str, NDArray[np.bool_]]:
@@ -448,7 +448,9 @@ class Search:
         rows = {}
         for name, value in state.means.items():
             level = self.level(name, value)
-            rows[name] = level >= (level.max() * (1.0 - _NEAR) if name in self.costs else -_NEAR)
+            rows[name] = level >= (
+                level.max() * (1.0 - _NEAR_LIMIT) if name in self.costs else -_NEAR_LIMIT
+            )
         return rows
 
     def model(self, state: State) -> Model:
@@ -471,7 +473,7 @@ class Search:
     def _near_ripples(self, state: State) -> NDArray[np.intp]:
         """Scenarios of the greatest ripple, or near their ceiling."""
         greatest = state.ripples >= state.ripple - _RIPPLE_BEHIND
-        most = max(float(state.excess.max(initial=-np.inf)), -_NEAR)
+        most = max(float(state.excess.max(initial=-np.inf)), -_NEAR_LIMIT)
         return np.flatnonzero(greatest | (state.excess >= most - _RIPPLE_BEHIND))
 
     def norms(self, state: State, summit: Summit, wanted: NDArray[np.intp]) -> list[Norm]:
@@ -661,7 +663,7 @@ class Search:
         size, side = np.abs(slope).max(), -np.sign(slope[points])
         level = side * slope[points] / size
         # A slope of zero, which a program meets to its tolerance, may have the other sign.
-        level += np.minimum(_KEPT, -0.5 * level)
+        level += np.minimum(_SIGN_SLOPE, -0.5 * level)
         entries = self.scale * side[:, None] * self.turn.entries[1][points]
         none = np.full(points.size, -1)
         return [

@@ -27,7 +27,7 @@ from camwright.pipeline.torque.torque import Torque
 
 BINDING = 2e-3  # of a limit: a constraint this near to its reserve is active
 FLOOR = 1e-4  # of the engine's ripple, by 1 % of a value: the optima are converged to 1e-6
-_STEP = 1e-4  # of a number of the machine, for its difference quotient
+_PRICE_STEP = 1e-4  # of a number of the machine, for its difference quotient
 _BY_SQUARE = (PRESSURE, face_pv.id)
 _WEIGHTED = 1e-3  # of the ripple: least other terms of an objective that is no ripple alone
 
@@ -189,11 +189,11 @@ def _of_phase(design: Design, of: str) -> MachinePriceRecord:
 
 def _changed(number: MachineNumber, case: Case) -> tuple[Case, float]:
     """Case with a number changed by a small share, and the share; smaller at its upper bound."""
-    step = _STEP * number.value(case)
+    step = _PRICE_STEP * number.value(case)
     try:
-        return number.increased(case, step), _STEP
+        return number.increased(case, step), _PRICE_STEP
     except InputError:
-        return number.increased(case, -step), -_STEP
+        return number.increased(case, -step), -_PRICE_STEP
 
 
 def _with_solved_limits(ratings: Ratings, stated: Ratings, solved: Ratings) -> Ratings:

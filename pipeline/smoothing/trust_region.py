@@ -20,15 +20,16 @@ from camwright.pipeline.smoothing.synthesis_problem import CONVERGED, FEASIBLE, 
 PENALTY, _PENALTY_MAX = 20.0, 2e3
 # Of a search of bounded effort: 1 % of a limit that is worth more costs twice the engine's ripple.
 _PENALTY_BOUNDED = 2e2
-_HOPELESS = 0.01  # foreseen gain over the excess, where a cam within the limits is not reached
-_CREEPING = 1e-3  # the same, at which a search that is stuck has its end
+_HOPELESS_GAIN = 0.01  # foreseen gain over the excess, where a cam within the limits is not reached
+_CREEPING_GAIN = 1e-3  # the same, at which a search that is stuck has its end
 _INSIDE = 0.9  # of the trust region
-_RISE = 10.0  # of the penalty outside a limit
-_RAISED = 1e-4  # foreseen gain at `PENALTY`, outside a limit, at which the penalty is raised
+_PENALTY_RISE = 10.0  # of the penalty outside a limit
+_RAISING_GAIN = 1e-4  # foreseen gain at `PENALTY`, outside a limit, at which the penalty is raised
 _STEPS_MAX = 60
 _TRUST, _TRUST_LEAST = 0.3, 1e-7
-_PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
-_GROWTH, _GROWTH_OUTSIDE = 4.0, 2.0  # of the trust region after a good step, within the limits
+_PROVING_TRUST = 0.03  # least trust region in which a foreseen gain proves convergence
+_TRUST_GROWTH, _TRUST_GROWTH_OUTSIDE = 4.0, 2.0
+"""Growth of the trust region after a good step, within and outside the limits."""
 _SMALLER, _SMALLEST = 0.35, 0.1  # of the trust region of a refused step
 _REFUSALS = 2  # of a step; after more the functions are rough
 _ADDITIONS = 4
@@ -37,7 +38,7 @@ _BENT = 0.5  # of the foreseen gain: below, the step is shortened
 _SETTLING = 10  # steps in which most searches outside the limits converge; then they may be stuck
 # Of the violation: greatest decrease in the linear models of a search that is stuck, and of one
 # that a greater penalty would not move.
-_STUCK, _SETTLED = 0.01, 0.003
+_STUCK_DECREASE, _STUCK_AT_PENALTY = 0.01, 0.003
 _VIOLATED = 1e-6
 _PATIENCE = 4  # steps over which the gain of a draft is judged
 
@@ -133,15 +134,15 @@ def descended(
             outside = not _within(state)
             scale = penalty / PENALTY if outside else 1.0
             raised = outside and penalty < most
-            least = (_RAISED if raised else CONVERGED) * scale
-            if trust >= _PROOF or gain == np.inf:
+            least = (_RAISING_GAIN if raised else CONVERGED) * scale
+            if trust >= _PROVING_TRUST or gain == np.inf:
                 gain = predicted / scale
             if enough is not None and _inside(search, program.step, trust):
                 missing = penalty * state.violation
                 missing += ripple_weight * max(0.0, state.ripple - enough)
-                if predicted <= _HOPELESS * missing:
+                if predicted <= _HOPELESS_GAIN * missing:
                     return Descent(state, model, program, step, gain, penalty)
-            creeping = predicted <= _CREEPING * penalty * state.violation
+            creeping = predicted <= _CREEPING_GAIN * penalty * state.violation
             # Beyond a limit, not beyond its reserve alone.
             beyond = any(value > 1.0 for value in state.utilisation.values())
             conflict = ripple_weight > 0.0 and beyond
@@ -149,7 +150,7 @@ def descended(
             settled = step > _SETTLING or search.problem.seed is not None or effort < np.inf
             if settled and conflict and creeping and not tested:
                 tested = True
-                if trust < _PROOF or _stuck(search, state, model, _STUCK):
+                if trust < _PROVING_TRUST or _stuck(search, state, model, _STUCK_DECREASE):
                     return Descent(state, model, program, step, gain, penalty, stuck=True)
             actual = now - there.merit(penalty, ripple_weight)
             if predicted > least and actual < _CORRECTED * predicted:
@@ -171,25 +172,27 @@ def descended(
                 nearer = _nearer(search, state, program.step, there, penalty, ripple_weight)
                 there, actual = nearer, now - nearer.merit(penalty, ripple_weight)
             # Narrower steps than the first were refused before those that prove convergence.
-            if predicted <= least or (proven and trust < min(widest, _PROOF)):
-                if trust < _PROOF and not proven:
-                    trust, proven = _PROOF, True
+            if predicted <= least or (proven and trust < min(widest, _PROVING_TRUST)):
+                if trust < _PROVING_TRUST and not proven:
+                    trust, proven = _PROVING_TRUST, True
                     continue
                 if raised:
                     if conflict and not tested and search.problem.effort is not None:
                         tested = True
-                        if _stuck(search, state, model, _SETTLED):
+                        if _stuck(search, state, model, _STUCK_AT_PENALTY):
                             return Descent(state, model, program, step, gain, penalty, stuck=True)
-                    penalty *= _RISE
+                    penalty *= _PENALTY_RISE
                     trust, widest = max(trust, 0.1), 0.0
-                    model = model._replace(curvature=_RISE * model.curvature)  # as the multipliers
+                    model = model._replace(
+                        curvature=_PENALTY_RISE * model.curvature
+                    )  # as the multipliers
                     continue
                 end = there if actual > 0 else state
                 return Descent(end, model, program, step, gain, penalty)
             share = actual / predicted
             if share > 0.05:
                 state = there
-                wider = _GROWTH_OUTSIDE if outside else _GROWTH
+                wider = _TRUST_GROWTH_OUTSIDE if outside else _TRUST_GROWTH
                 trust = min(trust * (wider if share > 0.7 else 1.0 if share > 0.25 else 0.5), 1.0)
                 break
             refused += 1

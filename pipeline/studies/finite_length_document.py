@@ -43,9 +43,9 @@ _CROWNS = (
 )
 _TITLES = {"half_space": "half-space", "finite_elements": "finite elements"}
 # Moment over force and length of contact: round-off.
-_ROUND_OFF = 1e-12
+_MOMENT_ROUND_OFF = 1e-12
 # Depth of a body without one, in the shorter length, by Saint-Venant.
-_DEPTH = 2.0
+_DEPTH_OVER_LENGTH = 2.0
 
 
 def quantity(text: str, unit: str, option: str) -> float:
@@ -88,7 +88,9 @@ class LengthOptions:
         self.contact_length()
         shorter = min(self.lengths())
         bodies = [
-            FiniteBody(material, length, end, _DEPTH * shorter if depth is None else depth)
+            FiniteBody(
+                material, length, end, _DEPTH_OVER_LENGTH * shorter if depth is None else depth
+            )
             for material, length, end, depth in zip(
                 (pair.body_1, pair.body_2), self.lengths(), self.ends(), depths, strict=True
             )
@@ -229,7 +231,9 @@ class FiniteLength:
             **bars,
             "greatest_at_mm": in_unit(float(cells.centres_along[place]), "mm"),
             "greatest_is_singular": is_singular,
-            "moment_Nmm": in_unit(moment, "N mm") if abs(moment) > _ROUND_OFF * scale else 0.0,
+            "moment_Nmm": in_unit(moment, "N mm")
+            if abs(moment) > _MOMENT_ROUND_OFF * scale
+            else 0.0,
         }
         if tier.tier == "finite_elements":
             depths = [in_unit(body.depth, "mm") for body in self.pair.bodies]

@@ -40,7 +40,7 @@ from camwright.pipeline.contact.tangential_patch import tangential_patch
 HALF_ANGLE_MAX = np.radians(15.0)
 """Half contact angle up to which the theory of Hertz is valid, rad."""
 
-_FINE, _COARSE = 16, 8
+_FINE_PATCH, _COARSE_PATCH = 16, 8  # elements per half-width
 # Relative error of half-planes over the square of half-width over smaller radius. Compared with the
 # full contact of two discs up to 15 deg: 0.12 for p0 and half-width, 0.31 for the shear after the
 # first-order term of a disc; with Persson's pin in a hole: at most 0.25 for p0.
@@ -199,9 +199,9 @@ def finite_elements(pair: TwoCylinders) -> FiniteElementContact:
             f"half contact angle > {shown(HALF_ANGLE_MAX, 'deg', 3)}: the bodies are no "
             "half-planes there; reduce the load or increase the radii"
         )
-    fine, error = _solved(pair, _FINE), 0.0
+    fine, error = _solved(pair, _FINE_PATCH), 0.0
     if pair.line_load > 0:
-        coarse = _solved(pair, _COARSE).figures
+        coarse = _solved(pair, _COARSE_PATCH).figures
         for name in ("p0", "half_width", "tau_max", "von_mises"):
             error = max(error, abs(getattr(coarse, name) / getattr(fine.figures, name) - 1))
         error += _FLATNESS * (fine.figures.half_width / pair.smaller_radius) ** 2
@@ -337,11 +337,11 @@ def patch_mesh(poisson: float) -> tuple[BodyMesh, Index]:
 
     Lengths in half-widths; the surface is y = 0, the body below.
     """
-    body, frame, _ = patch_body(poisson, _FINE)
+    body, frame, _ = patch_body(poisson, _FINE_PATCH)
     triangles = body.mesh.triangles[:, elements_near(body, frame.origin, STRESS_REACH)]
     nodes = np.unique(triangles)  # corners before middles
     points = body.mesh.points[:, nodes]
-    template = contact_patch(poisson, _FINE).points * np.array([[1.0], [-1.0]])
+    template = contact_patch(poisson, _FINE_PATCH).points * np.array([[1.0], [-1.0]])
     _, order = cKDTree(template.T).query(points.T)
     return BodyMesh(points, np.searchsorted(nodes, triangles), {}), np.asarray(order)
 

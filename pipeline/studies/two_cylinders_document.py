@@ -40,9 +40,9 @@ from camwright.pipeline.studies.two_cylinders import (
 )
 
 # Relative excess of the shear on another plane above which it is listed.
-_WORTH = 1e-3
+_SHEAR_EXCESS = 1e-3
 # Dundurs' constant of like materials: round-off.
-_ALIKE = 1e-12
+_ZERO_DUNDURS = 1e-12
 Document = dict[str, Any]
 
 # Young's moduli of solids from soft rubber to diamond, Pa.
@@ -216,7 +216,7 @@ def lines(document: Document) -> Iterator[str]:
                 )
     if "finite_length" in document:
         yield from length_lines(document["finite_length"])
-    if abs(beta := document["dundurs_beta"]) > _ALIKE:
+    if abs(beta := document["dundurs_beta"]) > _ZERO_DUNDURS:
         yield f"unlike materials, Dundurs' beta {beta:.4g}: pressure of a frictionless contact"
     if "approach_mm" in document:
         yield f"approach {document['approach_mm']:.6g} mm"
@@ -267,7 +267,7 @@ def _figures(contact: LineContact) -> dict[str, float]:
         "von_mises_MPa": in_unit(contact.von_mises, "MPa"),
         "von_mises_depth_mm": in_unit(contact.von_mises_depth, "mm"),
     }
-    if contact.shear_any_plane > (1 + _WORTH) * contact.tau_max:
+    if contact.shear_any_plane > (1 + _SHEAR_EXCESS) * contact.tau_max:
         record["tau_max_all_planes_MPa"] = in_unit(contact.shear_any_plane, "MPa")
     return record
 

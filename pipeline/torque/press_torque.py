@@ -21,7 +21,7 @@ from camwright.pipeline.torque.trace_file import HeaderText, trace_text, value_c
 GRAVITY = 9.80665
 """Standard acceleration of free fall, m/s2."""
 
-_ROUND_OFF = 1e-9  # of a stroke
+_STROKE_ROUND_OFF = 1e-9  # of a stroke
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +121,9 @@ class PressTorque:
             raise InputError("torque.force", f"{force.size} values", "2 or more, one per height")
         if not (np.diff(height) > 0.0).all():
             raise InputError("torque.height", "not in order", "strictly increasing")
-        within = -_ROUND_OFF * stroke <= height[0] and height[-1] <= stroke * (1.0 + _ROUND_OFF)
+        within = -_STROKE_ROUND_OFF * stroke <= height[0] and height[-1] <= stroke * (
+            1.0 + _STROKE_ROUND_OFF
+        )
         if not within:
             text = f"{shown(float(height[0]), 'mm')} to {shown(float(height[-1]), 'mm')}"
             raise InputError("torque.height", text, f"from 0 mm to {shown(stroke, 'mm')}")

@@ -26,7 +26,7 @@ def test_many_ripples_have_the_least_greatest_one(seed):
 @pytest.mark.parametrize("seed", range(6))
 def test_ripples_left_out_at_first_change_nothing(seed, monkeypatch):
     norms, _, few = _program(seed, count=14)
-    monkeypatch.setattr(cone_program, "_FEW", len(norms))
+    monkeypatch.setattr(cone_program, "_FIRST_NORMS", len(norms))
     whole = _program(seed, count=14)[2]
     assert few.objective == pytest.approx(whole.objective, abs=1e-6)
     np.testing.assert_allclose(few.step, whole.step, atol=1e-4)

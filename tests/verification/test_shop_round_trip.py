@@ -149,7 +149,7 @@ def test_a_smaller_error_takes_more_arcs(error: float) -> None:
 
 
 def test_arcs_finer_than_numbers_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys.modules[arc_polyline.__module__], "_HALVINGS", 5)
+    monkeypatch.setattr(sys.modules[arc_polyline.__module__], "_PART_HALVINGS", 5)
     with pytest.raises(GeometryError, match="must be <= 1e-21 m"):
         arc_polyline(wavy(), 1e-21)
     with pytest.raises(InputError):

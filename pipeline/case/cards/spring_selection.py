@@ -27,7 +27,7 @@ from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import SHAPES
 
 SHIPPED = "shipped"
-_NEAREST = 3
+_REASONS_SHOWN = 3  # refused springs in a message, the nearest
 
 
 def put_spring(case: Tables, folder: Path | None) -> None:
@@ -62,7 +62,7 @@ def put_spring(case: Tables, folder: Path | None) -> None:
     springs = read_catalogue(path)
     best, reasons = lightest(springs, demand)
     if best is None:
-        nearest = sorted(reasons, key=lambda each: len(reasons[each]))[:_NEAREST]
+        nearest = sorted(reasons, key=lambda each: len(reasons[each]))[:_REASONS_SHOWN]
         why = "; ".join(f"{each}: {', '.join(reasons[each])}" for each in nearest)
         limit = f"a catalogue with a suitable spring; nearest are {why}"
         raise InputError("spring.catalogue", str(name), limit if springs else "not empty")

@@ -25,7 +25,7 @@ from camwright.pipeline.follower.spring import HelicalSpring
 
 AS_GIVEN = "as given"
 WIDEST_PRIME = 1.5  # upper end of a search over the prime radius of the case
-_MARGIN = 1.002
+_WALL_MARGIN = 1.002  # on the least prime radius, for the wall at the contour
 _END_MOST = 0.05  # of the roller's width
 _FORK = 2e-3  # m between roller and fork if the case has no pin
 
@@ -78,7 +78,7 @@ def least_prime_radius(case: Case, roller_radius: float) -> float:
     """Least prime radius (m) with the minimum wall about bore and keyway."""
     key = case.cam.keyway
     inside = case.cam.bore_radius + (0.0 if key is None else key.depth)
-    return _MARGIN * (roller_radius + case.limits[MINIMUM_WALL] * inside)
+    return _WALL_MARGIN * (roller_radius + case.limits[MINIMUM_WALL] * inside)
 
 
 def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -> Case:
@@ -237,7 +237,7 @@ def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None
     if "prime_radius" in smoothing.free and smoothing.prime_radius_range is not None:
         least, most = smoothing.prime_radius_range
         low = max(low, least)
-        high = max(most, _MARGIN * low)
+        high = max(most, _WALL_MARGIN * low)
     start = min(max(case.cam.prime_radius, low), high)
     table_in(data, "cam")["prime_radius"] = _mm(start)
     table_in(data, "smoothing").update(

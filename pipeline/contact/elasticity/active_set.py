@@ -23,7 +23,7 @@ from camwright.geometry.errors import ContactError
 
 _SWEEPS = 60
 # Relative magnitude of pressure or gap below which its sign is round-off.
-_ROUND_OFF = 1e-11
+_SIGN_ROUND_OFF = 1e-11
 _COMPLEMENTARITY = 1e-9
 
 
@@ -146,8 +146,8 @@ def _together(
         current = active[unsettled]
         p, d = _equality_solutions(C, g[unsettled], weights, targets[unsettled], current)
         gaps = p @ C.T + g[unsettled] - d @ weights.T
-        tolerance_p = _ROUND_OFF * np.abs(p).max(axis=1, keepdims=True)
-        tolerance_g = _ROUND_OFF * np.abs(gaps).max(axis=1, keepdims=True)
+        tolerance_p = _SIGN_ROUND_OFF * np.abs(p).max(axis=1, keepdims=True)
+        tolerance_g = _SIGN_ROUND_OFF * np.abs(gaps).max(axis=1, keepdims=True)
         updated = (current & (p > -tolerance_p)) | (~current & (gaps < -tolerance_g))
         changed = (updated != current).any(axis=1)
         pressures[unsettled], motions[unsettled] = p, d
@@ -214,7 +214,7 @@ def _primal(C: Array, g: Array, weights: Array, targets: Array) -> tuple[Array, 
         gaps = C @ p + g - weights @ d
         gaps[active] = 0.0
         worst = int(np.argmin(gaps))
-        if gaps[worst] >= -_ROUND_OFF * max(np.abs(gaps).max(), 1e-300):
+        if gaps[worst] >= -_SIGN_ROUND_OFF * max(np.abs(gaps).max(), 1e-300):
             return p, d
         active[worst] = True
     raise ContactError("contact pressures: active set not converged")

@@ -14,7 +14,7 @@ from camwright.geometry.errors import InputError
 _SCATTER = 2e-4
 _ORDER_TRUSTED = 1.0  # below it the meshes are not in the asymptotic range
 _ORDER_LEAST, _ORDER_MOST = 0.5, 3.0  # bounds of the order in the error bar
-_SAFETY, _SAFETY_COARSE = 1.25, 3.0  # in and outside the asymptotic range
+_GCI_SAFETY, _GCI_SAFETY_COARSE = 1.25, 3.0  # in and outside the asymptotic range
 
 
 class IndexTerms(NamedTuple):
@@ -81,15 +81,15 @@ def converged(values: Sequence[float], ratio: float) -> Convergence:
     figures = (coarse, middle, fine)
     if first * second <= 0 or abs(second) >= abs(first) or spread < _SCATTER:
         whole = float(np.log(2.0) / np.log(ratio))
-        scattered = IndexTerms(_SAFETY_COARSE, max(values) - min(values), ratio, whole)
-        least = IndexTerms(_SAFETY_COARSE, abs(second), ratio, _ORDER_LEAST)
+        scattered = IndexTerms(_GCI_SAFETY_COARSE, max(values) - min(values), ratio, whole)
+        least = IndexTerms(_GCI_SAFETY_COARSE, abs(second), ratio, _ORDER_LEAST)
         of_order = first * second > 0 and least.over(fine) > scattered.over(fine)
         terms = least if of_order else scattered
         return Convergence(figures, fine, None, terms.over(fine), terms)
     order = float(np.log(first / second) / np.log(ratio))
     bounded = min(max(order, _ORDER_LEAST), _ORDER_MOST)
     gain = ratio**bounded - 1.0
-    safety = _SAFETY if order >= _ORDER_TRUSTED else _SAFETY_COARSE
+    safety = _GCI_SAFETY if order >= _ORDER_TRUSTED else _GCI_SAFETY_COARSE
     terms = IndexTerms(safety, abs(second), ratio, bounded)
     return Convergence(figures, fine + second / gain, order, terms.over(fine), terms)
 
@@ -129,7 +129,7 @@ def converged_on_two(
         order = min(max(min(orders), _ORDER_LEAST), _ORDER_MOST)
     assumed, added = order or _ORDER_LEAST, max(each.gci for each in observed)
     change = (fine - coarse) / (ratio**assumed - 1.0)
-    terms = IndexTerms(_SAFETY_COARSE, abs(fine - coarse), ratio, assumed, added)
+    terms = IndexTerms(_GCI_SAFETY_COARSE, abs(fine - coarse), ratio, assumed, added)
     return Convergence(
         values=(coarse, fine),
         extrapolated=fine if order is None else fine + change,

@@ -57,7 +57,7 @@ def _von_mises(middle: Array, radius: Array, poisson: float) -> Array:
 _POWERS = np.array([(i, j) for i in range(5) for j in range(5 - i)])
 # Spacing of the coarse points, in half-widths, and the share of the largest value on them above
 # which the maximum may lie nearby.
-_COARSE, _LIKELY = 0.125, 0.85
+_COARSE_CELL, _LIKELY_SHARE = 0.125, 0.85
 
 
 class PeakFinder:
@@ -98,9 +98,9 @@ class PeakFinder:
         coarse, nearest = self._coarse
         likely, chosen = np.zeros(coarse.size, dtype=bool), np.zeros(nearest.size, dtype=bool)
         for field in values_at(coarse):
-            likely |= (field >= _LIKELY * field.max(axis=0)).any(axis=1)
+            likely |= (field >= _LIKELY_SHARE * field.max(axis=0)).any(axis=1)
             for node in np.unique(coarse[field.argmax(axis=0)]):
-                chosen[self._within(self._points[:, node], self._reach + _COARSE)] = True
+                chosen[self._within(self._points[:, node], self._reach + _COARSE_CELL)] = True
         chosen |= likely[nearest]
         while True:
             nodes = np.flatnonzero(chosen)
@@ -115,7 +115,7 @@ class PeakFinder:
     @cached_property
     def _coarse(self) -> tuple[Index, Index]:
         """Numbers of the coarse points (c,), and of the nearest of them to each point (m,)."""
-        cells = np.floor(self._points / _COARSE)
+        cells = np.floor(self._points / _COARSE_CELL)
         _, first = np.unique(cells, axis=1, return_index=True)
         coarse = np.sort(first)
         _, nearest = scipy.spatial.cKDTree(self._points[:, coarse].T).query(self._points.T)

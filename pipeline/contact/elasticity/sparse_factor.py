@@ -22,7 +22,7 @@ from camwright.geometry.errors import ContactError
 Index = NDArray[np.int64]
 
 _POSITIVE_DEFINITE = 2  # matrix type of Pardiso: real symmetric positive definite
-_AT_ONCE = 4  # right-hand sides of SuperLU that stay in the cache of the processor
+_SIDES_AT_ONCE = 4  # right-hand sides of SuperLU that stay in the cache of the processor
 
 
 def back_end() -> str:
@@ -61,8 +61,8 @@ def _symmetric_lu(matrix: scipy.sparse.sparray, ordering: str) -> scipy.sparse.l
 def _solved(factor: scipy.sparse.linalg.SuperLU, right: Array) -> Array:
     """Solutions (n, k) for right-hand sides (n, k), a few at a time: many take thrice as long."""
     solution = np.array(right, dtype=float, order="F")
-    for first in range(0, solution.shape[1], _AT_ONCE):
-        few = slice(first, first + _AT_ONCE)
+    for first in range(0, solution.shape[1], _SIDES_AT_ONCE):
+        few = slice(first, first + _SIDES_AT_ONCE)
         solution[:, few] = factor.solve(solution[:, few])
     return solution
 

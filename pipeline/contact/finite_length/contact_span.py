@@ -23,11 +23,11 @@ from camwright.pipeline.contact.finite_length.pressure_cells import (
     edges_along,
 )
 
-_STRIPS, _STEPS, _REFINEMENTS = 400, 60, 6
-_CLOSE = 1e-6  # of the force: a rougher estimate moves the cells
+_STRIPS, _NEWTON_STEPS, _STRIP_REFINEMENTS = 400, 60, 6
+_FORCE_CONVERGED = 1e-6  # of the force: a rougher estimate moves the cells
 # Cells beyond the estimated ends over its length: the estimate is up to a third too long, and at
 # most some per cent too short.
-_MARGIN = 0.05
+_SPAN_MARGIN = 0.05
 # Shares of the window across that a contact takes which no end of the line bounds, and one does.
 _ACROSS, _ACROSS_AT_END = 0.16, 0.3
 # Distance of the contact from an end of the line, over half its length, from which the cells there
@@ -57,7 +57,7 @@ def contact_cells(pair: FinitePair, force: float, moment: float, sizes: CellSize
     if isinstance(pair.crown, Straight):
         return PressureCells(edges_across(wide, sizes), along)
     span, flat, reach = contact_span(pair, force, moment), 0.5 * pair.contact_length, along[-1]
-    margin = _MARGIN * (span.end - span.start)
+    margin = _SPAN_MARGIN * (span.end - span.start)
     low = -reach if span.start - margin <= -flat else span.start - margin
     high = reach if span.end + margin >= flat else span.end + margin
     if high - low == 2.0 * reach:
@@ -104,7 +104,7 @@ def _span(
     low, high, length = -0.5 * whole, 0.5 * whole, whole
     pressed = np.empty(0)
     edges = np.empty(0)
-    for _ in range(_REFINEMENTS):
+    for _ in range(_STRIP_REFINEMENTS):
         edges = np.linspace(low, high, _STRIPS + 1)
         y = 0.5 * (edges[1:] + edges[:-1])
         half_width, _ = hertz.line_contact(force / length, 1.0 / curvature, modulus)
@@ -136,10 +136,10 @@ def _pressed(y: Array, drop: Array, total: float, lever: float) -> Array:
 
     # All strips touch at first.
     motion = np.asarray(np.linalg.solve(basis.T @ basis, target + basis.T @ drop), dtype=float)
-    for _ in range(_STEPS):
+    for _ in range(_NEWTON_STEPS):
         indentation = np.maximum(basis @ motion - drop, 0.0)
         residual = basis.T @ indentation - target
-        if np.abs(residual).max() <= _CLOSE * total:
+        if np.abs(residual).max() <= _FORCE_CONVERGED * total:
             return np.asarray(indentation, dtype=float)
         on = basis[indentation > 0]
         hessian = on.T @ on + 1e-9 * np.eye(2)

@@ -43,8 +43,8 @@ Index = NDArray[np.intp]
 # with straight lines between rounded ends and with a crown. Nodes of ladder index 0.
 _WIDTH_RATIO, _LOAD_RATIO, _ROUNDED_CURVATURE_RATIO, _CROWNED_CURVATURE_RATIO = 2.0, 3.0, 4.0, 9.0
 _WIDTH, _CURVATURE, _LOAD = 1e-4, 40.0, 1e5  # m, 1/m, N/m
-_LIGHT = 0.24  # greatest light moment over force and length
-_FEW = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
+_LIGHT_MOMENT = 0.24  # greatest light moment over force and length
+_FEW_ROWS = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
 
 # Places along the line at which the drop of a crown decides the tables kept.
 _PLACES = 2001
@@ -70,7 +70,7 @@ class _Ladder:
     """
 
     def __init__(self, light: int, *batches: int) -> None:
-        self.moments = np.concatenate([np.linspace(0.0, _LIGHT, light), _HEAVY])
+        self.moments = np.concatenate([np.linspace(0.0, _LIGHT_MOMENT, light), _HEAVY])
         self.signed: Array = np.concatenate([-self.moments[:0:-1], self.moments])
         self.zero = self.moments.size - 1
         self.batches = *batches, self.moments.size
@@ -467,7 +467,7 @@ def _weighted(columns: Index, weights: Array, table: Array) -> Array:
     Of many rows as a sparse matrix, whose import takes a tenth of a second; the sums are the same.
     """
     count, size = columns.shape
-    if count > _FEW:
+    if count > _FEW_ROWS:
         starts = np.arange(0, count * size + 1, size)
         matrix = scipy.sparse.csr_array(
             (weights.ravel(), columns.ravel(), starts), shape=(count, len(table))

@@ -21,7 +21,7 @@ from camwright.pipeline.contact.finite_length.pressure_cells import PressureCell
 
 # Distance of two cells over their size beyond which an expansion is used: there the closed form
 # loses digits.
-_FAR = 20.0
+_FAR_CELL = 20.0
 # Distance from an end over the greatest half-width of the cells from which images are far.
 _FAR_IMAGE = 3.0
 # Difference of symmetric edges from their mirror over the length of the body.
@@ -236,7 +236,7 @@ def _double_integral(across: _Pairs, along: _Pairs) -> Array:
     values = along.integrated(across.integrated(primitive).T).T
     square = across.centres[:, None] ** 2 + along.centres**2
     size = np.maximum(across.squares[:, None], along.squares)
-    i, j = np.nonzero(square > _FAR**2 * 12.0 * size)
+    i, j = np.nonzero(square > _FAR_CELL**2 * 12.0 * size)
     x_squares, y_squares, r2 = across.squares[i], along.squares[j], square[i, j]
     spread = x_squares * (3.0 * across.centres[i] ** 2 - r2)
     spread += y_squares * (3.0 * along.centres[j] ** 2 - r2)

@@ -50,16 +50,16 @@ FACTORS = ("centre", "greatest", "end1_mean", "end2_mean")
 SIZES = CellSizes()
 # Ratio of the cells of successive meshes, and their sizes: the half-spaces on the last three, the
 # finite elements on the first three.
-_REFINEMENT = 1.5
-_MESHES = tuple(_REFINEMENT**k for k in (2, 1, 0, -1))
+_MESH_RATIO = 1.5
+_MESHES = tuple(_MESH_RATIO**k for k in (2, 1, 0, -1))
 # Ladder of half-widths and depths of the blocks, so that the compliances kept are shared.
 _LADDER, _LADDER_START = 1.1, 1e-4
 # Growth of the elements into the block and beside the contact.
 _BLOCK_GROWTH = 2.0
 # Width of a block to each side over that of its cells, at least.
-_NARROWEST = 2.0
+_BLOCK_WIDTH = 2.0
 # Greatest depth of a block over its first element, by memory; greatest tilt, rad.
-_DEEPEST, _TILT = 2e4, 0.1
+_DEPTH_OVER_CELL, _TILT = 2e4, 0.1
 # Contacts whose half-widths lie within this ratio share their cells.
 _SHARED = 1.1
 # Moment over force and length up to which the load is not concentrated near an end.
@@ -209,7 +209,7 @@ def both_tiers(
         blocks.append(length_contact.solve(cells, compliance, gap, force, tilt=tilt, moment=moment))
     balanced = float(blocks[-1].moment[0])
     wide = on_ladder(mesh_width) / half_width
-    fitted = replace(sizes.coarser(1.0 / _REFINEMENT), window=wide * sizes.window)
+    fitted = replace(sizes.coarser(1.0 / _MESH_RATIO), window=wide * sizes.window)
     halves = [
         length_contact.solve(
             cells,
@@ -291,11 +291,11 @@ def _converged(values: Array, halves: Array | None) -> Convergence:
     observed order, the error of the half-spaces on the same cells is taken off before the bar is
     taken, and added to it; the lesser bar holds.
     """
-    plain = converged(values.tolist(), _REFINEMENT)
+    plain = converged(values.tolist(), _MESH_RATIO)
     if halves is None or plain.order is not None:
         return plain
     corrected = values * halves[-1] / halves[:-1]
-    freed = converged(corrected.tolist(), _REFINEMENT)
+    freed = converged(corrected.tolist(), _MESH_RATIO)
     bar = freed.gci + abs(float(corrected[-1] / values[-1]) - 1.0)
     return plain if plain.gci <= bar else replace(freed, values=plain.values, gci=bar)
 
@@ -397,15 +397,15 @@ def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
         If the block is not deeper than half of the cells' width, or too deep for elements of that
         size.
     """
-    if not body.depth < _DEEPEST * cells.x[1]:
-        limit = f"< {shown(_DEEPEST * cells.x[1], 'mm')} at this half-width"
+    if not body.depth < _DEPTH_OVER_CELL * cells.x[1]:
+        limit = f"< {shown(_DEPTH_OVER_CELL * cells.x[1], 'mm')} at this half-width"
         raise InputError("depth", shown(body.depth, "mm"), limit)
     if not body.depth > cells.x[-1]:
         limit = f"> {shown(cells.x[-1], 'mm')}, half the width of the cells"
         raise InputError("depth", shown(body.depth, "mm"), limit)
     middle = cells.shape[0] // 2
     x, y = cells.x, cells.y[middle:]
-    width = max(body.depth, _NARROWEST * x[-1])
+    width = max(body.depth, _BLOCK_WIDTH * x[-1])
     beside = graded(width - x[-1], x[-1] - x[-2], _BLOCK_GROWTH, np.inf)
     deep = graded(body.depth, x[1], _BLOCK_GROWTH, np.inf)
     step, overhang = y[-1] - y[-2], 0.5 * body.length - y[-1]

@@ -20,7 +20,7 @@ _ACROSS_GROWTH = 1.4
 # Peak at a rounded end: cells over its width per cell over the half-width; widths beyond the flat
 # with cells of that size, and up to which there are cells; narrowest peak over the radius for which
 # the growth of the cells is not exceeded.
-_PER_PEAK, _RESOLVED, _REACH, _NARROWEST = 0.5, 3.0, 7.0, 2e-3
+_PER_PEAK, _PEAK_RESOLVED, _PEAK_REACH, _LEAST_CELL = 0.5, 3.0, 7.0, 2e-3
 
 
 @dataclass(frozen=True)
@@ -162,14 +162,14 @@ def _end_radius(pair: FinitePair) -> float | None:
 def _rounded(flat: float, radius: float, peak: float, sizes: CellSizes) -> Array:
     """Edges, m, of the half y >= 0 of a flat of half-length `flat` with a rounded end."""
     per_peak = sizes.per_half_width * _PER_PEAK
-    resolved = int(np.ceil(_RESOLVED * per_peak))
+    resolved = int(np.ceil(_PEAK_RESOLVED * per_peak))
     beyond = np.arange(resolved + 1) / per_peak
-    while beyond[-1] < _REACH:
+    while beyond[-1] < _PEAK_REACH:
         beyond = np.append(beyond, beyond[-1] + sizes.growth * (beyond[-1] - beyond[-2]))
     width = min(peak, radius / beyond[-1], 0.25 * flat)
     # As many cells as the narrowest peak takes, of the growth that fits.
     largest = max(sizes.largest, sizes.largest_share * 2.0 * flat)
-    count = graded(flat, _NARROWEST * radius / per_peak, sizes.growth, largest).size - 1
+    count = graded(flat, _LEAST_CELL * radius / per_peak, sizes.growth, largest).size - 1
     first = width / per_peak
     inwards = np.concatenate([[0.0], np.cumsum(_steps(flat, first, count, largest))])
     inwards[-1] = flat  # the edge in the middle is at 0, without round-off

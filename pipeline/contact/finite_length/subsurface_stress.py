@@ -15,7 +15,7 @@ from camwright.pipeline.contact.finite_length.length_contact import LengthContac
 from camwright.pipeline.contact.finite_length.pressure_cells import PressureCells
 
 # Depths in half-widths: down to the second, by steps of the first.
-_STEP, _DEEPEST = 0.02, 2.5
+_DEPTH_STEP, _DEEPEST_POINT = 0.02, 2.5
 # Least distance of a point from an edge, over its depth: the potentials are singular on the edge.
 _ON_EDGE = 1e-9
 
@@ -65,7 +65,7 @@ def subsurface_stress(
     touching = np.flatnonzero(contact.centre_line[0] > 0)
     first, last = cells.y[touching[0]], cells.y[touching[-1] + 1]
     numbers = np.arange(middles.size)
-    depths = half_width * np.arange(_STEP, _DEEPEST + 0.5 * _STEP, _STEP)
+    depths = half_width * np.arange(_DEPTH_STEP, _DEEPEST_POINT + 0.5 * _DEPTH_STEP, _DEPTH_STEP)
     # A tilt may lift an end: where the cells are wider than the stretch, the last one that touches.
     ends = (
         (first, (middles > first) & (middles < first + stretch) | (numbers == touching[0])),

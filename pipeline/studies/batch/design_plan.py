@@ -22,7 +22,7 @@ SHARD_OF: Mapping[Tier, int] = {
 }  # fmt: skip
 """Most designs of a shard: a second or so of work, so that the milliseconds of the scheduler and of
 the main process are few."""
-_TAIL, _LEAST = 6, 5
+_TAIL, _LEAST_PART = 6, 5
 """A shard holds at most a sixth of the designs left, and at least a fifth of a full shard."""
 _ID = 24  # hex digits: 96 bits
 CASE = "case"
@@ -128,7 +128,7 @@ def shard_size(left: int, most: int) -> int:
     ----------
     Polychronopoulos and Kuck, Guided self-scheduling, IEEE Trans. Comput. C-36 (1987) 1425.
     """
-    return min(most, max(-(-left // _TAIL), -(-most // _LEAST)))
+    return min(most, max(-(-left // _TAIL), -(-most // _LEAST_PART)))
 
 
 def study_versions() -> dict[str, str]:

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 UNEXPECTED = "unexpected {kind}: {text}"
 
-_AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
+_SCREENED_AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
 
 
 def row_of(trial: Trial, headline: HeadlineRecord) -> Row:
@@ -108,10 +108,13 @@ class DesignSolver:
         pieces = [
             screen_designs(
                 case,
-                {name: column[start : start + _AT_ONCE] for name, column in values.items()},
+                {
+                    name: column[start : start + _SCREENED_AT_ONCE]
+                    for name, column in values.items()
+                },
                 positions=self._positions(case),
             )
-            for start in range(0, count, _AT_ONCE)
+            for start in range(0, count, _SCREENED_AT_ONCE)
         ]
         names = dict.fromkeys(name for piece in pieces for name in piece)
         return {name: np.concatenate([piece[name] for piece in pieces]) for name in names}
