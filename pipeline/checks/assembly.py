@@ -88,8 +88,8 @@ def _pairs_at_bearings(numbers: Numbers) -> dict[str, tuple[tuple[Value, Value],
         parts |= {"gear": _gear(numbers)}
     places = {1: 0.0, 2: shaft.bearing_spacing}
     return {
-        f"{name} to bearing {number}": (part, place)
-        for number, place in places.items()
+        f"{name} to bearing {number}": (part, position)
+        for number, position in places.items()
         for name, part in parts.items()
     }
 
@@ -97,7 +97,7 @@ def _pairs_at_bearings(numbers: Numbers) -> dict[str, tuple[tuple[Value, Value],
 def _beside_bearings(numbers: Numbers) -> Gaps:
     """Gaps beside bearings of no width, m."""
     pairs = _pairs_at_bearings(numbers)
-    return {name: _between(part, (place, 0.0)) for name, (part, place) in pairs.items()}
+    return {name: _between(part, (position, 0.0)) for name, (part, position) in pairs.items()}
 
 
 def _with_bearings(gap: Value, numbers: Numbers) -> Value:
@@ -123,8 +123,8 @@ def _of_bearings(demand: Demand, solution: Solution) -> Demand:
         if demand.allowed is not None and demand.value < demand.allowed:
             how, taken = ", even with bearings of no width", 0.0
     nearest = _narrowest(_beside_bearings(solution.numbers))
-    (middle, half), place = _pairs_at_bearings(solution.numbers)[nearest]
-    stated = {"z_i": _one(middle), "z_b": place, "w_i": 2.0 * _one(half), "B": taken or 0.0}
+    (middle, half), position = _pairs_at_bearings(solution.numbers)[nearest]
+    stated = {"z_i": _one(middle), "z_b": position, "w_i": 2.0 * _one(half), "B": taken or 0.0}
     return replace(demand, at=None, note=f"{nearest}{how}", stated=stated)
 
 
@@ -330,8 +330,8 @@ def _beside_shaft(tip: Value, numbers: Numbers) -> Gaps:
     case = numbers.known_case
     shaft = camshaft_of(case)
     centre = _centre_distance(shaft)
-    place = centre * cos(shaft.mesh_angle), centre * sin(shaft.mesh_angle)
-    return {"cam": centre - tip, case.facing.word: _to_follower(numbers, *place)}
+    shaft_axis = centre * cos(shaft.mesh_angle), centre * sin(shaft.mesh_angle)
+    return {"cam": centre - tip, case.facing.word: _to_follower(numbers, *shaft_axis)}
 
 
 def _with_shaft(tip: Value, numbers: Numbers) -> Value:
@@ -522,8 +522,8 @@ def _of_seat(demand: Demand, solution: Solution) -> Demand:
         taken = 0.0 if float(demand.value or 0.0) < limit else SEAT_MOST * layout.stem_diameter
         how = f", taken as {shown(float(taken), 'mm')} thick, an upper bound"
         how = ", even of no thickness" if taken == 0.0 else how
-    place = layout.seated(taken, limit, height)
-    high, below = _one(place.height), _one(layout.guide_a[1])
+    seat = layout.seated(taken, limit, height)
+    high, below = _one(seat.height), _one(layout.guide_a[1])
     where = f"moving seat at {shown(high, 'mm')}"
     between = high <= _one(layout.guide_b[0]) and below < high
     stated = {"s": high, "t": float(taken), "a": below} if between else {}

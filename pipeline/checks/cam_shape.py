@@ -116,7 +116,7 @@ def sharpness(cam: LoadedCam) -> Array:
 
 
 def lift(cam: LoadedCam) -> Array:
-    """Lift, m."""
+    """Measure: lift of the follower, m."""
     return cam.jet.lift
 
 
@@ -150,10 +150,10 @@ def _tool_allowed(numbers: Numbers) -> Allowed:
     limit, stated = numbers.get(f"limits.{TOOL_RADIUS.id}"), numbers.get(_TOOL)
     if limit is None and stated is None:
         return Allowed(None, (_TOOL,))
-    known = stated if limit is None else limit
+    allowed = stated if limit is None else limit
     if limit is not None and stated is not None:
-        known = np.where(np.isnan(limit), stated, limit)[()]
-    return Allowed(TOOL_ALLOWANCE * np.asarray(known)[()])
+        allowed = np.where(np.isnan(limit), stated, limit)[()]
+    return Allowed(TOOL_ALLOWANCE * np.asarray(allowed)[()])
 
 
 def _in_hollow(cam: LoadedCam, hollow: float) -> Array | None:
@@ -273,8 +273,8 @@ undercut = check(
 def self_intersection(solution: Solution) -> Demand:
     """Number of crossings of the contour with itself."""
     crossings = solution.contour.self_intersections()
-    count, place = float(len(crossings)), _place(crossings[0][0]) if crossings else None
-    return Demand(count, 0.0, place, stated={"n": count})
+    count, angle = float(len(crossings)), _place(crossings[0][0]) if crossings else None
+    return Demand(count, 0.0, angle, stated={"n": count})
 
 
 @check(
@@ -296,9 +296,9 @@ def second_contact(solution: Solution) -> Demand:
     """Penetration of the follower into the contour away from the contact, m."""
     nearest = solution.contour.second_contact()
     depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinite clearance is 0
-    place, gap = _place(float(nearest.theta)), float(nearest.clearance)
+    angle, gap = _place(float(nearest.theta)), float(nearest.clearance)
     limit = solution.machine.limits[SECOND_CONTACT_DEPTH]
-    return Demand(depth, limit, place, stated={"g": gap})
+    return Demand(depth, limit, angle, stated={"g": gap})
 
 
 @check(

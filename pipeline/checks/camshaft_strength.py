@@ -630,10 +630,10 @@ def _flank_allowed(numbers: Numbers) -> Allowed:
     gear = _geared(numbers)[1]
     limits = gear.contact_limit, gear.pinion_contact_limit
     missing = lacking(gear.table, gear, "contact_limit", "pinion_contact_limit")
-    known = [limit for limit in limits if limit is not None]
+    stated = [limit for limit in limits if limit is not None]
     if missing:
         return Allowed(None, missing)
-    return Allowed(min(known) / numbers.limit(GEAR_CONTACT_SAFETY))
+    return Allowed(min(stated) / numbers.limit(GEAR_CONTACT_SAFETY))
 
 
 def _with_card_of_gear(demand: Demand, solution: Solution) -> Demand:
@@ -770,8 +770,8 @@ def gear_impact(solution: Solution) -> Demand:
     gear = gear_of(shaft)
     safety = solution.machine.limits[GEAR_BENDING_SAFETY]
     missing = lacking(gear.table, gear, "bending_limit", "pinion_bending_limit")
-    known = (gear.bending_limit or np.nan), (gear.pinion_bending_limit or np.nan)
-    limits = [REVERSED * each / safety for each in known]
+    bending_limits = (gear.bending_limit or np.nan), (gear.pinion_bending_limit or np.nan)
+    limits = [REVERSED * each / safety for each in bending_limits]
     module, teeth = 2.0 * shaft.gear_radius / gear.teeth, (gear.teeth, gear.pinion_teeth)
     root = [float(tooth_root_stress(1.0, gear.width, module, each)) for each in teeth]
     weaker = first_greatest([each / limit for each, limit in zip(root, limits, strict=True)])
@@ -804,7 +804,7 @@ def gear_impact(solution: Solution) -> Demand:
         stated={
             "F": 0.0 if met is None else met.force,
             "z": float(teeth[weaker]),
-            "s_F": known[weaker],
+            "s_F": bending_limits[weaker],
         },
     )
 

@@ -256,8 +256,8 @@ class Measured(NamedTuple):
     def limits_of_strokes(self, numbers: Numbers) -> tuple[Value, ...]:
         """Limits of the strokes; (): not all of them are set."""
         limits = [numbers.get(f"limits.{each.limit.id}") for each in self.strokes]
-        known = tuple(each for each in limits if each is not None)
-        return known if len(known) == len(limits) else ()
+        stated = tuple(each for each in limits if each is not None)
+        return stated if len(stated) == len(limits) else ()
 
     def limit_of_measure(self, numbers: Numbers) -> float | None:
         """Limit of the demand in terms of the measure; None: not known, or of no effect."""
@@ -376,12 +376,12 @@ class Declaration:
         demand = self.demand(solution)
         if demand is None:
             return None
-        made = self.judged(solution.machine, demand)
+        check = self.judged(solution.machine, demand)
         scope = solution.machine.scope
-        if made.status == "not_evaluated" and any(map(scope.leaves_out, made.missing)):
+        if check.status == "not_evaluated" and any(map(scope.leaves_out, check.missing)):
             return None
         # a lower bound within the limit says nothing
-        return made if made.status == "fail" or not self.is_bound(solution.tier) else None
+        return check if check.status == "fail" or not self.is_bound(solution.tier) else None
 
     def is_bound(self, tier: Tier) -> bool:
         """Whether its utilisation at a tier is a lower bound, which can fail but not pass."""
@@ -390,8 +390,8 @@ class Declaration:
     @property
     def kept_at(self) -> str:
         """Key of its limit in a synthesis: group, row of the limit, or own id."""
-        kept = None if self.measured is None else self.measured.kept
-        group, of_part = ("", "") if kept is None else (kept.group, kept.unit)
+        rule = None if self.measured is None else self.measured.kept
+        group, of_part = ("", "") if rule is None else (rule.group, rule.unit)
         return group or (self.id if of_part or self.limit is None else self.limit.id)
 
     def deeper(self, solution: Solution) -> Check | None:
@@ -426,7 +426,7 @@ class Declaration:
         source = demand.source or self.source
         if self.limit is not None and not demand.source:
             source = machine.limits.source(self.limit)
-        made = Check(
+        check = Check(
             declaration=self,
             title=self.title.format(follower=machine.follower.word),
             demand=demand.value,
@@ -447,7 +447,7 @@ class Declaration:
             corner_demand=demand.value if demand.corner else None,
         )
         # a demand beyond its limit by what is known is judged without the rest
-        return replace(made, missing=()) if missing and made.evaluated else made
+        return replace(check, missing=()) if missing and check.evaluated else check
 
 
 def check(
@@ -639,7 +639,10 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
 
     if of_strokes := how.limits_of_strokes(numbers):
         worsts = [worst_of(each.measure) for each in how.strokes]
-        uses = [each.value / float(own) for each, own in zip(worsts, of_strokes, strict=True)]
+        uses = [
+            each.value / float(stroke_limit)
+            for each, stroke_limit in zip(worsts, of_strokes, strict=True)
+        ]
         most = uses.index(max(uses))  # of the first, where it is not known
         stroke, worst = how.strokes[most], worsts[most]
         source = solution.machine.limits.source(stroke.limit)

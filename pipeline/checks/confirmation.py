@@ -78,8 +78,8 @@ def with_values_to_confirm(
 def _limits_of(one: Check) -> Iterator[str]:
     """Keys of the limits by which a check judges."""
     limit = one.declaration.limit
-    own = () if limit is None else (_LIMIT + limit.id,)
-    yield from dict.fromkeys((*own, *(v for v in one.declaration.values if v.startswith(_LIMIT))))
+    names = () if limit is None else (_LIMIT + limit.id,)
+    yield from dict.fromkeys((*names, *(v for v in one.declaration.values if v.startswith(_LIMIT))))
 
 
 def _weaker(case: Case) -> dict[str, str]:
@@ -109,8 +109,8 @@ def _open_values(
     declared, limit = one.declaration.source, one.declaration.limit
     if limit is None and declared and not declared.confirmed:
         yield f"{OF_A_CHECK}{one.id}"
-    own = () if limit is None else (f"limits.{limit.id}",)
-    for path in (*own, *one.declaration.values):
+    limit_name = () if limit is None else (f"limits.{limit.id}",)
+    for path in (*limit_name, *one.declaration.values):
         yield from open_at(path)
     if one.declaration.moved_by_tolerance:
         yield from tight

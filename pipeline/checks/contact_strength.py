@@ -112,12 +112,12 @@ def least_of_bodies(
     lacks : callable   body, card -> keys that the card lacks
     """
     limits = {body: limit(body, card) for body, card in bodies.items()}
-    known = {body: value for body, value in limits.items() if value is not None}
+    stated = {body: value for body, value in limits.items() if value is not None}
     missing = tuple(
-        key for body in limits if body not in known for key in lacks(body, bodies[body])
+        key for body in limits if body not in stated for key in lacks(body, bodies[body])
     )
-    body = list(known)[first_least(list(known.values()))] if known else "cam"
-    return LeastLimit(known.get(body), body, bodies[body], missing)
+    body = list(stated)[first_least(list(stated.values()))] if stated else "cam"
+    return LeastLimit(stated.get(body), body, bodies[body], missing)
 
 
 def endurance_of(machine: Machine, card: Material) -> Endurance:
@@ -379,8 +379,8 @@ def shakedown_factors(friction: float, poisson: float) -> tuple[Array, Array]:
         }
 
     modules = sys.modules[__name__], hertz, rolling_envelope
-    known = disk_cache.kept("shakedown", (friction, poisson), compute, modules)
-    return known["nodes"], known["factors"]
+    arrays = disk_cache.kept("shakedown", (friction, poisson), compute, modules)
+    return arrays["nodes"], arrays["factors"]
 
 
 contact_pressure = check(
@@ -534,8 +534,8 @@ def signed_sentence(solution: Solution, worst: Extreme) -> str:
     """Kind of the greatest stated pressure, in words; "" where it is not known."""
     for cycle in solution.cycles:
         if cycle.load_case == worst.load_case and cycle.length and worst.cam_angle is not None:
-            place = first_least(np.abs(cycle.theta - worst.cam_angle))
-            return cycle.length.sentence(place)
+            index = first_least(np.abs(cycle.theta - worst.cam_angle))
+            return cycle.length.sentence(index)
     return ""
 
 

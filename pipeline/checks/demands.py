@@ -53,7 +53,7 @@ class PerLoad(NamedTuple):
 
 
 def normal_force(cam: LoadedCam) -> Array:
-    """Contact force, N."""
+    """Measure: normal force between cam and follower, N."""
     return cam.normal
 
 
@@ -69,7 +69,7 @@ def tooth_torque(cam: LoadedCam) -> Array:
 
 
 def follower_speed(cam: LoadedCam) -> Array:
-    """Speed of the follower, m/s."""
+    """Measure: speed of the follower along its axis, m/s."""
     return magnitude(cam.velocity)
 
 

@@ -50,8 +50,8 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
 
     shares = [share(each) for each in checks]
     return tuple(
-        each if each.error_share == known else replace(each, error_share=known)
-        for each, known in zip(checks, shares, strict=True)
+        each if each.error_share == error_share else replace(each, error_share=error_share)
+        for each, error_share in zip(checks, shares, strict=True)
     )
 
 
@@ -90,9 +90,9 @@ def length_error(solution: Solution) -> float:
     error, most = 0.0, 0.0
     for cycle in solution.cycles:
         if cycle.length is not None:
-            place = first_greatest(cycle.signed_pressure)
-            if not cycle.signed_pressure[place] <= most * (1.0 + TIE):
-                error, most = float(cycle.length.error[place]), cycle.signed_pressure[place]
+            index = first_greatest(cycle.signed_pressure)
+            if not cycle.signed_pressure[index] <= most * (1.0 + TIE):
+                error, most = float(cycle.length.error[index]), cycle.signed_pressure[index]
     return error
 
 

@@ -187,10 +187,10 @@ def duty_parts(
 
 
 def _mean(parts: Mapping[str, float], life: bool) -> float:
-    whole = sum(parts.values())
+    total = sum(parts.values())
     if not life:
-        return whole
-    return 1.0 / whole if whole != 0.0 else np.inf
+        return total
+    return 1.0 / total if total != 0.0 else np.inf
 
 
 def _index(value: float, coarse: float, ratio: int) -> float:
@@ -237,11 +237,11 @@ def _sampling_error(values: Array, sign: float) -> float:
     at a kink or a jump the lines through the two samples on either side, up to their crossing.
     Every peak counts: another than that of the greatest sample may be the greatest.
     """
-    known = np.isfinite(values)
-    if values.size < _LEAST_SAMPLES or not known.any() or np.isnan(values).any():
+    finite = np.isfinite(values)
+    if values.size < _LEAST_SAMPLES or not finite.any() or np.isnan(values).any():
         return 0.0
     # an infinite value, such as a ratio without load, has no peak beside it
-    peaks = np.where(known, sign * values, 0.0)
+    peaks = np.where(finite, sign * values, 0.0)
     before, after = np.roll(peaks, 1), np.roll(peaks, -1)
     second = before - 2.0 * peaks + after
     vertex = np.divide(
@@ -256,9 +256,9 @@ def _sampling_error(values: Array, sign: float) -> float:
         sharp = np.abs(second) + np.abs(np.roll(second, -way))
         outer = np.abs(np.roll(second, 2)) + np.abs(np.roll(second, -2))
         above = np.where(sharp > _KINK_SHARPNESS * outer, np.maximum(above, line), above)
-    beside = np.all([np.roll(known, shift) for shift in (-2, -1, 0, 1, 2)], axis=0)
+    beside = np.all([np.roll(finite, shift) for shift in (-2, -1, 0, 1, 2)], axis=0)
     peaked = (peaks >= before) & (peaks >= after) & beside
-    top = float(peaks[known].max())
+    top = float(peaks[finite].max())
     error = float(np.max(np.where(peaked, peaks + above, top))) - top
     return error / abs(top) if top != 0.0 else 0.0
 
@@ -332,10 +332,10 @@ def _worst(
             )
             shapes[shape] = Extreme(found.value, "", float(np.mod(found.theta, FULL_TURN)))
         return shapes[shape]
-    known = _OF_CYCLES.setdefault(solution, {})
-    if (key := (measure, reduce, at_least)) not in known:
-        known[key] = _worst_of_cycles(solution, measure, reduce, at_least=at_least)
-    return known[key]
+    cached = _OF_CYCLES.setdefault(solution, {})
+    if (key := (measure, reduce, at_least)) not in cached:
+        cached[key] = _worst_of_cycles(solution, measure, reduce, at_least=at_least)
+    return cached[key]
 
 
 def _worst_of_cycles(

@@ -60,7 +60,7 @@ GUIDES: tuple[Side, ...] = ("A", "B")
 
 
 def guide_of(machine: Machine, side: Side) -> Guide:
-    """Guide A or B."""
+    """Guide A or B of a machine."""
     return machine.guides.a if side == "A" else machine.guides.b
 
 
@@ -82,12 +82,12 @@ def _bearing_load(cycle: Cycle, side: Side) -> Array:
 
 
 def _heat_in(side: Side) -> Measure:
-    place = GUIDES.index(side)
+    index = GUIDES.index(side)
 
     def heat(cam: LoadedCam) -> Array:
         """Friction power of a guide at the greatest friction, W."""
         power = cam.heat
-        return np.full_like(cam.velocity, np.nan) if power is None else power[place]
+        return np.full_like(cam.velocity, np.nan) if power is None else power[index]
 
     return heat
 
@@ -173,7 +173,7 @@ def _at_temperature(
 
 
 def _guide_pressure(side: Side) -> Declaration:
-    place = GUIDES.index(side)
+    index = GUIDES.index(side)
 
     def at_its_temperature(demand: Demand, solution: Solution) -> Demand:
         guide, worst = guide_of(solution.machine, side), demand.at or NOWHERE
@@ -228,7 +228,7 @@ def _guide_pressure(side: Side) -> Declaration:
     )
     def pressure(cam: LoadedCam) -> Array:
         """Mean pressure in a guide, Pa."""
-        return magnitude(cam.bearing[place]) / cam.numbers[f"{table_of(side)}.area"]
+        return magnitude(cam.bearing[index]) / cam.numbers[f"{table_of(side)}.area"]
 
     return pressure
 
@@ -258,11 +258,11 @@ def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
 
 
 def _pv_in(side: Side) -> Measure:
-    place = GUIDES.index(side)
+    index = GUIDES.index(side)
 
     def pv(cam: LoadedCam) -> Array:
         """PV value in a guide at each angle, Pa m/s: of the sum of the pushes on both sides."""
-        return magnitude(cam.rubbing[place] * cam.velocity) / cam.numbers[f"{table_of(side)}.area"]
+        return magnitude(cam.rubbing[index] * cam.velocity) / cam.numbers[f"{table_of(side)}.area"]
 
     return pv
 
@@ -428,11 +428,11 @@ def _guide_temperature(side: Side) -> Declaration:
         machine = solution.machine
         card = guide_of(machine, side).material
         missing = (*heat_path_lacks(machine, side), *lacking_of_card(card, "temperature_limit"))
-        made = replace(demand, missing=missing, source=card.source.of(card.name))
+        sourced = replace(demand, missing=missing, source=card.source.of(card.name))
         if demand.at is None or not demand.at.load_case:
-            return made
+            return sourced
         cycle = cycle_of(solution.cycles, demand.at)
-        return replace(made, stated={"Q": mean_of(solution, HEAT[side], cycle)})
+        return replace(sourced, stated={"Q": mean_of(solution, HEAT[side], cycle)})
 
     return check(
         id=f"guide_temperature_{side}",

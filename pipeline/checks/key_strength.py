@@ -88,8 +88,8 @@ def _reversal(cams: Iterable[LoadedCam]) -> dict[str, Value]:
 
 def _reverses(numbers: Numbers) -> NDArray[np.bool_]:
     """Whether the torque through the key reverses, or is not known."""
-    known = numbers.get(_REVERSES)
-    return np.array(True) if known is None else np.asarray(known != 0.0)
+    stated = numbers.get(_REVERSES)
+    return np.array(True) if stated is None else np.asarray(stated != 0.0)
 
 
 class _Mate(NamedTuple):
@@ -507,8 +507,8 @@ def keyway_root(cam: LoadedCam) -> Array:
     wall = np.asarray(cam.least_radius - root.held_radius)
     counted = np.where(np.real(wall) < root.thick, wall, root.thick)
     used: Array = root.used_by(magnitude(cam.torque), magnitude(cam.normal), counted)
-    known = (np.real(wall) >= root.thin) & np.isfinite(used)
-    return np.where(known, 1.0 / np.where(np.real(used) > TINY, used, TINY), np.nan)
+    applicable = (np.real(wall) >= root.thin) & np.isfinite(used)
+    return np.where(applicable, 1.0 / np.where(np.real(used) > TINY, used, TINY), np.nan)
 
 
 def _no_key_data(cam: CamBody) -> tuple[str, ...]:

@@ -56,9 +56,9 @@ def checks_on_sound_loads(
     left = tuple(end for end in ends if end.why != LOCKS)
     parts = {"loads": _Parts.of(solution, ends), "contact": _Parts.of(solution, left)}
     for declared in declarations:
-        made = _made(declared, solution, parts.get(declared.rests_on))
-        if made is not None:
-            yield made
+        check = _made(declared, solution, parts.get(declared.rests_on))
+        if check is not None:
+            yield check
 
 
 class _Parts(NamedTuple):
@@ -85,10 +85,10 @@ def _made(declared: Declaration, solution: Solution, parts: _Parts | None) -> Ch
     rest = None if parts.sound is None else declared(parts.sound)
     if rest is not None:
         return rest if _lacks_data(rest) else replace(rest, without=parts.words)
-    whole = declared(solution)
-    if whole is None or _lacks_data(whole):
-        return whole
-    return replace(whole, demand=None, error_share=None, without=parts.words)
+    check = declared(solution)
+    if check is None or _lacks_data(check):
+        return check
+    return replace(check, demand=None, error_share=None, without=parts.words)
 
 
 def _judges(declared: Declaration, lost: Solution) -> bool:

@@ -61,8 +61,8 @@ def _data(
             if not machine.describes(coverable):
                 note = f"no {words} is described; describe it or leave it out in [scope]"
                 return Demand(None, 0.0, missing=described_by, note=note)
-        known = {path: part for path, part in tables(solution.case).items() if part is not None}
-        missing = tuple(f"{path}.{key}" for path, part in known.items() for key in part.lacking)
+        described = {path: part for path, part in tables(solution.case).items() if part is not None}
+        missing = tuple(f"{path}.{key}" for path, part in described.items() for key in part.lacking)
         missing = tuple(key for key in missing if not machine.scope.leaves_out(key))
         lacking = {"n": float(len(missing))}
         return Demand(None if missing else 0.0, 0.0, missing=missing, stated=lacking)

@@ -238,8 +238,8 @@ def _seat(numbers: Numbers) -> Value:
 def _share_of_tensile(row: Limit, cards: Sequence[Material], numbers: Numbers) -> Allowed:
     """Share of the lower tensile strength of the materials of a seat."""
     missing = tuple(key for card in cards for key in lacking_of_card(card, "tensile_strength"))
-    known = [card.tensile_strength for card in cards if card.tensile_strength is not None]
-    return Allowed(None, missing) if missing else Allowed(numbers.limit(row) * min(known))
+    strengths = [card.tensile_strength for card in cards if card.tensile_strength is not None]
+    return Allowed(None, missing) if missing else Allowed(numbers.limit(row) * min(strengths))
 
 
 _of_seat = PerLoad(_seat)
@@ -534,17 +534,17 @@ def _bore_cards(case: Case) -> tuple[list[Material], tuple[str, ...]]:
 
 def _bore_allowed(numbers: Numbers) -> Allowed:
     cards, missing = _bore_cards(numbers.known_case)
-    known = _share_of_tensile(BORE_SHARE, cards, numbers)
-    if missing or known.value is None:
-        return Allowed(None, (*missing, *known.missing))
-    return known._replace(value=known.value - _fit_pressure(numbers))
+    allowed = _share_of_tensile(BORE_SHARE, cards, numbers)
+    if missing or allowed.value is None:
+        return Allowed(None, (*missing, *allowed.missing))
+    return allowed._replace(value=allowed.value - _fit_pressure(numbers))
 
 
 def _with_cards_of_bore(demand: Demand, solution: Solution) -> Demand:
     cards = _bore_cards(solution.case)[0]
-    known = [card.tensile_strength for card in cards if card.tensile_strength is not None]
+    strengths = [card.tensile_strength for card in cards if card.tensile_strength is not None]
     pressure = float(np.ravel(_fit_pressure(solution.numbers))[0])
-    stated = {"R_m": min(known, default=np.nan), "p": pressure}
+    stated = {"R_m": min(strengths, default=np.nan), "p": pressure}
     return replace(demand, figures=tuple(dict.fromkeys(_sources(*cards))), stated=stated)
 
 
@@ -649,16 +649,16 @@ def torque_reversals(solution: Solution) -> Demand:
 def cam_unbalance(solution: Solution) -> Demand:
     """Balance grade e w of the rotor, m/s, and its counter-hole."""
     balanced, shaft = balance(solution.machine.cam, solution.contour), solution.machine.camshaft
-    made, speed = balanced.as_made, max(machine.cam_speed for machine in solution.machines)
-    rotor = made.mass if shaft is None else max(made.mass, shaft.rotor_mass or 0.0)
-    angle = f"{np.degrees(made.angle) % 360:.1f} deg"
-    whole = "cam alone" if rotor == made.mass else "cam, shaft and gear"
-    unbalance = rotor_unbalance(made, shaft)
+    manufactured, speed = balanced.as_made, max(machine.cam_speed for machine in solution.machines)
+    rotor = manufactured.mass if shaft is None else max(manufactured.mass, shaft.rotor_mass or 0.0)
+    angle = f"{np.degrees(manufactured.angle) % 360:.1f} deg"
+    rotor_parts = "cam alone" if rotor == manufactured.mass else "cam, shaft and gear"
+    unbalance = rotor_unbalance(manufactured, shaft)
     return Demand(
         unbalance / rotor * speed,
         solution.machine.limits[UNBALANCE],
-        note=f"{shown(made.product, 'g mm')} of the cam at {angle}{_set(shaft)}; mass of {whole},"
-        f" {shown(rotor, 'g')}{_hole(balanced)}",
+        note=f"{shown(manufactured.product, 'g mm')} of the cam at {angle}{_set(shaft)};"
+        f" mass of {rotor_parts}, {shown(rotor, 'g')}{_hole(balanced)}",
         stated={"U": unbalance, "m": rotor},
     )
 

@@ -134,8 +134,8 @@ def checks_of(
     Checks that do not apply, such as the torque reduction of a cam without an engine, and those
     above the tier of the solution are left out.
     """
-    made = tuple(checks_on_sound_loads(declarations, solution))
-    return in_order(waived(with_error_bars(solution, made), solution.case.waivers))
+    checks = tuple(checks_on_sound_loads(declarations, solution))
+    return in_order(waived(with_error_bars(solution, checks), solution.case.waivers))
 
 
 def all_checks(solution: Solution) -> tuple[Check, ...]:
@@ -143,20 +143,20 @@ def all_checks(solution: Solution) -> tuple[Check, ...]:
 
     Those that a deeper solution judges are not evaluated.
     """
-    made = with_values_to_confirm(checks_of(solution), solution.case, OF_THE_DESIGN)
+    checks = with_values_to_confirm(checks_of(solution), solution.case, OF_THE_DESIGN)
     if solution.tier < Tier.CYCLE:
         mark = f"{solution.tier.word}: "
-        made = tuple(replace(one, method=mark + one.method) for one in made)
-    judged = {one.id for one in made}
+        checks = tuple(replace(one, method=mark + one.method) for one in checks)
+    judged = {one.id for one in checks}
     later = (each.deeper(solution) for each in CHECKS if each.id not in judged)
-    made = (*made, *(one for one in later if one is not None))
-    known = {one.id for one in made if not one.evidence}
-    idle = [waiver.check for waiver in solution.case.waivers if waiver.check not in known]
+    checks = (*checks, *(one for one in later if one is not None))
+    design_ids = {one.id for one in checks if not one.evidence}
+    idle = [waiver.check for waiver in solution.case.waivers if waiver.check not in design_ids]
     if idle:
         count = float(len(idle))
         demand = Demand(count, 0.0, note=", ".join(idle), stated={"n": count})
-        made = (*made, WAIVERS_WITHOUT_EFFECT.judged(solution.machine, demand))
-    return in_order(made)
+        checks = (*checks, WAIVERS_WITHOUT_EFFECT.judged(solution.machine, demand))
+    return in_order(checks)
 
 
 def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, ...]:
@@ -167,11 +167,11 @@ def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, .
     InputError
         If the value of a waiver is not in the unit of its check.
     """
-    known = {w.check: w for w in waivers}
+    waiver_of = {w.check: w for w in waivers}
     return tuple(
         one
-        if one.evidence or one.id not in known
-        else replace(one, waiver=accepted(known[one.id], one.unit))
+        if one.evidence or one.id not in waiver_of
+        else replace(one, waiver=accepted(waiver_of[one.id], one.unit))
         for one in checks
     )
 

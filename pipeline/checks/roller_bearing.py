@@ -160,13 +160,13 @@ def _with_modified_damage(demand: Demand, solution: Solution) -> Demand:
         notes = _damage_note(solution, _modified_damage, _modified_life)
     reliability, card = limits.source(ROLLER_RELIABILITY), _card(solution.machine.roller.bearing)
     figures = reliability, bearing_life.SOURCE, *card
-    made = replace(demand, note="; ".join(notes), figures=figures)
+    noted = replace(demand, note="; ".join(notes), figures=figures)
     if demand.value is None or demand.at is None:
-        return made
+        return noted
     cycle = cycle_of(solution.cycles, demand.at)
     plain, used = (mean_of(solution, each, cycle) for each in (_damage, _modified_damage))
     rating = float(solution.numbers[_RATING]) ** BALL_LIFE_EXPONENT
-    return replace(made, stated={"a_ISO": plain / rating / used} if used > 0.0 else {})
+    return replace(noted, stated={"a_ISO": plain / rating / used} if used > 0.0 else {})
 
 
 def _viscosity_ratio(mean: Value, numbers: Numbers) -> Array:
@@ -183,12 +183,12 @@ def _film_ratio(mean: Value, numbers: Numbers) -> Value:
 
 def _with_line_of_viscosity(demand: Demand, solution: Solution) -> Demand:
     """With the factor and the power of the rated viscosity at the mean speed of the roller."""
-    made = replace(demand, figures=(bearing_life.SOURCE, solution.machine.roller.bearing.source))
+    noted = replace(demand, figures=(bearing_life.SOURCE, solution.machine.roller.bearing.source))
     if demand.at is None or not demand.at.load_case:
-        return made
+        return noted
     mean = mean_of(solution, lambda cam: magnitude(cam.spin), cycle_of(solution.cycles, demand.at))
     line = bearing_life.viscosity_line(mean / factor("rpm"))
-    return replace(made, stated=dict(zip("ab", line, strict=True)))
+    return replace(noted, stated=dict(zip("ab", line, strict=True)))
 
 
 def _film_kept(cam: LoadedCam, limit: float) -> Array:
@@ -207,10 +207,10 @@ def _damage_note(
         return float(life(mean_of(solution, measure, cycle), solution.numbers))
 
     parts = duty_parts(solution.cycles, of_turn, life=True)
-    whole = sum(parts.values())
-    if not whole > 0.0:
+    total = sum(parts.values())
+    if not total > 0.0:
         return []
-    shares = (f"{part / whole:.0%} {name}" for name, part in parts.items())
+    shares = (f"{part / total:.0%} {name}" for name, part in parts.items())
     return [f"damage by duty: {', '.join(shares)}"]
 
 
@@ -613,9 +613,9 @@ def greased(cam: LoadedCam) -> Array:
         return np.array([bearing.grease_life])
     if rating is None or temperature is None:
         return np.array([np.nan])
-    known = np.isfinite(cam.normal).all(axis=-1, keepdims=True)
-    load = equivalent_load(np.where(known, cam.normal, 0.0), cam.spin)[..., None]
-    share = np.where(known, load, np.nan) / rating
+    loads_finite = np.isfinite(cam.normal).all(axis=-1, keepdims=True)
+    load = equivalent_load(np.where(loads_finite, cam.normal, 0.0), cam.spin)[..., None]
+    share = np.where(loads_finite, load, np.nan) / rating
     speed = np.asarray(cam.spin_mean / factor("rpm"))
     return bearing_life.grease_life(speed, _greased_diameter(numbers), share, temperature)
 

@@ -570,11 +570,11 @@ def _benchmark(name: str, *, title: str, source: str) -> Declaration:
         tier=Tier.CERTIFIED,
     )
     def benchmark(solution: Solution) -> Demand:
-        known = solution.benchmarks
-        if known is None:
+        differences = solution.benchmarks
+        if differences is None:
             note = "no benchmark was solved with this trial"
             return Demand(None, BENCHMARK, note=note)
-        values = [known[f"{name}_p0"], known[f"{name}_half_width"]]
+        values = [differences[f"{name}_p0"], differences[f"{name}_half_width"]]
         stated = dict(zip(("d_p", "d_a"), values, strict=True))
         return Demand(float(np.max(np.abs(values))), BENCHMARK, stated=stated)
 

@@ -540,8 +540,8 @@ def _of_gas(demand: Demand, solution: Solution) -> Demand:
 
 def _of_hard_gas(demand: Demand, solution: Solution) -> Demand:
     force = ContourCam.at_top(solution.contour, solution.numbers).hardest.greatest
-    made = replace(_of_gas(demand, solution), corner=HARDEST)
-    return replace(made, stated={"F": float(np.ravel(force)[0])})
+    hardest = replace(_of_gas(demand, solution), corner=HARDEST)
+    return replace(hardest, stated={"F": float(np.ravel(force)[0])})
 
 
 def _gas_check(

@@ -189,17 +189,20 @@ def _torsion_demand(
     """Equivalent fatigue stress against the fatigue limit in torsion of the cam, Pa."""
     card = solution.machine.cam.material
     endured, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
-    known = endured is not None and card.fatigue_bending is not None
+    strengths_stated = endured is not None and card.fatigue_bending is not None
     worst = worst_case(
-        solution.cycles, lambda cycle: measure(cycle.rolling.swept.governing) if known else math.nan
+        solution.cycles,
+        lambda cycle: measure(cycle.rolling.swept.governing) if strengths_stated else math.nan,
     )
     return Demand(
         worst.value,
-        endured / safety if known and endured else None,
+        endured / safety if strengths_stated and endured else None,
         worst,
         lacking_of_card(card, "fatigue_torsion", "fatigue_bending"),
         figures=(f"{card.name}: {card.source}",),
-        stated=stated(cycle_of(solution.cycles, worst).rolling.swept.governing) if known else {},
+        stated=stated(cycle_of(solution.cycles, worst).rolling.swept.governing)
+        if strengths_stated
+        else {},
     )
 
 
@@ -207,8 +210,8 @@ def _crossland(swept: Envelope) -> dict[str, float]:
     """Parts of the greatest Crossland stress, Pa."""
     if swept.crossland is None or swept.root_j2 is None or swept.tension is None:
         return {}
-    place = np.unravel_index(first_greatest(swept.crossland.ravel()), swept.crossland.shape)
-    return {"s_J": float(swept.root_j2[place]), "s_H": float(swept.tension[place])}
+    index = np.unravel_index(first_greatest(swept.crossland.ravel()), swept.crossland.shape)
+    return {"s_J": float(swept.root_j2[index]), "s_H": float(swept.tension[index])}
 
 
 @check(
@@ -397,8 +400,8 @@ def _hardened_demand(
 
     worst = {body: worst_case(solution.cycles, of_turn(card)) for body, card in bodies.items()}
     incomplete = [body for body, card in bodies.items() if math.isnan(_probe(use, card))]
-    known = [body for body in bodies if body not in incomplete]
-    judged = known or list(bodies)
+    complete = [body for body in bodies if body not in incomplete]
+    judged = complete or list(bodies)
     governing = judged[first_greatest([worst[body].value for body in judged])]
     extreme = worst[governing]
     swept = cycle_of(solution.cycles, extreme).rolling.swept
@@ -561,8 +564,8 @@ def _estimate(
     """
     worst = greatest(solution.cycles, lambda cycle: cycle.surface.p0)
     limits = {body: rule(card) for body, card in bodies.items()}
-    known = {body: value for body, value in limits.items() if value is not None}
-    incomplete = {body: card for body, card in bodies.items() if body not in known}
+    stated = {body: value for body, value in limits.items() if value is not None}
+    incomplete = {body: card for body, card in bodies.items() if body not in stated}
     notes = [
         f"the {body}, {card.name}, {reason(card)}"
         for body, card in incomplete.items()
@@ -570,11 +573,11 @@ def _estimate(
     ]
     return Demand(
         worst.value,
-        min(known.values()) if known else None,
+        min(stated.values()) if stated else None,
         worst,
         tuple(key for card in incomplete.values() for key in lacks(card)),
         note="; ".join(notes),
-        figures=tuple(f"{bodies[body].name}: {bodies[body].source}" for body in known),
+        figures=tuple(f"{bodies[body].name}: {bodies[body].source}" for body in stated),
     )
 
 
@@ -617,8 +620,8 @@ def endurance_rules(solution: Solution) -> Demand:
 
 def _rules(machine: Machine, card: Material) -> dict[str, float]:
     row = endurance_of(machine, card)
-    own = {row.motion: row.pressure} if row.pressure else {}
-    return own | endurance_by_hardness(card)
+    by_motion = {row.motion: row.pressure} if row.pressure else {}
+    return by_motion | endurance_by_hardness(card)
 
 
 def _lambda(cycle: Cycle) -> Array:
@@ -647,9 +650,9 @@ def _use_of_strength(
     at = swept.governing if core <= surface else swept.envelope
     inward = np.clip(at.depth / case, 0.0, 1.0)
     share = stress(at) / (surface + (core - surface) * inward)
-    place = np.unravel_index(first_greatest(share.ravel()), share.shape)
-    values = float(share.max()), float(stress(at)[place])
-    return _StrengthUse(*values, surface, core, float(at.depth[place]), case)
+    index = np.unravel_index(first_greatest(share.ravel()), share.shape)
+    values = float(share.max()), float(stress(at)[index])
+    return _StrengthUse(*values, surface, core, float(at.depth[index]), case)
 
 
 class _StrengthUse(NamedTuple):

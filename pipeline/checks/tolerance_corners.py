@@ -65,8 +65,8 @@ def corners_of(case: Case) -> tuple[Corner, ...]:
     for number in range(case.tolerances.samples):
         values: dict[str, float] = {}
         for bounds in ranges.values():
-            place = float(draw.random())  # both guides share their lubrication
-            values |= {name: low + place * (high - low) for name, (low, high) in bounds.items()}
+            share = float(draw.random())  # both guides share their lubrication
+            values |= {name: low + share * (high - low) for name, (low, high) in bounds.items()}
         sample.append(Corner(f"sample {number + 1}", **values))
     return (*alone, *sample)
 
@@ -164,7 +164,7 @@ def unsolved(machine: Machine, tried: Sequence[Outcome]) -> Check:
 
 
 def corners_record(case: Case, tried: Sequence[Outcome]) -> CornersDocument:
-    """Record of ``corners.json``."""
+    """Record of ``corners.json``: factors of each tolerance corner, and demands there."""
     return {
         "seed": case.tolerances.seed,
         "tried": len(tried) - 1,
@@ -330,11 +330,11 @@ def _outcome(
         checks = tuple(checks_on_sound_loads(declarations, solved))
     except CamError as error:
         return Outcome(corner, {}, str(error))
-    known = {one.id: float(one.demand) for one in checks if one.demand is not None}
+    demands = {one.id: float(one.demand) for one in checks if one.demand is not None}
     bounds = {one.id: one.without for one in checks if one.without}
     return Outcome(
         corner,
-        {name: value for name, value in known.items() if not np.isnan(value)},
+        {name: value for name, value in demands.items() if not np.isnan(value)},
         bounds=frozenset(bounds),
         lost=next(iter(bounds.values()), ""),
     )
@@ -382,12 +382,12 @@ def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
         one = replace(
             one, without=f"at the tolerance corner {bounds[0].corner.name} {bounds[0].lost}"
         )
-    known = [outcome for outcome in solved if one.id in outcome.demands]
+    evaluated = [outcome for outcome in solved if one.id in outcome.demands]
     unknown = [each for each in solved if one.id not in each.demands and one.id not in each.bounds]
     if unknown:
         return replace(one, corner=unknown[0].corner.name, corner_demand=float("nan"))
     sign = 1.0 if one.sense == "at_most" else -1.0
-    worst = known[first_greatest([sign * outcome.demands[one.id] for outcome in known])]
+    worst = evaluated[first_greatest([sign * outcome.demands[one.id] for outcome in evaluated])]
     if worst is nominal:
         return replace(one, corner="nominal", corner_demand=one.demand)
     there = worst.demands[one.id]

@@ -75,10 +75,10 @@ def torque_reduction(solution: Solution) -> Demand | None:
     worst, common = least
     free = [machine.load_case for machine in solution.machines if not machine.torque_reduction]
     notes = [f"not required in {', '.join(free)}"] if free else []
-    own = next(m for m in solution.machines if m.load_case == worst.load_case).torque_reduction
-    if own is not None and own != common:
-        value = shown(float(demands.common_reduction(worst.value, common, own)), "", 3)
-        notes.append(f"{value} in {worst.load_case}, where {shown(own, '')} is required")
+    required = next(m for m in solution.machines if m.load_case == worst.load_case).torque_reduction
+    if required is not None and required != common:
+        value = shown(float(demands.common_reduction(worst.value, common, required)), "", 3)
+        notes.append(f"{value} in {worst.load_case}, where {shown(required, '')} is required")
     return Demand(worst.value, common, worst, note="; ".join(notes))
 
 
@@ -109,8 +109,8 @@ def least_reduction(
     common = max(required[cycle.load_case] for cycle in cycles)
 
     def comparable(cycle: Cycle) -> float:
-        own = required[cycle.load_case]
-        return float(demands.common_reduction(reduction(cycle), own, common))
+        requirement = required[cycle.load_case]
+        return float(demands.common_reduction(reduction(cycle), requirement, common))
 
     return worst_case(cycles, comparable, at_least=True), common
 
@@ -373,10 +373,10 @@ def friction_power(solution: Solution) -> Demand | None:
     words = []
     for cycle in running:
         name = cycle.load_case
-        lost, whole = (
+        lost, power = (
             shown(each, "W", 3) for each in (_friction_power(solution, cycle), powers[name])
         )
-        words.append(f"{name}: {lost} of {whole}")
+        words.append(f"{name}: {lost} of {power}")
     lossy = _friction_power(solution, cycle_of(running, worst))
     stated = {"P_f": lossy, "P": powers[worst.load_case]}
     return Demand(worst.value, allowed, worst, note="; ".join(words), stated=stated)

@@ -77,9 +77,9 @@ def axial_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
         "mean_length_mm": np.array(_MM * first.mean_length),
     }
     for name, pressure in (("level_pressure_MPa", level), ("tilted_pressure_MPa", worse)):
-        whole = np.zeros((p0.size, edges.size - 1))
-        whole[rows] = _MPA * pressure
-        arrays[name] = whole
+        pressure_rows = np.zeros((p0.size, edges.size - 1))
+        pressure_rows[rows] = _MPA * pressure
+        arrays[name] = pressure_rows
     return arrays
 
 

@@ -78,17 +78,17 @@ class Balance:
 
 def balance(cam: CamBody, contour: Contour) -> Balance:
     """Unbalance of the cam with bore and keyway, and its counter-hole."""
-    made, order = _unbalance(cam, contour), cam.counter_hole
+    unbalance, order = _unbalance(cam, contour), cam.counter_hole
     wall = WALL if order is None else order.wall
     depth = 0.0 if cam.keyway is None else cam.keyway.depth
     hole, missed = None, ""
-    for search in (counter_hole,) if made.balanced else (counter_hole, greatest_hole):
+    for search in (counter_hole,) if unbalance.balanced else (counter_hole, greatest_hole):
         try:
-            hole = search(contour, made, cam.bore_radius, wall, depth)
+            hole = search(contour, unbalance, cam.bore_radius, wall, depth)
             break
         except GeometryError as error:
             missed = str(error)
-    return Balance(made, hole, missed, order is not None, cam.material.density * cam.width)
+    return Balance(unbalance, hole, missed, order is not None, cam.material.density * cam.width)
 
 
 def _unbalance(cam: CamBody, contour: Contour) -> Unbalance:
@@ -100,11 +100,11 @@ def camshaft_loads(
     loads: Loads, shaft: Camshaft, cam: CamBody, contour: Contour, cam_speed: float
 ) -> ShaftLoads:
     """Camshaft loads over a turn, with the centrifugal forces of cam and counterweight."""
-    made, weight = _as_made(cam, contour), shaft.counterweight
-    thrown = rotating_force(made.product, made.angle, cam_speed, loads.theta)
+    manufactured, weight = _as_made(cam, contour), shaft.counterweight
+    thrown = rotating_force(manufactured.product, manufactured.angle, cam_speed, loads.theta)
     held = np.zeros_like(thrown)
     if weight is not None:
-        held = rotating_force(*weight.set_against(made), cam_speed, loads.theta)
+        held = rotating_force(*weight.set_against(manufactured), cam_speed, loads.theta)
     forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
     return shaft_loads(*forces, shaft, thrown, held)
 

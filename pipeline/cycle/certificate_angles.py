@@ -68,11 +68,11 @@ def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[Leng
     which the follower leaves the cam or locks counts only where every one does.
     """
     pressures = [np.nan_to_num(cycle.signed_pressure) for cycle in cycles]
-    whole = [cycle.loads.end is None for cycle in cycles]
+    sound = [cycle.loads.end is None for cycle in cycles]
     worst = [
         (case, first_greatest(pressure))
         for case, pressure in enumerate(pressures)
-        if (whole[case] or not any(whole)) and pressure.max() > 0
+        if (sound[case] or not any(sound)) and pressure.max() > 0
     ]
     if not worst:
         return ()

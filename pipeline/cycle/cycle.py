@@ -54,7 +54,7 @@ _ALONG = (
 
 
 def least_spring_force(spring: Spring, contour: Contour) -> float:
-    """Spring force at minimum lift, N."""
+    """Force of the spring at the minimum lift of a contour, N."""
     return float(spring.force(np.asarray(contour.pitch.lift.lowest.value)))
 
 
@@ -87,8 +87,13 @@ class Cycle(Tabled):
         if correction == self.ends:
             return self
         cycle = replace(self, ends=correction)
-        kept = ("parts", "shaft", "elastic", *(() if self.machine.is_crowned else ("rolling",)))
-        cycle.results.update({k: value for k, value in self.results.items() if k in kept})
+        unchanged = (
+            "parts",
+            "shaft",
+            "elastic",
+            *(() if self.machine.is_crowned else ("rolling",)),
+        )
+        cycle.results.update({k: value for k, value in self.results.items() if k in unchanged})
         return cycle
 
     def adopt(self, other: Cycle) -> None:

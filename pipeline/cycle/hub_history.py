@@ -129,15 +129,15 @@ def _fatigue(
     low = np.min([each.min(axis=0) for each in stresses], axis=0)
     amplitude, mean = 0.5 * (high - low), 0.5 * (high + low)
     by_goodman, by_fkm = strength.goodman(amplitude, mean), strength.fkm(amplitude, mean)
-    place = first_greatest(np.maximum(by_goodman, by_fkm))
-    number = first_greatest([each[:, place].max() for each in stresses])
-    at = first_greatest(stresses[number][:, place])
+    worst = first_greatest(np.maximum(by_goodman, by_fkm))
+    number = first_greatest([each[:, worst].max() for each in stresses])
+    at = first_greatest(stresses[number][:, worst])
     return RootFatigue(
         interference=interference,
         goodman=1.0 / float(by_goodman.max()),
         fkm=1.0 / float(by_fkm.max()),
-        greatest=float(high[place]),
-        least=float(low[place]),
+        greatest=float(high[worst]),
+        least=float(low[worst]),
         load_case=cycles[number].load_case,
         cam_angle=float(cycles[number].theta[steps[number]][at]),
         opened=float(np.mean(np.concatenate(opened))),

@@ -81,9 +81,9 @@ class LengthHistory:
         """The history with the factors of some angles."""
         changed = {}
         for name, values in solved._asdict().items():
-            whole = getattr(self, name).copy()
-            whole[rows] = values
-            changed[name] = whole
+            column = getattr(self, name).copy()
+            column[rows] = values
+            changed[name] = column
         return replace(self, **changed)
 
     @property
@@ -276,10 +276,10 @@ def _parts(turns: Sequence[TurnOfLine], members: Sequence[int]) -> Iterator[list
 
 def _together(machine: Machine, loads: Sequence[ContactLoads]) -> FactorRange:
     """Factors of the contacts of several turns, the worse of both ends."""
-    whole = ContactLoads(*(np.concatenate(parts) for parts in zip(*loads, strict=True)))
+    joined = ContactLoads(*(np.concatenate(parts) for parts in zip(*loads, strict=True)))
     pairs, mean_length = machine.finite_pairs, machine.limits[END_MEAN_LENGTH]
     fill_together([length_table(pair, mean_length) for pair in pairs])
-    return worst_of([factor_range(pair, mean_length, whole) for pair in pairs])
+    return worst_of([factor_range(pair, mean_length, joined) for pair in pairs])
 
 
 class ContactLoads(NamedTuple):

@@ -116,13 +116,13 @@ def stress_peaks(pair: FinitePair, tier: TierResult) -> list[dict[str, StressPea
         places = {"centre": stress.centre, "end1": stress.end1, "end2": stress.end2}
         records.append(
             {
-                place: {
+                position: {
                     "von_mises": peak.von_mises / p0,
                     "von_mises_depth_mm": in_unit(peak.von_mises_depth, "mm"),
                     "shear": peak.shear / p0,
                     "shear_depth_mm": in_unit(peak.shear_depth, "mm"),
                 }
-                for place, peak in places.items()
+                for position, peak in places.items()
             }
         )
     return records

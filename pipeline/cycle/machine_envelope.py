@@ -95,7 +95,7 @@ def _discs(case: Case) -> tuple[Disc, ...]:
     diameter = shaft.diameter or 2.0 * case.cam.bore_radius
     width = shaft.bearing_width or shaft.widest or 0.0
     places = [0.0, shaft.bearing_spacing]
-    discs = [Disc(place - shaft.cam_position, width, diameter) for place in places]
+    discs = [Disc(position - shaft.cam_position, width, diameter) for position in places]
     if shaft.gear is not None:
         module = 2.0 * shaft.gear_radius / shaft.gear.teeth
         tip = 2.0 * (shaft.gear_radius + module)

@@ -93,11 +93,11 @@ class Numbers:
         same numbers, load cases and checks; NaN of more than `most` different ones, if not 0.
         """
         values = tuple(self.get(key) for key in keys)
-        known = self._figures.get(figures)
-        if known is None or any(a is not b for a, b in zip(known[0], values, strict=True)):
-            known = values, self._each(figures, dict(zip(keys, values, strict=True)), most)
-            self._figures[figures] = known
-        return known[1]
+        cached = self._figures.get(figures)
+        if cached is None or any(a is not b for a, b in zip(cached[0], values, strict=True)):
+            cached = values, self._each(figures, dict(zip(keys, values, strict=True)), most)
+            self._figures[figures] = cached
+        return cached[1]
 
     def _each(
         self,
@@ -110,10 +110,14 @@ class Numbers:
             return tuple(figures(self))
         rows = np.concatenate(np.broadcast_arrays(*arrays.values()), axis=-1)
         distinct, member = np.unique(rows, axis=0, return_inverse=True)
-        known = len(distinct) <= most or not most
-        solved = distinct[: None if known else 1].tolist()
-        own = np.array([figures(self | dict(zip(arrays, row, strict=True))) for row in solved])
-        of_each = own[member.ravel()] if known else np.full((len(rows), own.shape[-1]), np.nan)
+        few = len(distinct) <= most or not most
+        solved = distinct[: None if few else 1].tolist()
+        evaluated = np.array(
+            [figures(self | dict(zip(arrays, row, strict=True))) for row in solved]
+        )
+        of_each = (
+            evaluated[member.ravel()] if few else np.full((len(rows), evaluated.shape[-1]), np.nan)
+        )
         return tuple(of_each.T[..., None])
 
     def __or__(self, changed: Mapping[str, Value | None]) -> Numbers:
@@ -178,10 +182,10 @@ def _size(numbers: Numbers) -> Value:
 
 def _ball_circle(numbers: Numbers) -> Value | None:
     """Pitch diameter of the balls, m: of the bearing, else of its ring."""
-    own: Value | None = None
+    stated: Value | None = None
     if numbers.case is not None:
-        own = value_of(numbers.case, "roller.bearing.pitch_diameter")
-    return numbers.get("roller.bearing.ring.pitch_diameter") if own is None else own
+        stated = value_of(numbers.case, "roller.bearing.pitch_diameter")
+    return numbers.get("roller.bearing.ring.pitch_diameter") if stated is None else stated
 
 
 def _cleanliness_load(numbers: Numbers) -> Value | None:

@@ -75,11 +75,11 @@ class FilmHistory:
         """Record of the mixed film in ``trial.json``; None without one."""
         if self.mixed is None:
             return None
-        known = np.isfinite(self.mixed.minimum)
-        minimum = _UM * float(self.mixed.minimum[known].min()) if known.any() else None
+        finite = np.isfinite(self.mixed.minimum)
+        minimum = _UM * float(self.mixed.minimum[finite].min()) if finite.any() else None
         return {
             "minimum_um": minimum,
-            "positions_refused": int((~known & np.isfinite(self.thickness)).sum()),
+            "positions_refused": int((~finite & np.isfinite(self.thickness)).sum()),
             "refusal": self.refusal,
             "source": str(self.mixed.source),
         }

@@ -125,9 +125,13 @@ def ripple_map(
 
 def _loads(engine: CylinderEngine, state: LoadCase) -> Array:
     """Intake pressures from that of a load case to full load, Pa."""
-    own = engine.intake_pressure if state.intake_pressure is None else state.intake_pressure
+    pressure = engine.intake_pressure if state.intake_pressure is None else state.intake_pressure
     full = engine.exhaust_pressure
-    return np.linspace(own, full, _MAP_LOADS) if own < _ONE_LOAD_SHARE * full else np.array([own])
+    return (
+        np.linspace(pressure, full, _MAP_LOADS)
+        if pressure < _ONE_LOAD_SHARE * full
+        else np.array([pressure])
+    )
 
 
 def _modelled(case: Case, state: LoadCase, speeds: Array, loads: Array) -> Array:

@@ -342,11 +342,11 @@ def certified_solution(
     ends = _begun_ends(solved, workers, progress)
     certificate = begun(pair, solved.cycles, chosen, workers, store=store)
     progress.stage(BENCHMARKS)
-    known = benchmarks(solved.case.contact_radius)
+    differences = benchmarks(solved.case.contact_radius)
     error = bore_error(pair, solved.cycles)
     progress.stage(CERTIFICATE)
     points = certificate.points(progress.advance)
-    final = replace(final, certificate=points, benchmarks=known, bore_error=error)
+    final = replace(final, certificate=points, benchmarks=differences, bore_error=error)
     return final if ends is None else _with_ends(final, ends, progress)
 
 
@@ -475,8 +475,8 @@ def _contact(
     if bodies is None:
         return closed_form_history(pair, each.theta, each.loads.normal_force)
     pieces = list(_pieces(pair, bodies, each, store, progress))
-    whole = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
-    return ContactHistory(**whole, tier=Tier.CYCLE)
+    arrays = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+    return ContactHistory(**arrays, tier=Tier.CYCLE)
 
 
 def _pieces(

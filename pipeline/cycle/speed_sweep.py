@@ -186,8 +186,8 @@ def spring_sweep(
     # The resonances of the hardest spring lie this much above those of the nominal and softest one.
     nominal, softest = np.sqrt(1.0 + spread), np.sqrt((1.0 + spread) / (1.0 - spread))
     resonant = _Resonant.of(hard, design, pitch)
-    known = softest * np.asarray(speeds) / machine.gear_ratio
-    grid = resonant.grid(machine, known)
+    cam_speeds = softest * np.asarray(speeds) / machine.gear_ratio
+    grid = resonant.grid(machine, cam_speeds)
     least, greatest = resonant.end_forces(grid)
     finer = _between(grid, {first_greatest(np.max(greatest - least, axis=0))})
     more = resonant.end_forces(finer)
@@ -269,8 +269,8 @@ class _Resonant:
         total = machine.axial_stiffness + self.spring.rate
         damping = max(machine.damping_ratio, 1e-3)
         peak = total * self.amplitude / (2.0 * damping)
-        own = np.array([machine.follower_frequency])
-        speeds.append(_about(_met(own, peak, enough, top), damping))
+        frequencies = np.array([machine.follower_frequency])
+        speeds.append(_about(_met(frequencies, peak, enough, top), damping))
         return distinct(np.clip(np.concatenate(speeds), 0.0, top))
 
 

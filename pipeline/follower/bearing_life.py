@@ -200,8 +200,8 @@ def _light_grease(speed: Values, outer_diameter: Value, temperature: float) -> V
     warm = max(celsius(temperature), 50.0)
     life = 6.10 - 4.40e-6 * factor - (0.021 - 1.80e-8 * factor) * warm
     outside = (np.real(factor) > 500e3) | (warm > 120.0)
-    known: Values = np.where(outside, np.nan, life)
-    return known
+    within: Values = np.where(outside, np.nan, life)
+    return within
 
 
 def grease_load_share(

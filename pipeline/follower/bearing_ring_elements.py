@@ -57,27 +57,27 @@ class RingElements:
         element = ElementVector(ElementQuad2())
         first, shear = lame_parameters(ring.modulus, poisson)
         form = linear_elasticity(2.0 * first * shear / (first + 2.0 * shear), shear)
-        whole = Basis(mesh, element, intorder=4)
-        self.stiffness = scipy.sparse.csc_array(ring.width * form.assemble(whole))
-        local = ring.width * form.elemental(whole).tolocal()
-        nodes, height = _nodes(whole, ring.radius, sections)
+        basis = Basis(mesh, element, intorder=4)
+        self.stiffness = scipy.sparse.csc_array(ring.width * form.assemble(basis))
+        local = ring.width * form.elemental(basis).tolocal()
+        nodes, height = _nodes(basis, ring.radius, sections)
         turn = FULL_TURN * np.arange(sections) / sections
         outward = np.stack([np.cos(turn), np.sin(turn)], axis=1)[:, :, None]
         ahead = np.stack([-np.sin(turn), np.cos(turn)], axis=1)[:, :, None]
         self.radial, self.along = (
-            _rows(nodes, way * _SIMPSON, whole.N) for way in (outward, ahead)
+            _rows(nodes, way * _SIMPSON, basis.N) for way in (outward, ahead)
         )
         # the elements between a section and the next one
         after = (np.arange(sections)[:, None] + sections * np.arange(_LAYERS)).ravel()
-        dofs = whole.element_dofs[:, after].T
+        dofs = basis.element_dofs[:, after].T
         at = np.repeat(np.arange(sections), _LAYERS)
 
         def transmitted(virtual: Array) -> scipy.sparse.csr_array:
             """Work of the forces that these elements put on a section in a virtual motion of it."""
-            motion = np.zeros((sections, whole.N))
+            motion = np.zeros((sections, basis.N))
             motion[np.arange(sections)[:, None, None], nodes] = virtual
             work = np.einsum("ei,eij->ej", motion[at[:, None], dofs], local[after])
-            return _rows(dofs.reshape(sections, -1), work.reshape(sections, -1), whole.N)
+            return _rows(dofs.reshape(sections, -1), work.reshape(sections, -1), basis.N)
 
         self.moment = transmitted(ahead * height[:, None])
         self.hoop = transmitted(-ahead * np.ones_like(height)[:, None])

@@ -355,7 +355,7 @@ def jump_speed(
 
 
 def share_left(lift_slope: Array, jam_index: Array) -> Array:
-    """Axial force without over with guide friction, >= `JAM_FLOOR`; above 1 on the return."""
+    """Ratio of the axial force without guide friction to that with it, at least `JAM_FLOOR`."""
     share = 1.0 - np.sign(lift_slope) * jam_index
     return np.where(share < JAM_FLOOR, JAM_FLOOR, share)  # NaN stays
 

@@ -248,10 +248,10 @@ def settle(
         settled = line.settled(next_push, next_rigid) & ~lost
         left = np.flatnonzero(~settled & ~lost)
         after = next_push[:, left], next_rigid[:, left]
-        kept = (line.sides(now[:, left], at[:, left]) == line.sides(*after)).all(axis=0)
-        kept &= line.law_residual(*after) <= _UNCHANGED
-        settled[left] = kept & steady[unsettled[left]]
-        steady[unsettled[left]] = kept
+        unchanged = (line.sides(now[:, left], at[:, left]) == line.sides(*after)).all(axis=0)
+        unchanged &= line.law_residual(*after) <= _UNCHANGED
+        settled[left] = unchanged & steady[unsettled[left]]
+        steady[unsettled[left]] = unchanged
         push[:, unsettled[settled]] = next_push[:, settled]
         rigid[:, unsettled[settled]] = next_rigid[:, settled]
         if lost.any():
@@ -285,11 +285,11 @@ def _first_guess(line: BearingLine, load: Array) -> tuple[Array, Array]:
     size = line.size(load)
     direction = np.round(np.arctan2(load[1] / line.positions[-1], load[0]) * _DIRECTIONS)
     order = np.lexsort((size, direction))
-    known = np.append(np.arange(0, count - 1, _START_SPACING), count - 1)
-    solved = settle(line, *load[:, order[known]])
-    place = np.interp(np.arange(count), known, np.arange(known.size))
-    low = np.minimum(place.astype(np.intp), known.size - 2)
-    between = [values[:, low] + (place - low) * np.diff(values)[:, low] for values in solved]
+    sampled = np.append(np.arange(0, count - 1, _START_SPACING), count - 1)
+    solved = settle(line, *load[:, order[sampled]])
+    position = np.interp(np.arange(count), sampled, np.arange(sampled.size))
+    low = np.minimum(position.astype(np.intp), sampled.size - 2)
+    between = [values[:, low] + (position - low) * np.diff(values)[:, low] for values in solved]
     # Of a small load the round-off of the slack, which is in the guess, would be in the solution.
     large = size[order] >= _LEAST_GUESSED * line.stiffness.max() * line.slack
     push[:, order[large]], rigid[:, order[large]] = (values[:, large] for values in between)

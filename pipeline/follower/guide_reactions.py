@@ -290,8 +290,8 @@ class GuideReactions(Displayed):
 
     def part(self, first: int, end: int) -> GuideReactions:
         """Reactions at the positions from `first` to before `end`."""
-        whole = ("stem_diameter", "knots_a", "knots_b")
-        names = set(self.__dataclass_fields__) - set(whole)
+        unsplit = ("stem_diameter", "knots_a", "knots_b")
+        names = set(self.__dataclass_fields__) - set(unsplit)
         return replace(self, **{name: getattr(self, name)[..., first:end] for name in names})
 
     @cached_property

@@ -232,14 +232,14 @@ class SupportOfMany:
         factor, on_points = push.side_factor, push.rubbing_on_points(overhang)
         if not push.arm.any():
             table = _table(OverhangTable, stem, guides)
-            place = table.between(overhang / push.spacing / _OVERHANG_STEP, push.spacing)
-            return cls(table, place, factor, factor, on_points, on_points)
+            nodes = table.between(overhang / push.spacing / _OVERHANG_STEP, push.spacing)
+            return cls(table, nodes, factor, factor, on_points, on_points)
         _, moment = push.on_points(*levers(overhang, push.spacing))
         table = _table(MomentTable, stem, guides)
-        place = table.between(np.arctan2(moment, push.side) / _DIRECTION_STEP, push.spacing)
+        nodes = table.between(np.arctan2(moment, push.side) / _DIRECTION_STEP, push.spacing)
         size = np.hypot(push.side, moment)
         share = np.divide(size, factor, out=np.ones_like(size), where=factor > 0.0)
-        return cls(table, place, size, factor, (share, share), on_points)
+        return cls(table, nodes, size, factor, (share, share), on_points)
 
     def rubbing(self, axial_force: Array) -> tuple[Array, Array]:
         """Rubbing loads over axial force and side-load factor at axial forces (...), N, >= 0."""

@@ -85,11 +85,11 @@ def judged_sections(
     if weight is not None:
         seats = (*seats, ("counterweight", weight.position, 0.0, keyed))
     others, judged = list(shaft.sections), []
-    for name, place, reach, (bending, torsion) in seats:
-        listed = [one for one in others if abs(one.position - place) < _SAME_PLACE]
+    for name, position, reach, (bending, torsion) in seats:
+        listed = [one for one in others if abs(one.position - position) < _SAME_PLACE]
         plain = ShaftSection(
             name=name,
-            position=place,
+            position=position,
             diameter=diameter,
             notch_bending=bending,
             notch_torsion=torsion,
@@ -97,7 +97,7 @@ def judged_sections(
         for seat in listed or [plain]:
             others = [one for one in others if one is not seat]
             steps = (0.0, -reach, reach) if reach > 0.0 else (0.0,)
-            judged += [replace(seat, position=place + step) for step in steps]
+            judged += [replace(seat, position=position + step) for step in steps]
     return (*judged, *others)
 
 

@@ -155,9 +155,9 @@ class WoundWire(Generic[Number]):
         InputError
             If a force is not finite.
         """
-        known = np.asarray(force)
-        finite("spring.force", np.abs(known))
-        return np.asarray(self.wahl_factor * self._stress_per_newton * known)
+        newtons = np.asarray(force)
+        finite("spring.force", np.abs(newtons))
+        return np.asarray(self.wahl_factor * self._stress_per_newton * newtons)
 
     def deflection(self, force: Number) -> Number:
         """Deflection from the free length, m."""

@@ -82,8 +82,10 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
         limit = how.limit_of_measure(numbers) if of_part else how.allowed(numbers).value
         if limit is not None:
             limits.setdefault(each.kept_at, {})[each.id] = float(limit)
-        for stroke, own in zip(how.strokes[1:], how.limits_of_strokes(numbers)[1:], strict=False):
-            limits[stroke.limit.id] = {each.id: float(own)}
+        for stroke, stroke_limit in zip(
+            how.strokes[1:], how.limits_of_strokes(numbers)[1:], strict=False
+        ):
+            limits[stroke.limit.id] = {each.id: float(stroke_limit)}
     limits[PRESSURE] |= pressure_allowables(machine, greatest_cycles(case))
     if (room := room_beside_shaft(machine)) is not None:
         limits.setdefault(CAM_RADIUS.id, {})[machine_shaft_gap.id] = room
@@ -214,8 +216,8 @@ def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
         if not declared.scales_with:
             continue
         group, power = declared.scales_with
-        made, value = declared(solved), greatest[group]
-        use = None if made is None else made.utilisation
+        check, value = declared(solved), greatest[group]
+        use = None if check is None else check.utilisation
         if use is not None and 0.0 < use < np.inf and value > 0.0:
             limits[group][declared.id] = value / use ** (1.0 / power)
     return limits
@@ -224,8 +226,10 @@ def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
 def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
     """Ratings with limits scaled from a solved cam; see `surge_of`, `scaled_limits`."""
     case = solved.case
-    known = limits_of(case)
-    scaled = {group: known[group] | own for group, own in scaled_limits(solved).items()}
+    limits = limits_of(case)
+    scaled = {
+        group: limits[group] | scaled_limit for group, scaled_limit in scaled_limits(solved).items()
+    }
     return ratings.least({spring_travel.id: _travel_limit(case, surge_of(solved))} | scaled)
 
 

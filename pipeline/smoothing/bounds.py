@@ -84,11 +84,11 @@ def _of_row(row: AnyLimit, ratings: Ratings, one: AnyConstraint, value: float) -
 
 def _of_part(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
     """What the synthesis bounds for the check that sets the limit: of its part, else of its row."""
-    declared, kept = DECLARED[ratings.by.get(one.key, one.check)], one.kept
-    row, shown = declared.limit, in_unit(value, kept.unit)
+    declared, rule = DECLARED[ratings.by.get(one.key, one.check)], one.kept
+    row, shown = declared.limit, in_unit(value, rule.unit)
     words = declared.kept_as or (declared.title if row is None else row.title)
-    relaxed = partial(_times, one.key) if kept.falls > 0.0 else None
-    return Bound(words, shown, kept.unit, kept.falls / shown, relaxed)
+    relaxed = partial(_times, one.key) if rule.falls > 0.0 else None
+    return Bound(words, shown, rule.unit, rule.falls / shown, relaxed)
 
 
 def _normal_force(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:

@@ -85,7 +85,7 @@ _READ = (CONTACT_FORCE_MARGIN, PRESSURE_ANGLE, RETURN_PRESSURE_ANGLE)
 
 
 def unloaded(jet: Jet, variables: DesignVariables, ratings: Ratings) -> LoadedCam:
-    """Cam of a lift, without loads."""
+    """Cam of a lift for the measures of its shape, without loads of the follower."""
     return LoadedCam(jet, _numbers(variables, ratings))
 
 
@@ -367,12 +367,15 @@ def kept(declared: Declaration) -> Constraint[LoadedCam]:
 
 def kept_strokes(declared: Declaration) -> tuple[Constraint[LoadedCam], ...]:
     """Constraints of a check's further strokes that have limits of their own."""
-    whole, strokes = kept(declared), () if declared.measured is None else declared.measured.strokes
+    constraint, strokes = (
+        kept(declared),
+        () if declared.measured is None else declared.measured.strokes,
+    )
 
     def of_stroke(stroke: Stroke) -> Constraint[LoadedCam]:
         key, measure = stroke.limit.id, stroke.measure
         return replace(
-            whole, key=key, utilisation=lambda cam, limit: measure(cam) / limit,
+            constraint, key=key, utilisation=lambda cam, limit: measure(cam) / limit,
             row=stroke.limit, stroke=key,
         )  # fmt: skip
 

@@ -97,8 +97,8 @@ class _Block(NamedTuple):
     def of(cls, matrix: scipy.sparse.csr_array, side: ArrayLike) -> _Block:
         """Entries of a sparse matrix."""
         rows = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
-        whole = np.broadcast_to(np.asarray(side, dtype=float), matrix.shape[:1])
-        return cls(rows, matrix.indices.astype(np.intp), matrix.data, whole)
+        right_side = np.broadcast_to(np.asarray(side, dtype=float), matrix.shape[:1])
+        return cls(rows, matrix.indices.astype(np.intp), matrix.data, right_side)
 
 
 class Cones:

@@ -87,10 +87,10 @@ def constraints_of(
         how = each.measured
         if how is None or how.kept is None:
             continue
-        own, at_top = how.kept, how.reduce == "top"
-        if (own.group not in ("", each.id) and not own.needs) or (at_top and not own.unit):
+        rule, at_top = how.kept, how.reduce == "top"
+        if (rule.group not in ("", each.id) and not rule.needs) or (at_top and not rule.unit):
             continue
-        if at_top or own.unloaded or (how.reduce == "contour" and not own.once):
+        if at_top or rule.unloaded or (how.reduce == "contour" and not rule.once):
             shape += kept(each), *kept_strokes(each)
         else:
             loads.append(kept_loads(each))

@@ -85,8 +85,8 @@ def _rows(
         raise InputError("smoothing.coefficients", count, f">= {LEAST_COEFFICIENTS}")
     angle = np.mod(lobes * finite("theta", theta), FULL_TURN)
     part = FULL_TURN / count
-    place = np.minimum((angle / part).astype(np.intp), count - 1)
-    step = (angle / part - place)[:, None]
+    interval = np.minimum((angle / part).astype(np.intp), count - 1)
+    step = (angle / part - interval)[:, None]
     powers = [step**power for power in range(DEGREE + 1 - min(derivatives))]
     values = np.zeros((len(derivatives), angle.size, DEGREE + 1))
     for k, derivative in enumerate(derivatives):
@@ -94,7 +94,7 @@ def _rows(
             front = np.prod(np.arange(power - derivative + 1, power + 1))
             values[k] += front * powers[power - derivative] * _pieces()[:, power]
         values[k] /= (part / lobes) ** derivative
-    return values, np.mod(place[:, None] - np.arange(DEGREE + 1), count)
+    return values, np.mod(interval[:, None] - np.arange(DEGREE + 1), count)
 
 
 @dataclass(frozen=True, eq=False)

@@ -191,17 +191,17 @@ def judged_over(
     """
     ratios = {}
     for one in checks:
-        use, own = one.upper_utilisation, uses.get(one.id)
-        if use is None or own is None or not one.must_have:
+        use, corrected_use = one.upper_utilisation, uses.get(one.id)
+        if use is None or corrected_use is None or not one.must_have:
             continue
         if known is not None and one.id not in known and one.status != "fail":
             continue
         if one.id == TORQUE_REDUCTION.id:  # the synthesis limits what is left, at its nominal
             nominal = replace(one, corner="", corner_demand=None)
-            use, own = (1.0 - float(each.worst or 0.0) for each in (one, nominal))
-        if not (own > 0.0 and np.isfinite(use / own)):
+            use, corrected_use = (1.0 - float(each.worst or 0.0) for each in (one, nominal))
+        if not (corrected_use > 0.0 and np.isfinite(use / corrected_use)):
             continue
-        ratio = use / own
+        ratio = use / corrected_use
         growth = max(ratio / known[one.id], 1.0) if known and one.id in known else 1.0
         ratios[one.id] = float(np.clip(ratio * growth, 1.0, _JUDGED_MOST))
     return ratios
@@ -280,8 +280,8 @@ def corrections_of(solved: Solution) -> dict[str, Correction]:
     ]
     corrections = {}
     for cycle in solved.cycles:
-        known = swept.get(cycle.machine.spring.preload, Correction.none(cycle.theta.size))
-        corrections[cycle.load_case] = _of_cycle(cycle, known.at(cycle.theta), left)
+        correction = swept.get(cycle.machine.spring.preload, Correction.none(cycle.theta.size))
+        corrections[cycle.load_case] = _of_cycle(cycle, correction.at(cycle.theta), left)
     return corrections
 
 
@@ -360,8 +360,8 @@ class _Statics(NamedTuple):
 
     def correction(self, place: int, solved: Array) -> Array:
         """Correction (n,) with which `Reaction` is the solved load; 1 where unloaded."""
-        whole = self.whole[place]
-        return _ratio(np.abs(solved) + whole - self.both[place], whole, _GUIDED_SHARE)
+        load = self.whole[place]
+        return _ratio(np.abs(solved) + load - self.both[place], load, _GUIDED_SHARE)
 
 
 def _over(force: Array, friction: float) -> Array:

@@ -40,7 +40,7 @@ class Point(NamedTuple):
 
 
 def values_of(function: Function, at: Point) -> Mapping[str, Array | Mean]:
-    """Values of a cam function, by name."""
+    """Values, by name, of a function of the lift, its maximum and the free variables."""
     return function(lift_jet(at.energy, at.variables), at.highest, at.variables)
 
 
@@ -86,8 +86,8 @@ def second_derivatives(
     def slopes(point: Point, places: Sequence[int]) -> Array:
         """Derivatives (len(places), n) in some of the q directions."""
         sides = []
-        for place in places:
-            values = values_of(function, _step(point, place, 1j * _COMPLEX_STEP))
+        for variable in places:
+            values = values_of(function, _step(point, variable, 1j * _COMPLEX_STEP))
             parts = (weight * np.imag(_terms(values[name])) for name, weight in weights.items())
             sides.append(
                 sum(np.sum(each, axis=tuple(range(each.ndim - 1))) for each in parts)
@@ -103,8 +103,8 @@ def second_derivatives(
     second = np.zeros((len(steps), len(steps), *by_jerk.shape[1:]))
     # Loads do not depend on the third derivative.
     used = [k for k in range(len(steps)) if k != jerk or by_jerk.any()]
-    for place, k in enumerate(used):
-        rest, step = used[place:], steps[k]
+    for row, k in enumerate(used):
+        rest, step = used[row:], steps[k]
         up, down = (slopes(_step(at, k, side * step), rest) for side in (1.0, -1.0))
         second[k, rest] = second[rest, k] = (up - down) / (2.0 * step)
     return second

@@ -116,14 +116,14 @@ def infeasibility(
     conflict.reverse()
     wide = _with_margin(coarse if solved is None else coarsened(solved), margin)
     least = _RELAXATION_MARGIN + margin
-    known = problem if solved is None else solved
-    tried = [_smallest(wide, each, least) for each in _candidates(known, conflict)]
+    corrected = problem if solved is None else solved
+    tried = [_smallest(wide, each, least) for each in _candidates(corrected, conflict)]
     relaxations = [item for item in tried if item is not None]
     if any(name.startswith("roller") for name in conflict):
         wider = ((name, _with_margin(other, margin)) for name, other in rollers)
         relaxations += _from_catalogue(problem, wider, relaxations)
     if TORQUE_REDUCTION.id in conflict:
-        relaxations += _less_reduction(wide, _with_margin(known, margin), least)
+        relaxations += _less_reduction(wide, _with_margin(corrected, margin), least)
     return Infeasibility(tuple(conflict), tuple(sorted(relaxations, key=lambda item: item.factor)))
 
 

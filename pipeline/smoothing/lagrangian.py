@@ -130,17 +130,17 @@ def _of_rows(
     """Of limits at single angles, each row alone with its own limit."""
     total = np.zeros((search.size, search.size))
     for names in search.families(limit.name for limit, _ in priced):
-        own = [pair for pair in priced if pair[0].name in names]
+        pairs = [pair for pair in priced if pair[0].name in names]
         # Reversals may end.
         last = state.grid.theta.size
-        kept = [(price > _PRICE_LEAST) & (each.point < last) for each, price in own]
-        point = np.concatenate([each.point[k] for (each, _), k in zip(own, kept, strict=True)])
+        active = [(price > _PRICE_LEAST) & (each.point < last) for each, price in pairs]
+        point = np.concatenate([each.point[k] for (each, _), k in zip(pairs, active, strict=True)])
         if not point.size:
             continue  # all their reversals have ended
-        row = np.concatenate([each.scenario[k] for (each, _), k in zip(own, kept, strict=True)])
-        starts = np.cumsum([0, *(int(k.sum()) for k in kept)])
+        row = np.concatenate([each.scenario[k] for (each, _), k in zip(pairs, active, strict=True)])
+        starts = np.cumsum([0, *(int(k.sum()) for k in active)])
         weights = {name: np.zeros(point.size) for name in names}
-        for (each, price), k, start in zip(own, kept, starts, strict=False):
+        for (each, price), k, start in zip(pairs, active, starts, strict=False):
             weights[each.name][start : start + int(k.sum())] = price[k]
         function = search.function(names, state, search.pairs(state, row, point))
         at = search.point(state, summit.lift, point)
@@ -204,11 +204,13 @@ def _of_ripples(
     )
     total = _assembled(search, state, summit, second, points)
     if "phase" in problem.freed:
-        place = problem.coefficients + list(problem.freed).index("phase")
+        phase_column = problem.coefficients + list(problem.freed).index("phase")
         for k in priced:
             item, phase = problem.scenarios[search.weighted[k]], float(variables.phase)
             ends = [item.torque_at(phase + side * _PHASE_STEP)[1] for side in (1.0, -1.0)]
-            total[place, place] += float(slope[k] @ (ends[0] - ends[1])) / (2.0 * _PHASE_STEP)
+            total[phase_column, phase_column] += float(slope[k] @ (ends[0] - ends[1])) / (
+                2.0 * _PHASE_STEP
+            )
     return total
 
 
@@ -221,8 +223,8 @@ def _assembled(
     columns = state.grid.columns[points]
     local = np.einsum("abm,bmj->amj", second[:orders, :orders], entries)
     blocks = np.einsum("ami,amj->mij", entries, local)
-    place = columns[:, :, None] * size + columns[:, None, :]
-    total = np.bincount(place.ravel(), blocks.ravel(), size * size).reshape(size, size)
+    entry = columns[:, :, None] * size + columns[:, None, :]
+    total = np.bincount(entry.ravel(), blocks.ravel(), size * size).reshape(size, size)
     shared = search.shared_columns(state, summit)
     sides = np.einsum("sam,amj->smj", second[orders:, :orders], entries)
     mixed = np.stack([np.bincount(columns.ravel(), side.ravel(), size) for side in sides])

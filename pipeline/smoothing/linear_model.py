@@ -88,8 +88,8 @@ class Model(NamedTuple):
         """Derivatives of the means of a limit in some scenarios, rising; None: not in the model."""
         if name not in self.means:
             return None
-        known, slopes = self.means[name]
-        if not np.isin(scenarios, known).all():
+        modelled, slopes = self.means[name]
+        if not np.isin(scenarios, modelled).all():
             return None
-        by_scenario = slopes.reshape(-1, known.size, slopes.shape[1])
-        return by_scenario[:, np.searchsorted(known, scenarios)].reshape(-1, slopes.shape[1])
+        by_scenario = slopes.reshape(-1, modelled.size, slopes.shape[1])
+        return by_scenario[:, np.searchsorted(modelled, scenarios)].reshape(-1, slopes.shape[1])

@@ -54,14 +54,14 @@ class Starts:
     @property
     def sentence(self) -> str:
         """The agreement in words."""
-        tried, kept = len(self.ripples), len(self.kept)
+        tried, feasible = len(self.ripples), len(self.kept)
         if tried == 1:
             return "one start: other optima are not excluded"
-        if not kept:
+        if not feasible:
             return f"no start of {tried} leads to a cam within all limits"
         if self.agree:
             return f"{tried} starts agree on the ripple within {100 * max(self.spread, 1e-5):.2g} %"
-        lost = f"{tried - kept} lead to no cam within all limits; " if kept < tried else ""
+        lost = f"{tried - feasible} lead to no cam within all limits; " if feasible < tried else ""
         return (
             f"{tried} starts do not agree: {lost}their residual ripples differ by "
             f"{100 * self.spread:.2g} %, and the best of them may be no global optimum"
@@ -197,8 +197,8 @@ def continued(problem: Problem, start: Design | State) -> Design:
 
 
 def _best(designs: Sequence[Design]) -> Design | None:
-    kept = [each for each in designs if each.feasible and each.converged]
-    return min(kept, key=lambda each: each.objective) if kept else None
+    feasible = [each for each in designs if each.feasible and each.converged]
+    return min(feasible, key=lambda each: each.objective) if feasible else None
 
 
 def _random(problem: Problem, size: float, random: np.random.Generator) -> Problem:

@@ -236,8 +236,8 @@ def objective_of(weights: Mapping[str, float], orders: Iterable[int] = ()) -> Ob
     chosen = tuple(orders)
     if weights.get("harmonic", 0.0) > 0 and not chosen:
         raise InputError("smoothing.harmonic_orders", "missing", "given with harmonic_weight")
-    known: tuple[Residual | Cost, ...] = (TORQUE, SPEED, harmonics(chosen), *COSTS)
-    terms = {term.key: term for term in known}
+    candidates: tuple[Residual | Cost, ...] = (TORQUE, SPEED, harmonics(chosen), *COSTS)
+    terms = {term.key: term for term in candidates}
     objective = tuple(
         Weighted(terms[key], float(weight)) for key, weight in weights.items() if weight > 0
     )

@@ -42,9 +42,9 @@ def _of(
     unit: str = "",
 ) -> Constraint[ScenarioCam]:
     """Constraint of a check without a measure, at its row; unit: of a limit that a part sets."""
-    row, kept = None if unit else declared.limit, Kept(unit=unit)
+    row, rule = None if unit else declared.limit, Kept(unit=unit)
     key = declared.id if row is None else row.id
-    return Constraint(declared.id, key, utilisation, row, kept, declared.needs)
+    return Constraint(declared.id, key, utilisation, row, rule, declared.needs)
 
 
 def _edge_use(side: Side, at: ScenarioCam, limit: float) -> Array:
@@ -99,10 +99,10 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
         lasts = turns & np.isfinite(share)
         return Mean(lasts * worn / np.where(lasts, share, 1.0) ** BALL_LIFE_EXPONENT, root)
     share = grease.load_share(speed, unbounded=True)
-    known = turns & np.isfinite(share)
-    left = np.broadcast_to(np.where(known, share, 1.0), worn.shape)
+    finite = turns & np.isfinite(share)
+    left = np.broadcast_to(np.where(finite, share, 1.0), worn.shape)
     count, running = shares.shape[1], shares.any(axis=0)
-    counted = shares * np.ravel(known)
+    counted = shares * np.ravel(finite)
 
     def of(means: Array) -> Array:
         load, allowed = not_negative(means[..., :count]) ** root, means[..., count:]
@@ -112,7 +112,7 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
         )
 
     members = np.concatenate([shares > 0.0, np.eye(count, dtype=bool)[running]])
-    terms = np.concatenate([np.atleast_2d(known * worn), np.atleast_2d(left)])
+    terms = np.concatenate([np.atleast_2d(finite * worn), np.atleast_2d(left)])
     return Mean(terms, total=Total(of, members))
 
 

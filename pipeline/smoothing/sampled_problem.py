@@ -483,10 +483,10 @@ class Search:
         gradient = differentiated(self.torque(state, wanted), at, self.freed)["torque"]
         engine = self._engine(variables)
         norms = []
-        for place, k in enumerate(wanted):
+        for row, k in enumerate(wanted):
             item = problem.scenarios[self.weighted[k]]
-            left = engine[k] - gradient.terms[place] / problem.gear_ratio
-            local, shared = gradient.local[:, place], gradient.shared[:, place]
+            left = engine[k] - gradient.terms[row] / problem.gear_ratio
+            local, shared = gradient.local[:, row], gradient.shared[:, row]
             slopes = self._dense(local, shared, state, summit)
             slopes /= -problem.gear_ratio
             if "phase" in problem.freed:
@@ -517,10 +517,10 @@ class Search:
 
         local (4, m), shared (1 or 4, m): see `Gradient`.
         """
-        own = self.scale * np.einsum("km,kmj->mj", local, state.grid.entries[:, points])
+        scaled = self.scale * np.einsum("km,kmj->mj", local, state.grid.entries[:, points])
         by_unknowns, places = self._shared(shared, state, summit)
         return (
-            np.hstack([own, by_unknowns]),
+            np.hstack([scaled, by_unknowns]),
             np.hstack(
                 [state.grid.columns[points], np.broadcast_to(places, (points.size, places.size))]
             ),
@@ -586,12 +586,12 @@ class Search:
             for name, gradient in differentiated(turn.function, turn.at, self.freed).items():
                 if gradient.mean is None:
                     continue
-                own = self._means_slopes(gradient, state, summit)
-                slopes[name] = turn.scenarios, own
-                entries, numbers = gradient.mean.slopes @ own, turn.places[name]
+                mean_slopes = self._means_slopes(gradient, state, summit)
+                slopes[name] = turn.scenarios, mean_slopes
+                entries, numbers = gradient.mean.slopes @ mean_slopes, turn.places[name]
                 models += [
-                    self._mean(name, state, entries[[place]], numbers[[place]])
-                    for place in np.flatnonzero(wanted[name][numbers])
+                    self._mean(name, state, entries[[number]], numbers[[number]])
+                    for number in np.flatnonzero(wanted[name][numbers])
                 ]
         return models, slopes
 
@@ -600,12 +600,12 @@ class Search:
     ) -> Means:
         """Mean-based limits and costs for chosen utilisations (r,), in the scenarios they need."""
         needed = [state.members[name][chosen].any(axis=0) for name, chosen in rows.items()]
-        own = np.flatnonzero(np.isin(self._corners, self._corners[np.any(needed, axis=0)]))
+        scenarios = np.flatnonzero(np.isin(self._corners, self._corners[np.any(needed, axis=0)]))
         return Means(
-            self.function(frozenset(rows), state, self.turns(own)),
+            self.function(frozenset(rows), state, self.turns(scenarios)),
             self.point(state, summit.lift, self.every),
-            own,
-            {name: np.flatnonzero(state.members[name][:, own].any(axis=1)) for name in rows},
+            scenarios,
+            {name: np.flatnonzero(state.members[name][:, scenarios].any(axis=1)) for name in rows},
         )
 
     def means_slopes(self, means: Means, state: State, summit: Summit, name: str) -> Array:

@@ -176,13 +176,13 @@ class Correction:
         """Linear interpolation towards another correction, at its angles."""
         if share == 1.0:
             return other
-        own = self.at(uniform_turn(other.contact.size))
-        return own.each(lambda both: (1.0 - share) * both[0] + share * both[1], other)
+        resampled = self.at(uniform_turn(other.contact.size))
+        return resampled.each(lambda both: (1.0 - share) * both[0] + share * both[1], other)
 
     def at(self, theta: Array) -> Correction:
         """Corrections at cam angles theta (m,), rad, interpolated linearly."""
-        own = np.arange(self.contact.size) * (FULL_TURN / self.contact.size)
-        return self.each(lambda one: np.interp(theta, own, one[0], period=FULL_TURN))
+        angles = np.arange(self.contact.size) * (FULL_TURN / self.contact.size)
+        return self.each(lambda one: np.interp(theta, angles, one[0], period=FULL_TURN))
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,5 +303,5 @@ def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
 
 def _column(values: Sequence[Value | None]) -> Array | None:
     """Values (s, 1); None where one is not known."""
-    known = [float(each) for each in values if each is not None]
-    return np.array(known)[:, None] if len(known) == len(values) else None
+    stated = [float(each) for each in values if each is not None]
+    return np.array(stated)[:, None] if len(stated) == len(values) else None

@@ -198,8 +198,8 @@ def _changed(number: MachineNumber, case: Case) -> tuple[Case, float]:
 
 def _with_solved_limits(ratings: Ratings, stated: Ratings, solved: Ratings) -> Ratings:
     """Ratings with the limits that a solved cam has changed from those stated in its case."""
-    known = solved.bounds.items()
-    changed = {key: value for key, value in known if value != stated.bounds.get(key)}
+    limits = solved.bounds.items()
+    changed = {key: value for key, value in limits if value != stated.bounds.get(key)}
     return replace(ratings, bounds={**ratings.bounds, **changed})
 
 
@@ -207,8 +207,8 @@ def problem_like(problem: Problem, case: Case, torques: Mapping[str, Torque]) ->
     """Problem of a changed case with the finite-element corrections of another problem."""
     other = problem_of(case, torques)
     scenarios = tuple(
-        replace(each, correction=known.correction)
-        for each, known in zip(other.scenarios, problem.scenarios, strict=True)
+        replace(each, correction=scenario.correction)
+        for each, scenario in zip(other.scenarios, problem.scenarios, strict=True)
     )
     return replace(
         other, scenarios=scenarios, coefficients=problem.coefficients, points=problem.points
@@ -248,22 +248,22 @@ def prices(design: Design, problem: Problem) -> list[PriceRecord]:
     for name, multiplier in design.multipliers.items():
         if multiplier < 100.0 * FLOOR:
             continue
-        known = bounds.get(name, Bound(name.replace("_", " "), 1.0, "-", 1.0))
-        slope = known.slope
+        bound = bounds.get(name, Bound(name.replace("_", " "), 1.0, "-", 1.0))
+        slope = bound.slope
         if name in _BY_SQUARE:
             slope *= 2.0 * _load_share(design, problem, name)
         price = multiplier * before * slope
         records.append(
             {
                 "limit": name,
-                "words": known.words,
-                "value": known.value,
-                "unit": known.unit,
+                "words": bound.words,
+                "value": bound.value,
+                "unit": bound.unit,
                 "ripple_per_unit_Nm": price,
                 "ripple_per_percent_Nm": multiplier * before / 100.0,
                 "binds_at_deg": _ranges_record(*design.strip[name]) if name in design.strip else [],
                 "of": of,
-                "sentence": _sentence(known, price, of),
+                "sentence": _sentence(bound, price, of),
             }
         )
     return sorted(records, key=lambda record: -record["ripple_per_percent_Nm"])

@@ -135,8 +135,8 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
 
 def _reached(attempts: Sequence[Attempt]) -> str:
     if not any(keeps_torque(item.checks) for item in attempts):
-        known = any(c.status == "fail" for c in attempts[0].checks if c.id == TORQUE_REDUCTION.id)
-        state = "fails" if known else "is not evaluated"
+        failed = any(c.status == "fail" for c in attempts[0].checks if c.id == TORQUE_REDUCTION.id)
+        state = "fails" if failed else "is not evaluated"
         return (
             f"{TORQUE_REDUCTION.id} {state} with the smoother of the case, "
             "and a gentler lift lowers it further"

@@ -72,12 +72,14 @@ def best_candidate(
     count = 1 + math.ceil(reach / math.log(COARSE_STEP))
     coarse = first.strength * np.exp(np.linspace(0.0, reach, count))
     wider = [first.stretched(s) for s in coarse]
-    made = [_by_id(each) for each in forecast([*(item.smoother for item in attempts), *wider])]
-    known = tuple((item, checks) for item, checks in zip(attempts, made, strict=False) if checks)
-    ahead = zip(coarse, wider, made[len(attempts) :], strict=True)
-    scores = {float(s): _score(smoother, known, checks) for s, smoother, checks in ahead}
-    place = int(np.searchsorted(coarse, _best(scores)))
-    beside = coarse[max(place - 1, 0) : place + 2]
+    forecasts = [_by_id(each) for each in forecast([*(item.smoother for item in attempts), *wider])]
+    compared = tuple(
+        (item, checks) for item, checks in zip(attempts, forecasts, strict=False) if checks
+    )
+    ahead = zip(coarse, wider, forecasts[len(attempts) :], strict=True)
+    scores = {float(s): _score(smoother, compared, checks) for s, smoother, checks in ahead}
+    index = int(np.searchsorted(coarse, _best(scores)))
+    beside = coarse[max(index - 1, 0) : index + 2]
     fine = [
         s
         for low, high in pairwise(beside)
@@ -85,7 +87,7 @@ def best_candidate(
     ]
     wider = [first.stretched(s) for s in fine]
     for s, smoother, checks in zip(fine, wider, forecast(wider), strict=True):
-        scores[float(s)] = _score(smoother, known, _by_id(checks))
+        scores[float(s)] = _score(smoother, compared, _by_id(checks))
     chosen = _best(scores)
     if scores[chosen][0]:
         return None  # the torque reduction would be lost
@@ -115,10 +117,10 @@ def _score(
         return (True, sys.maxsize, math.inf, sys.maxsize)
     if not known:  # no trial so far had a cam
         return score([_with_margin(check) for check in candidate.values()])
-    nearest, own = min(
+    nearest, solved_checks = min(
         known, key=lambda pair: abs(math.log(pair[0].smoother.strength / smoother.strength))
     )
-    return score([_corrected(check, candidate, own) for check in nearest.checks])
+    return score([_corrected(check, candidate, solved_checks) for check in nearest.checks])
 
 
 def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, Check]) -> Check:

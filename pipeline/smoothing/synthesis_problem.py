@@ -183,8 +183,8 @@ class Design:
         theta = uniform_turn(samples) - float(self.variables.phase)
         splines = basis_matrix(theta, self.coefficients.size, lobes=self.lobes)
         energy = np.maximum(splines @ self.coefficients, 0.0)
-        made = self.variables
-        deflection = stored_lift(energy, made.rate, made.closing, made.shape)
+        variables = self.variables
+        deflection = stored_lift(energy, variables.rate, variables.closing, variables.shape)
         return Lift(uniform_turn(samples), deflection)
 
 

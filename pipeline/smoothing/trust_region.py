@@ -237,10 +237,10 @@ def _corrected(search: Search, model: Model, program: ConeSolution, there: State
     """The model with levels that its rows have after the step: a second-order correction."""
     limits = []
     for each in model.limits:
-        known = (each.point < there.grid.theta.size).all()  # reversals may end
+        sampled = (each.point < there.grid.theta.size).all()  # reversals may end
         if each.mean:
             value = there.means[each.name][each.scenario]
-        elif each.name in there.pointwise and known:
+        elif each.name in there.pointwise and sampled:
             value = there.pointwise[each.name][each.scenario, each.point]
         else:
             limits.append(each)
@@ -313,13 +313,13 @@ def _missing(
         allowed = program.slack.get(name, 0.0) + _VIOLATED
         if level.max() <= allowed:
             continue
-        own = np.zeros(level.shape, dtype=bool)
+        modelled = np.zeros(level.shape, dtype=bool)
         for each in model.limits:
             if each.name == name and not each.mean:
                 here = each.point < level.shape[1]  # reversals may end
-                own[each.scenario[here], each.point[here]] = True
-        worst = max(allowed, float(level[own].max(initial=-np.inf)) + _VIOLATED)
-        rows = ~own & (level > worst)
+                modelled[each.scenario[here], each.point[here]] = True
+        worst = max(allowed, float(level[modelled].max(initial=-np.inf)) + _VIOLATED)
+        rows = ~modelled & (level > worst)
         if rows.any():
             missing[name] = rows & (level >= level.max(axis=0))
     return missing
@@ -327,11 +327,11 @@ def _missing(
 
 def _missing_ripples(model: Model, program: ConeSolution, there: State) -> NDArray[np.intp]:
     """Scenarios of the greatest ripple and over their ceiling the most, if not in the model."""
-    known = [norm.number for norm in model.norms]
+    modelled = [norm.number for norm in model.norms]
     allowed = (program.ripple, program.slack.get(TORQUE_REDUCTION.id, 0.0))
     missing = []
     for values, least in zip((there.ripples, there.excess), allowed, strict=True):
-        greatest = max(least, float(values[known].max(initial=-np.inf))) + _VIOLATED
+        greatest = max(least, float(values[modelled].max(initial=-np.inf))) + _VIOLATED
         if values.size and values.max() > greatest:
             missing.append(int(values.argmax()))
     return np.unique(missing).astype(np.intp)
