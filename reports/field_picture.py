@@ -233,7 +233,7 @@ def _painted(field: Field, view: View) -> dict[str, NDArray[Any]]:
 
 
 def flat(field: Field, view: View) -> Raster:
-    """Raster of a view drawn by matplotlib."""
+    """Raster of a view drawn by matplotlib, where no OpenGL window works."""
     straight = field.triangles
     placed = view.placed(deformed(field, view))
     xmin, xmax, ymin, ymax = view.window

@@ -161,7 +161,7 @@ def isolated(text: str) -> str:
 
 
 def words(name: str) -> str:
-    """Words of a snake_case name."""
+    """Snake_case name with spaces in place of underscores."""
     return name.replace("_", " ").strip()
 
 

@@ -63,7 +63,7 @@ def tube(outer: Array, inner: Array, height: float) -> Solid:
 
 
 def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> Solid:
-    """Box between two corners."""
+    """Rectangular box between its least and greatest corner, mm."""
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1])
                         for z in (low[2], high[2])])  # fmt: skip
     sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -115,7 +115,7 @@ class Lattice:
 
 
 def rod(diameter: float, start: float, end: float) -> Solid:
-    """Circular rod along y, without end faces."""
+    """Circular rod along y from `start` to `end`, mm, without end faces."""
     return ring(0.5 * diameter * unit_circle(), end - start).upright((start + end) / 2)
 
 

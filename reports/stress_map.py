@@ -71,6 +71,8 @@ def drawn(envelope: dict[str, Array]) -> bytes:
 def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Array) -> bytes:
     """PNG of the von Mises stress as a band along the contour, depth exaggerated.
 
+    envelope: arrays of one load case, see `read_envelope`.
+
     The contour (2, n), mm, and its outward normals (2, n) belong to cam angles (n,), deg.
     """
     from matplotlib.figure import Figure

@@ -28,7 +28,7 @@ class Box(NamedTuple):
 
 
 def around(boxes: Iterable[Box]) -> Box:
-    """Bounding box of several boxes."""
+    """Smallest box, in each direction, that contains several boxes."""
     ends = [tuple(zip(*sides, strict=True)) for sides in zip(*boxes, strict=True)]
     return Box(*((min(lows), max(highs)) for lows, highs in ends))
 

@@ -233,7 +233,7 @@ class Material(Part):
 
     @property
     def core_yield(self) -> float:
-        """Yield strength of the core, Pa; of a body without a hardened case that of the card."""
+        """Yield strength below a hardened case, Pa; the card's yield strength without a case."""
         return self.core_yield_strength or self.yield_strength
 
     @property

@@ -247,7 +247,7 @@ def pressure(case: TorqueSource, engine: PressureTable) -> tuple[BrakeBalance, P
 
 
 def crank_speed(case: TorqueSource, engine: SpeedTable | VoltageTable) -> SpeedTrace:
-    """Measured crank speed of a case."""
+    """Measured crank speed of a case, from tooth times or the voltage of a pick-up."""
     if case.crankshaft is None:
         raise InputError("crankshaft.inertia", "missing", "given")
     calibrator = engine.calibrator(case.crankshaft.inertia, case.path)

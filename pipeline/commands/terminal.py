@@ -123,7 +123,7 @@ def page_of(folder: Path) -> str:
 
 
 def show(document: dict[str, Any], places: Places) -> None:
-    """Print the verdict of a run in at most 15 lines."""
+    """Print the verdict summary of a run or previewed case in at most 15 lines."""
     from camwright.pipeline.results.verdict_summary import summary_lines
 
     for line in summary_lines(document, places):

@@ -145,7 +145,7 @@ def middles_by_gaps(one: Array, other: Array) -> int:
 
 
 def regular(intervals: Array) -> NDArray[np.bool_]:
-    """Mask (n,) of intervals of a single pitch."""
+    """Mask (n,) of intervals, s, that span a single tooth pitch, by their local median."""
     share = intervals / local_median(intervals)
     return np.asarray((share > EVEN[0]) & (share < EVEN[1]))
 

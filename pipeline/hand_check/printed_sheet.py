@@ -56,7 +56,7 @@ class PrintedSheet:
 
 
 def printed(sheet: Sheet, *, governing: bool) -> PrintedSheet:
-    """Typeset sheet of a hand calculation."""
+    """Hand-check sheet of a check with its formulas typeset, for page and PDF."""
     record = sheet.record
     return PrintedSheet(
         record["id"],

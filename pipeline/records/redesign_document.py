@@ -231,10 +231,10 @@ class RedesignDocument(TypedDict):
 
 
 def is_refused(record: Mapping[str, object]) -> TypeIs[RefusedPoint]:
-    """Whether a point is a case without a cam."""
+    """Whether the record of a point says that its case has no cam."""
     return "why" in record
 
 
 def is_whole(record: Mapping[str, object]) -> TypeIs[PointRecord]:
-    """Whether a point is solved in full."""
+    """Whether the record of a point is that of a full preview, not of a draft."""
     return {"feasible", "shortfalls"} <= record.keys()

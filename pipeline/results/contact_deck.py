@@ -159,7 +159,7 @@ def write_pair_deck(
 
 
 def force_of(pair: ContactPair, solved: SolvedPair) -> float:
-    """Normal force of a solved contact, N."""
+    """Normal force of a solved contact, N: its nodal forces along the contact normal."""
     return float(np.abs(nodal_forces(pair, solved)[1].sum(axis=1) @ solved.frame.normal))
 
 

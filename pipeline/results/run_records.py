@@ -107,7 +107,7 @@ def drawn_angles(case: Case) -> Array:
 
 
 def lift_columns(case: Case, lift: Lift) -> dict[Column, Array]:
-    """Columns of ``2_lift.csv``."""
+    """Columns of ``2_lift.csv``: cam angle, lift and its derivatives."""
     theta = drawn_angles(case)
     return {
         CAM_ANGLE: theta,
@@ -126,7 +126,7 @@ def limit_columns(theta: Array, uses: Mapping[str, Array]) -> dict[Column, Array
 
 
 def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
-    """Columns of ``3_contour.csv``."""
+    """Columns of ``3_contour.csv``: pitch curve, contour and outward normal over the cam angle."""
     theta = drawn_angles(case)
     pitch, normal = contour.pitch.points(theta), contour.normal(theta)
     surface = contour.points(theta)

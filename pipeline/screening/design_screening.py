@@ -380,7 +380,7 @@ def _figures(
 
 
 def utilisations(demand: Array, limit: Array, *, at_most: bool) -> Array:
-    """Utilisations (m,) of demands and limits (m,); see `Check.utilisation`."""
+    """Demand over limit (m,), or its inverse for a least value; 0 or infinite at a zero limit."""
     part, whole = (demand, limit) if at_most else (limit, demand)
     without = np.where(part <= whole, 0.0, np.inf)
     return np.divide(part, whole, out=without, where=whole > 0.0)

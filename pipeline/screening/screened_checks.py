@@ -146,7 +146,7 @@ def _over_duty(designs: Designs, of_turn: Callable[[ScreenedCam], Array], *, lif
 
 
 def torque_after(designs: Designs, cam: ScreenedCam) -> Array:
-    """Crank torque of engine and cam (m, n), N m."""
+    """Measure: crank torque of engine and cam together (m, n), N m."""
     before = np.zeros(1) if cam.state.torque is None else cam.state.torque
     return np.asarray(before - cam.torque / designs.case.mechanism.gear_ratio)
 

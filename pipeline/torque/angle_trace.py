@@ -201,7 +201,7 @@ def one_period(
 
 
 def without_end(angle: Array, values: Array, period: float) -> tuple[Array, Array]:
-    """Angles (n,) and values (n, ...) of one period; a repeated end row joins the first."""
+    """Angles (n,) and values (n, ...) of one period; a repeated end row is averaged into row 0."""
     if period - (angle[-1] - angle[0]) > END_TOLERANCE * median(np.diff(angle)):
         return angle, values
     mean = 0.5 * (values[:1] + values[-1:])

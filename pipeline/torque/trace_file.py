@@ -330,7 +330,7 @@ def has_unit(header: str) -> bool:
 
 
 def columns_of(header: Sequence[str], quantity: str, column: str = "") -> dict[int, float]:
-    """Columns of a quantity, those of the name `column` alone, and their factors to SI."""
+    """Columns of a quantity, restricted to the name `column` if stated; factors to SI."""
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
     return {at: factors[at] for at in named_columns(header, column, factors)}
 

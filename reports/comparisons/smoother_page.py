@@ -86,7 +86,7 @@ def write(
 
 @shipped()
 def drawn(lifts: Mapping[str, Array]) -> bytes:
-    """Lifts over one cam turn, PNG."""
+    """PNG of the lift of each smoother over one cam turn."""
     from matplotlib.figure import Figure
 
     with style("smoothers"):

@@ -156,7 +156,7 @@ class DrawnMotion:
 
 
 def cam_turn(theta: float) -> float:
-    """Rotation of the drawn cam, rad, at a cam angle."""
+    """Counter-clockwise rotation of the drawn cam, rad, at a cam angle; the follower is upright."""
     return 0.5 * np.pi - theta
 
 
@@ -328,7 +328,7 @@ def _guides(m: DrawnMechanism) -> list[Shape]:
 
 
 def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
-    """Contact points (2, n), mm."""
+    """Contact of cam and follower in the drawing, over the turn, (2, n), mm."""
     m, height = mechanism, mechanism.lowest + motion.lift
     if m.roller is None:
         across = np.zeros_like(height) if motion.contact_offset is None else motion.contact_offset

@@ -127,12 +127,12 @@ def circle(radius: float, centre: tuple[float, float] = (0.0, 0.0)) -> Array:
 
 
 def rectangle(left: float, bottom: float, right: float, top: float) -> Array:
-    """Corners (2, 4), counter-clockwise."""
+    """Corners (2, 4) of a rectangle, counter-clockwise, mm."""
     return np.array([[left, right, right, left], [bottom, bottom, top, top]], dtype=float)
 
 
 def segment(start: tuple[float, float], end: tuple[float, float]) -> Array:
-    """Line of two points (2, 2)."""
+    """Line from start to end as two points (2, 2), mm."""
     return np.array([start, end], dtype=float).T
 
 

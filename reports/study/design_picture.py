@@ -29,7 +29,7 @@ def write(path: Path, document: DesignDocument) -> Path:
 
 @shipped()
 def drawn(document: DesignDocument) -> bytes:
-    """Torque before and with the cam, ripple over size, cam with roller, values; PNG."""
+    """PNG of a design: torque before and with the cam, front of ripple and size, cam, values."""
     from matplotlib.figure import Figure
 
     canvas = Figure(figsize=(11.0, 7.8), layout="constrained")

@@ -166,7 +166,7 @@ def page_of(
     links: Mapping[int, str],
     drawn: int,
 ) -> Page:
-    """Contents of the page of a study."""
+    """Contents of a study's page, from its title, facts and answers."""
     counts = answers["designs"]
     failures, silent = _failures(answers["failures"])
     front = answers["front"]

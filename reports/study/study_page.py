@@ -77,7 +77,7 @@ def write(
 def text(
     title: str, facts: Sequence[tuple[str, str]], answers: Record, designs: DesignRows
 ) -> bytes:
-    """The page in UTF-8."""
+    """HTML of a study's page, UTF-8."""
     front = [row["design"] for row in (answers["front"] or {"designs": ()})["designs"]]
     worst = [answers["worst"]["design"]] if answers["worst"] else []
     drawn = designs.thinned([*front, *worst])

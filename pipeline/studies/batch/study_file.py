@@ -133,7 +133,7 @@ class Factor(Section):
 
 
 class Correlation(Section):
-    """Correlation of two factors: that of the Gaussian copula."""
+    """Correlation of two factors, as the parameter of a Gaussian copula."""
 
     between: Annotated[tuple[Key, Key], Field(strict=False)]
     value: Annotated[float, In(above=-1, below=1)]
