@@ -23,17 +23,19 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `smoothing`          | smoothers, constrained synthesis, shadow prices      | s, m               |
 | `results`            | trial, run folder, records, workshop files, sign-off | mm, N, MPa         |
 | `hand_check`         | formulas of the checks evaluated once more           | utilisation, -     |
-| `remedies`           | smallest change that cures a failed check            | factor             |
 | `solver`             | solution of one design at one tier                   |                    |
 | `preview`            | synthesis and preview of a case                      |                    |
 | `iteration`          | trials with smoothing between them                   |                    |
 | `run`                | trials and certificate of a case, run folder         |                    |
 | `recomputation`      | finished run computed again from case and lift       |                    |
+| `search`             | searches over changed designs: front of objectives   |                    |
+| `search.remedies`    | smallest change that cures a failed check            | factor             |
 | `screening`          | closed-form checks of thousands of designs as arrays | p0, Pa; F_n, N     |
-| `sizing`             | open keys of a case, as small as its limits allow    | r, e, m; k, N/m    |
-| `studies`            | inspection, comparisons, valve cam                   |                    |
-| `studies.redesign`   | Pareto front over the catalogues                     |                    |
-| `studies.design`     | from a torque to a case with all parts               | E, J; k, N/m; m    |
+| `search.sizes`       | open keys of a case, as small as its limits allow    | r, e, m; k, N/m    |
+| `search.crown`       | crown of a line contact within a ratio of pressures  | K, -; drop, m      |
+| `search.parts`       | Pareto front over the catalogues                     |                    |
+| `search.machine`     | from a torque to a case with all parts               | E, J; k, N/m; m    |
+| `studies`            | inspection, line contact of two cylinders            |                    |
 | `studies.papers`     | published values, recomputed                         |                    |
 | `reports.drawing`    | drawing of cam, follower, guides, spring, forces     | mm                 |
 | `reports.painting`   | pixels of a field by VTK                             |                    |

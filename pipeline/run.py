@@ -34,7 +34,6 @@ from camwright.pipeline.records.run_summary import (
     RippleMapRecord,
     SolvedSummary,
 )
-from camwright.pipeline.remedies.remedy_search import order_of, texts_of, with_remedies
 from camwright.pipeline.results.field_output import ENDS, Shown, write_end_field, write_fields
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, read_run
@@ -48,6 +47,7 @@ from camwright.pipeline.results.trial import Trial, TrialPoint
 from camwright.pipeline.results.trial_writer import write_judgement, write_trial_files
 from camwright.pipeline.results.valve_train import valve_record
 from camwright.pipeline.results.workshop_files import WORKSHOP, write_workshop
+from camwright.pipeline.search.remedies.remedy_search import order_of, texts_of, with_remedies
 from camwright.pipeline.smoothing.required_lift import required_torque
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import certify_trial

@@ -529,7 +529,7 @@ def _checked_case(
         )
     made = trial.checks
     if remedies:
-        from camwright.pipeline.remedies.remedy_search import remedies_of, with_remedies
+        from camwright.pipeline.search.remedies.remedy_search import remedies_of, with_remedies
 
         texts = {name: remedy.text for name, remedy in remedies_of(trial).items()}
         made = with_remedies(made, texts)

@@ -28,7 +28,7 @@ def compare(
     """
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.case.load_case_torque import engine_torques
-    from camwright.pipeline.studies.smoother_comparison import (
+    from camwright.pipeline.search.smoothers import (
         RANK,
         common_missing,
         compared,

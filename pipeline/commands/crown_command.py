@@ -55,8 +55,8 @@ def crown(
     from camwright.pipeline.base import units
     from camwright.pipeline.base.files import json_text, write_atomic
     from camwright.pipeline.case.case_file import read_case
-    from camwright.pipeline.sizing import crown_design
-    from camwright.pipeline.sizing.crown_record import crown_lines, crown_record
+    from camwright.pipeline.search.crown import crown_design
+    from camwright.pipeline.search.crown.crown_record import crown_lines, crown_record
     from camwright.reports.comparisons.crown_picture import draw
 
     if out is not None and out.exists() and any(out.iterdir()):

@@ -68,8 +68,8 @@ def design(
     points are cached in CASE_design/solved; run the same command again to resume. The table, and
     cards.toml and springs.toml beside it, are copied beside the case.
     """
-    from camwright.pipeline.studies.design.design_study import PICTURE, designed, points_folder
-    from camwright.pipeline.studies.design.torque_task import task_of
+    from camwright.pipeline.search.machine.design_study import PICTURE, designed, points_folder
+    from camwright.pipeline.search.machine.torque_task import task_of
     from camwright.reports.study import design_picture
 
     task = task_of(

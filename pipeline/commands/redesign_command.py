@@ -43,8 +43,8 @@ def redesign(
     fails, 2: error, 3: the points lack data. Solved points are cached in DIR; run the command again
     to resume.
     """
-    from camwright.pipeline.studies.redesign.redesign_study import RECORD
-    from camwright.pipeline.studies.redesign.redesign_study import redesign as searched
+    from camwright.pipeline.search.parts.redesign_study import RECORD
+    from camwright.pipeline.search.parts.redesign_study import redesign as searched
     from camwright.reports.comparisons import redesign_page as page
 
     if jobs is not None and not 1 <= jobs <= 256:

@@ -53,8 +53,8 @@ def size(
     decide pass in the preview, 1: no size passes, 2: error, 3: data are missing.
     """
     from camwright.pipeline.base import units
-    from camwright.pipeline.sizing.size_record import size_lines, size_record
-    from camwright.pipeline.sizing.sizing import size as sizes
+    from camwright.pipeline.search.sizes.size_record import size_lines, size_record
+    from camwright.pipeline.search.sizes.sizing import size as sizes
     from camwright.reports.comparisons.size_picture import draw
 
     if chart is not None and chart.suffix not in _PICTURES:

@@ -53,10 +53,10 @@ if TYPE_CHECKING:
     from camwright.pipeline.results.trial import Trial
     from camwright.pipeline.run import run_case
     from camwright.pipeline.screening.design_screening import screen_designs
-    from camwright.pipeline.sizing.crown_design import crown
-    from camwright.pipeline.sizing.sizing import size
+    from camwright.pipeline.search.crown.crown_design import crown
+    from camwright.pipeline.search.machine.design_study import design_from_torque
+    from camwright.pipeline.search.sizes.sizing import size
     from camwright.pipeline.solver import solve
-    from camwright.pipeline.studies.design.design_study import design_from_torque
     from camwright.reports.sections import report
 
 _HOMES = {
@@ -65,15 +65,15 @@ _HOMES = {
     "Check": "pipeline.checks.check",
     "Tier": "pipeline.contact.tiers",
     "Trial": "pipeline.results.trial",
-    "crown": "pipeline.sizing.crown_design",
-    "design_from_torque": "pipeline.studies.design.design_study",
+    "crown": "pipeline.search.crown.crown_design",
+    "design_from_torque": "pipeline.search.machine.design_study",
     "preview_case": "pipeline.preview",
     "read_case": "pipeline.case.case_file",
     "read_run": "pipeline.results.signoff",
     "report": "reports.sections",
     "run_case": "pipeline.run",
     "screen_designs": "pipeline.screening.design_screening",
-    "size": "pipeline.sizing.sizing",
+    "size": "pipeline.search.sizes.sizing",
     "solve": "pipeline.solver",
     "synthesize": "pipeline.iteration",
 }

@@ -11,7 +11,7 @@ import pytest
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.verdict import VERDICTS
-from camwright.pipeline.studies.smoother_comparison import (
+from camwright.pipeline.search.smoothers import (
     Compared,
     lines,
     ranked,

@@ -24,9 +24,9 @@ from camwright.pipeline.commands.run_command import run
 from camwright.pipeline.commands.terminal import EXIT_CODE, FAILED, PASSED
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.results.run_reader import read_verdict
-from camwright.pipeline.studies.design.candidate_search import candidates
-from camwright.pipeline.studies.design.synthesised_points import PointStudy, drafts, solved_front
-from camwright.pipeline.studies.design.torque_task import task_of
+from camwright.pipeline.search.machine.candidate_search import candidates
+from camwright.pipeline.search.machine.synthesised_points import PointStudy, drafts, solved_front
+from camwright.pipeline.search.machine.torque_task import task_of
 
 pytestmark = pytest.mark.slow
 

@@ -21,7 +21,7 @@ from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.toml_text import to_toml
 from camwright.pipeline.commands.redesign_command import redesign
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.studies.redesign import part_search, redesign_study
+from camwright.pipeline.search.parts import part_search, redesign_study
 from camwright.reports.comparisons import redesign_page as page
 
 CASES = Path(__file__).parents[2] / "cases"

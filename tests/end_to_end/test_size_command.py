@@ -23,11 +23,11 @@ from camwright.pipeline.case.given_lift import given_lift, motion_of
 from camwright.pipeline.case.template import first_case
 from camwright.pipeline.commands.size_command import size
 from camwright.pipeline.commands.terminal import INCOMPLETE, PASSED
-from camwright.pipeline.sizing.open_case import GAPS, OpenCase, parse_open_case
-from camwright.pipeline.sizing.shapes import RollerShapes, shapes_of
-from camwright.pipeline.sizing.size_record import size_lines, size_record
-from camwright.pipeline.sizing.sizing import sized
-from camwright.pipeline.sizing.spring_choice import spring_of
+from camwright.pipeline.search.sizes.open_case import GAPS, OpenCase, parse_open_case
+from camwright.pipeline.search.sizes.shapes import RollerShapes, shapes_of
+from camwright.pipeline.search.sizes.size_record import size_lines, size_record
+from camwright.pipeline.search.sizes.sizing import sized
+from camwright.pipeline.search.sizes.spring_choice import spring_of
 
 CASES = Path(__file__).parents[2] / "cases"
 STRANGERS = Path(__file__).parents[1] / "data" / "strangers"

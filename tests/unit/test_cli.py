@@ -484,7 +484,7 @@ def test_redesign_exits_by_its_points(
     open_checks: list[list[str]],
     code: int,
 ) -> None:
-    from camwright.pipeline.studies.redesign import redesign_study
+    from camwright.pipeline.search.parts import redesign_study
     from camwright.reports.comparisons import redesign_page
 
     points = [{"file": "point.toml", "verdict": "pass", "open": one} for one in open_checks]

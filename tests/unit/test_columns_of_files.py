@@ -15,8 +15,8 @@ from camwright.pipeline.engine.pressure_trace import pressure_from_csv
 from camwright.pipeline.engine.speed_file import speed_from_csv
 from camwright.pipeline.engine.speed_trace import Filter
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
+from camwright.pipeline.search.machine.torque_task import _cycle
 from camwright.pipeline.studies.cam_inspection import read_measured
-from camwright.pipeline.studies.design.torque_task import _cycle
 from camwright.pipeline.studies.papers.friction_identification import read_decay
 from camwright.pipeline.torque.angle_trace import read_trace
 from camwright.pipeline.torque.press_torque import Press, press_torque

@@ -24,18 +24,18 @@ from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.cycle.machine_envelope import sizes_of
-from camwright.pipeline.studies.design import (
+from camwright.pipeline.search.machine import (
     design_study,
     part_exchange,
     relaxation_search,
     synthesised_points,
 )
-from camwright.pipeline.studies.design.candidate_search import candidates, spring_wire
-from camwright.pipeline.studies.design.design_case import Machinery, case_text, oils_of
-from camwright.pipeline.studies.design.design_study import _copied, designed
-from camwright.pipeline.studies.design.machine_frame import frame_of
-from camwright.pipeline.studies.design.relaxation_search import WIDTH, relaxations
-from camwright.pipeline.studies.design.synthesised_points import (
+from camwright.pipeline.search.machine.candidate_search import candidates, spring_wire
+from camwright.pipeline.search.machine.design_case import Machinery, case_text, oils_of
+from camwright.pipeline.search.machine.design_study import _copied, designed
+from camwright.pipeline.search.machine.machine_frame import frame_of
+from camwright.pipeline.search.machine.relaxation_search import WIDTH, relaxations
+from camwright.pipeline.search.machine.synthesised_points import (
     PointStudy,
     Solved,
     draft,
@@ -45,8 +45,8 @@ from camwright.pipeline.studies.design.synthesised_points import (
     settled,
     solved_front,
 )
-from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
-from camwright.pipeline.studies.design.wound_springs import wound
+from camwright.pipeline.search.machine.torque_task import DesignTask, task_of
+from camwright.pipeline.search.machine.wound_springs import wound
 
 RPM = np.pi / 30.0
 

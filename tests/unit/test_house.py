@@ -35,13 +35,15 @@ ORDER = (
     "pipeline.smoothing",
     "pipeline.results",
     "pipeline.hand_check",
-    "pipeline.remedies",
     "pipeline",
+    "pipeline.search",
+    "pipeline.search.remedies",
     "pipeline.screening",
-    "pipeline.sizing",
+    "pipeline.search.sizes",
+    "pipeline.search.crown",
+    "pipeline.search.parts",
+    "pipeline.search.machine",
     "pipeline.studies",
-    "pipeline.studies.redesign",
-    "pipeline.studies.design",
     "pipeline.studies.papers",
     "reports.drawing",
     "reports.painting",
@@ -53,11 +55,12 @@ ORDER = (
     "pipeline.commands",
     "pipeline.cli",
 )
-# Packages of one floor: the case reads its cards, and a card is a table of a case.
+# Packages of one floor: the case reads its cards, and a card is a table of a case; a run searches
+# remedies, which are judged by previews.
 RANK = {name: place for place, name in enumerate(ORDER)} | {
     "pipeline.case.cards": ORDER.index("pipeline.case"),
-    "pipeline.studies.redesign": ORDER.index("pipeline.studies"),
-    "pipeline.studies.design": ORDER.index("pipeline.studies"),
+    "pipeline.search": ORDER.index("pipeline"),
+    "pipeline.search.remedies": ORDER.index("pipeline"),
     "pipeline.studies.papers": ORDER.index("pipeline.studies"),
 }
 NAMED_AS_TEXT = re.compile(r"(?:camwright\.)?(?:geometry|meshes|pipeline|reports)(?:\.[a-z_0-9]+)+")
@@ -321,18 +324,18 @@ NAME_CHECKS = {
     "pipeline.recomputation": _FREE,
     "pipeline.records.trial_contents": "figure of the record of a trial",
     "pipeline.results.run_records": "figure of the record of a trial",
+    "pipeline.search.machine.synthesised_points": "figure of the record of a point",
+    "pipeline.search.parts.design_point": "figure of the record of a point",
+    "pipeline.search.parts.redesign_study": "figure of the record of a point",
     "pipeline.smoothing.problem_setup": _FREE,
-    "pipeline.studies.design.synthesised_points": "figure of the record of a point",
     "pipeline.studies.papers.figures_2015_valve": "word of a title",
     "pipeline.studies.papers.petrescu_2015": "figure of the record of a paper",
-    "pipeline.studies.redesign.design_point": "figure of the record of a point",
-    "pipeline.studies.redesign.redesign_study": "figure of the record of a point",
     "reports.analysis_sheet": _DRAWN,
+    "reports.arrangement_data": "limit by which the drawn spring is placed",
     "reports.comparisons.redesign_page": "figure of the record of a point",
     "reports.part_figures": _DRAWN,
     "reports.picture_list": _DRAWN,
     "reports.report_content": "figure of the record of a trial",
-    "reports.arrangement_data": "limit by which the drawn spring is placed",
 }
 """Modules in which the id of a check is a string besides its declaration, and what it names."""
 
@@ -408,10 +411,10 @@ ASK_FOR_A_KIND = {
         "pipeline.case.parts_section": _READS,
         "pipeline.cycle.loaded_cam": "narrows the motion to the kind that a measure needs",
         "pipeline.screening.design_screening": "refuses designs with too narrow a face",
-        "pipeline.sizing.open_case": _READS,
-        "pipeline.sizing.shapes": "chooses the shapes of the kind",
-        "pipeline.sizing.size_chart": "chooses the panels of the kind",
-        "pipeline.sizing.sizing": "narrows the shapes to those with an open roller",
+        "pipeline.search.sizes.open_case": _READS,
+        "pipeline.search.sizes.shapes": "chooses the shapes of the kind",
+        "pipeline.search.sizes.size_chart": "chooses the panels of the kind",
+        "pipeline.search.sizes.sizing": "narrows the shapes to those with an open roller",
         "pipeline.smoothing.scenario": "numbers of a problem have no follower of their own",
         "reports.arrangement_data": _DRAWS,
         "reports.drawing.arrangement": _DRAWS,

@@ -18,9 +18,9 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base import owned_folder
 from camwright.pipeline.base.owned_folder import LOCK, OwnedFolder
 from camwright.pipeline.results import folder_exchange
+from camwright.pipeline.search.machine import design_study
+from camwright.pipeline.search.parts import redesign_study
 from camwright.pipeline.studies.batch.study_folder import StudyFolder
-from camwright.pipeline.studies.design import design_study
-from camwright.pipeline.studies.redesign import redesign_study
 
 OURS = re.compile(r"table\.csv|parts")
 

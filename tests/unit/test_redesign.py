@@ -20,13 +20,13 @@ from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.limits import CAM_RADIUS
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.search.front import front, thinned
+from camwright.pipeline.search.parts import point_store, redesign_study
+from camwright.pipeline.search.parts.design_point import DesignPoint, Rough
+from camwright.pipeline.search.parts.exclusions import exclusions
+from camwright.pipeline.search.parts.part_search import RUNG, RUNGS, Pruned, branch
+from camwright.pipeline.search.parts.ripple_bounds import RippleBound, bearable_energy
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
-from camwright.pipeline.studies.redesign import point_store, redesign_study
-from camwright.pipeline.studies.redesign.design_point import DesignPoint, Rough
-from camwright.pipeline.studies.redesign.exclusions import exclusions
-from camwright.pipeline.studies.redesign.pareto_front import front, thinned
-from camwright.pipeline.studies.redesign.part_search import RUNG, RUNGS, Pruned, branch
-from camwright.pipeline.studies.redesign.ripple_bounds import RippleBound, bearable_energy
 
 CASES = Path(__file__).parents[2] / "cases"
 CHOICE = Choice("track_roller_35x16", "60 x 42", "ptfe_lined", 0.08)

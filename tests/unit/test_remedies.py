@@ -27,10 +27,14 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.lost_loads import LoadEnd
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
-from camwright.pipeline.remedies.case_judge import Judge
-from camwright.pipeline.remedies.lever_steps import PARTS, Workbench, without_exponent
-from camwright.pipeline.remedies.remedy import WIDTH, Remedy
-from camwright.pipeline.remedies.remedy_search import LEVELS, _greatest_line_load, needed_first
+from camwright.pipeline.search.remedies.case_judge import Judge
+from camwright.pipeline.search.remedies.lever_steps import PARTS, Workbench, without_exponent
+from camwright.pipeline.search.remedies.remedy import WIDTH, Remedy
+from camwright.pipeline.search.remedies.remedy_search import (
+    LEVELS,
+    _greatest_line_load,
+    needed_first,
+)
 
 GX120 = Path(__file__).parents[2] / "cases" / "gx120.toml"
 

@@ -9,7 +9,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift_parts import LiftParts
 from camwright.geometry.motion_laws import LAWS, Segment, SegmentMotion
 from camwright.pipeline.base.external_force import ExternalForce
-from camwright.pipeline.sizing.spring_size import (
+from camwright.pipeline.search.sizes.spring_size import (
     PRELOAD_SHARE,
     HoldingCondition,
     least_rate,

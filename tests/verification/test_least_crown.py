@@ -19,14 +19,14 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
 from camwright.pipeline.contact.finite_length.half_space import half_space_compliance
 from camwright.pipeline.contact.finite_length.length_tiers import MEAN_LENGTH, both_tiers
 from camwright.pipeline.contact.finite_length.pressure_cells import CellSizes, pressure_cells
-from camwright.pipeline.sizing.least_crown import (
+from camwright.pipeline.search.crown.least_crown import (
     ContactStates,
     CrownProblem,
     families,
     least_crown,
     middle_crown,
 )
-from camwright.pipeline.sizing.solved_lines import SolvedLines, signed_range
+from camwright.pipeline.search.crown.solved_lines import SolvedLines, signed_range
 
 STEEL = Elastic(210e9, 0.3)
 CURVATURE, LENGTH, LINE_LOAD = 1 / 8e-3 + 1 / 20e-3, 5e-3, 200e3

@@ -17,9 +17,10 @@ from small_machine import small_machine
 from camwright.pipeline.case.case_file import case_of, read_case, with_values
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.remedies.lever_steps import Workbench
-from camwright.pipeline.remedies.remedy import WIDTH
-from camwright.pipeline.remedies.remedy_search import (
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.search.remedies.lever_steps import Workbench
+from camwright.pipeline.search.remedies.remedy import WIDTH
+from camwright.pipeline.search.remedies.remedy_search import (
     IN_A_RUN,
     Failure,
     failures_of,
@@ -29,7 +30,6 @@ from camwright.pipeline.remedies.remedy_search import (
     texts_of,
     with_remedies,
 )
-from camwright.pipeline.results.trial import Trial
 
 GX120 = Path(__file__).parents[2] / "cases" / "gx120.toml"
 NONE = "no single change cures it"

@@ -22,7 +22,7 @@ from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening.design_arrays import Designs, LiftOrigin
 from camwright.pipeline.screening.design_screening import screen_designs
-from camwright.pipeline.sizing.solved_lines import SolvedLines, signed_range
+from camwright.pipeline.search.crown.solved_lines import SolvedLines, signed_range
 
 LIFT = 3e-3 * (1.0 - np.cos(uniform_turn(720))) + 1e-3 * (1.0 - np.cos(3.0 * uniform_turn(720)))
 CASE = Path(__file__).parents[1] / "data" / "refused" / "overhung_cam.toml"

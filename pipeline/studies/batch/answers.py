@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.search.front import front
 from camwright.pipeline.studies.batch import answers_sensitivity as sensitivity
 from camwright.pipeline.studies.batch.answers_yield import (
     CONFIDENCE,
@@ -25,7 +26,6 @@ from camwright.pipeline.studies.batch.answers_yield import (
 )
 from camwright.pipeline.studies.batch.dataset import FACTOR, HEADLINE, STATUS, Dataset
 from camwright.pipeline.studies.batch.study_file import INDEPENDENT, Study
-from camwright.pipeline.studies.redesign.pareto_front import front
 
 Answer: TypeAlias = dict[str, Any]
 """Part of the record, for JSON."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.records.study_document import DesignCounts
+from camwright.pipeline.search.front import front
 from camwright.pipeline.studies.batch.answers_yield import states_of
 from camwright.pipeline.studies.batch.dataset import (
     DEPTH,
@@ -25,7 +26,6 @@ from camwright.pipeline.studies.batch.dataset import (
 from camwright.pipeline.studies.batch.design_rows import FAILED, NO_RESULT
 from camwright.pipeline.studies.batch.design_task import Wanted
 from camwright.pipeline.studies.batch.study_file import Objective
-from camwright.pipeline.studies.redesign.pareto_front import front
 
 if TYPE_CHECKING:
     import pyarrow as pa

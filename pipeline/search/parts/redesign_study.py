@@ -34,12 +34,12 @@ from camwright.pipeline.records.redesign_document import (
     is_refused,
 )
 from camwright.pipeline.results.run_folder import versions
+from camwright.pipeline.search.front import front, thinned
+from camwright.pipeline.search.parts.design_point import Rough
+from camwright.pipeline.search.parts.exclusions import exclusions
+from camwright.pipeline.search.parts.part_search import Branch, branches
+from camwright.pipeline.search.parts.point_store import SOLVED, PointTask, solved
 from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.studies.redesign.design_point import Rough
-from camwright.pipeline.studies.redesign.exclusions import exclusions
-from camwright.pipeline.studies.redesign.pareto_front import front, thinned
-from camwright.pipeline.studies.redesign.part_search import Branch, branches
-from camwright.pipeline.studies.redesign.point_store import SOLVED, PointTask, solved
 
 AGAINST: Mapping[Against, Literal["cam_radius_mm", "mass_g"]] = {
     "size": "cam_radius_mm",

@@ -60,7 +60,7 @@ from camwright.pipeline.checks.tolerance_corners import governed, outcomes, spri
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.records.size_document import SizeChart
 from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.sizing.open_case import (
+from camwright.pipeline.search.sizes.open_case import (
     FACE,
     OFFSET,
     PRELOAD,
@@ -70,7 +70,7 @@ from camwright.pipeline.sizing.open_case import (
     OpenCase,
     read_open_case,
 )
-from camwright.pipeline.sizing.shapes import (
+from camwright.pipeline.search.sizes.shapes import (
     RollerShapes,
     Shape,
     Shapes,
@@ -79,8 +79,13 @@ from camwright.pipeline.sizing.shapes import (
     shapes_of,
     values_of,
 )
-from camwright.pipeline.sizing.size_chart import chart_record
-from camwright.pipeline.sizing.spring_choice import ChosenSpring, more_preload, spring_of, stiffer
+from camwright.pipeline.search.sizes.size_chart import chart_record
+from camwright.pipeline.search.sizes.spring_choice import (
+    ChosenSpring,
+    more_preload,
+    spring_of,
+    stiffer,
+)
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque

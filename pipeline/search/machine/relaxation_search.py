@@ -15,15 +15,15 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.records.design_document import DesignOptions, RelaxationRecord
-from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
-from camwright.pipeline.studies.design.synthesised_points import (
+from camwright.pipeline.search.machine.candidate_search import Candidate, candidates
+from camwright.pipeline.search.machine.synthesised_points import (
     RESERVE,
     PointStudy,
     Solved,
     lack,
     passing_draft,
 )
-from camwright.pipeline.studies.design.torque_task import DesignTask
+from camwright.pipeline.search.machine.torque_task import DesignTask
 
 SPACE = "--space"
 WIDTH = 0.02  # greatest difference of the changes that pass and fail

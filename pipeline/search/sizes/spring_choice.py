@@ -15,8 +15,8 @@ from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, JUMP_SPEED, SPR
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.follower.spring import greatest_active_mass
-from camwright.pipeline.sizing.open_case import PRELOAD, RATE
-from camwright.pipeline.sizing.spring_size import (
+from camwright.pipeline.search.sizes.open_case import PRELOAD, RATE
+from camwright.pipeline.search.sizes.spring_size import (
     PRELOAD_SHARE,
     HoldingCondition,
     SpringSize,

@@ -20,10 +20,10 @@ from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import JUMP, TORQUE_REDUCTION
 from camwright.pipeline.follower.spring import HelicalSpring, spring_energy
+from camwright.pipeline.search.parts import ripple_bounds
+from camwright.pipeline.search.parts.design_point import Rough
 from camwright.pipeline.smoothing.scenario import Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
-from camwright.pipeline.studies.redesign import ripple_bounds
-from camwright.pipeline.studies.redesign.design_point import Rough
 
 RUNGS, RUNG = 12, 0.93  # limits of the cam radius per roller, and their ratio to the last cam
 

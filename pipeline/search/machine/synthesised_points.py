@@ -20,12 +20,12 @@ from camwright.pipeline.records.redesign_document import (
     is_refused,
     is_whole,
 )
+from camwright.pipeline.search.front import front, thinned
+from camwright.pipeline.search.machine.candidate_search import FAR, OPTIMISTIC, Candidate
+from camwright.pipeline.search.machine.design_case import SYNTHESIS, Machinery, case_text
+from camwright.pipeline.search.machine.torque_task import DesignTask
+from camwright.pipeline.search.parts.point_store import PointTask, solved
 from camwright.pipeline.smoothing.constraints import check_of
-from camwright.pipeline.studies.design.candidate_search import FAR, OPTIMISTIC, Candidate
-from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
-from camwright.pipeline.studies.design.torque_task import DesignTask
-from camwright.pipeline.studies.redesign.pareto_front import front, thinned
-from camwright.pipeline.studies.redesign.point_store import PointTask, solved
 
 _FRONT = 5  # of the front of the screening within the limits
 _NEAREST = 2  # of the front of those near to them

@@ -35,7 +35,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.records.size_document import FaceSizeRecord, RollerSizeRecord, SizeLengths
-from camwright.pipeline.sizing.open_case import FACE, OFFSET, PRIME, ROLLER, OpenCase
+from camwright.pipeline.search.sizes.open_case import FACE, OFFSET, PRIME, ROLLER, OpenCase
 from camwright.pipeline.smoothing.required_lift import cam_lift
 
 DIGITS = 6

@@ -19,9 +19,9 @@ from camwright.pipeline.records.redesign_document import (
     RefusedPoint,
     RoughRecord,
 )
+from camwright.pipeline.search.parts.design_point import point_of, rough_point
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.studies.redesign.design_point import point_of, rough_point
 from camwright.pipeline.torque.torque import Torque
 
 Answer = RoughRecord | PointRecord | ConflictPoint | RefusedPoint

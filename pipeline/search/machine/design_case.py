@@ -21,13 +21,13 @@ from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.contact.cam_body import STANDARD_KEYS
 from camwright.pipeline.follower.bearing_life import rated_viscosity
 from camwright.pipeline.follower.spring import HelicalSpring
-from camwright.pipeline.studies.design.machine_frame import (
+from camwright.pipeline.search.machine.machine_frame import (
     AXIAL_OFFSET,
     ROLLER_CHAMFER,
     MachineFrame,
 )
-from camwright.pipeline.studies.design.torque_task import DesignTask
-from camwright.pipeline.studies.design.wound_springs import SpringPoint
+from camwright.pipeline.search.machine.torque_task import DesignTask
+from camwright.pipeline.search.machine.wound_springs import SpringPoint
 
 OIL_WARMER = 20.0  # K of oil and spring above the surroundings
 _KAPPA = 1.25  # viscosity ratio of the roller bearing at the least speed

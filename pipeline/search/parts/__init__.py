@@ -8,7 +8,6 @@ In the order of the calculation:
 | `design_point`   | point of a case: ripple, size, mass           | N m; m; kg   |
 | `point_store`    | points in worker processes, cached on disk    |              |
 | `part_search`    | search order over rollers, springs and bushes |              |
-| `pareto_front`   | front of two objectives                       |              |
 | `exclusions`     | limits that exclude choices, changes needed   |              |
 | `redesign_study` | command: search, front, case files, record    |              |
 

@@ -12,7 +12,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import UNDERCUT_FACTOR
 from camwright.pipeline.records.size_document import SizeChart, SizeCurve, SizePanel
-from camwright.pipeline.sizing.shapes import FaceShapes, RollerShapes, Shape, Shapes
+from camwright.pipeline.search.sizes.shapes import FaceShapes, RollerShapes, Shape, Shapes
 
 _LEAST, _MOST = 0.4, 2.2
 """Range of the chart over the prime or base radius of the sized cam."""

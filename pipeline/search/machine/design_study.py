@@ -35,18 +35,18 @@ from camwright.pipeline.records.design_document import (
 )
 from camwright.pipeline.results.check_records import to_be_confirmed
 from camwright.pipeline.results.run_folder import versions
-from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
-from camwright.pipeline.studies.design.design_case import WRITTEN, case_text
-from camwright.pipeline.studies.design.part_exchange import Exchanged, exchanged
-from camwright.pipeline.studies.design.relaxation_search import relaxations
-from camwright.pipeline.studies.design.synthesised_points import (
+from camwright.pipeline.search.machine.candidate_search import Candidate, candidates
+from camwright.pipeline.search.machine.design_case import WRITTEN, case_text
+from camwright.pipeline.search.machine.part_exchange import Exchanged, exchanged
+from camwright.pipeline.search.machine.relaxation_search import relaxations
+from camwright.pipeline.search.machine.synthesised_points import (
     PointStudy,
     Solved,
     drafts,
     solved_front,
 )
-from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
-from camwright.pipeline.studies.redesign.point_store import SOLVED
+from camwright.pipeline.search.machine.torque_task import DesignTask, task_of
+from camwright.pipeline.search.parts.point_store import SOLVED
 
 RECORD = "design.json"
 PICTURE = "design.png"

@@ -8,9 +8,9 @@ from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import SPRING_SURGE
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.records.size_document import SizeDocument
-from camwright.pipeline.sizing.open_case import GAPS, PRELOAD, RATE
-from camwright.pipeline.sizing.sizing import Sizing, unit_of
-from camwright.pipeline.sizing.spring_choice import greatest_coil_mass
+from camwright.pipeline.search.sizes.open_case import GAPS, PRELOAD, RATE
+from camwright.pipeline.search.sizes.sizing import Sizing, unit_of
+from camwright.pipeline.search.sizes.spring_choice import greatest_coil_mass
 
 _MM, _DEG = "mm", "deg"
 

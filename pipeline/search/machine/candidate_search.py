@@ -24,15 +24,15 @@ from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.checks.manufacture import cam_radius
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.screening.design_screening import Column, screen_designs
-from camwright.pipeline.studies.design.design_case import (
+from camwright.pipeline.search.machine.design_case import (
     OIL_WARMER,
     Machinery,
     case_text,
     oils_of,
 )
-from camwright.pipeline.studies.design.machine_frame import MachineFrame, frame_of
-from camwright.pipeline.studies.design.torque_task import DesignTask
-from camwright.pipeline.studies.design.wound_springs import SpringPoint, of_catalogue, wound
+from camwright.pipeline.search.machine.machine_frame import MachineFrame, frame_of
+from camwright.pipeline.search.machine.torque_task import DesignTask
+from camwright.pipeline.search.machine.wound_springs import SpringPoint, of_catalogue, wound
 
 WIRE = "chrome_silicon"
 RELAXATION = 0.005  # share of the force that a preset spring loses

@@ -18,7 +18,7 @@ from camwright.pipeline.records.crown_document import (
     CrownShape,
     CrownState,
 )
-from camwright.pipeline.sizing.crown_design import CrownDesign
+from camwright.pipeline.search.crown.crown_design import CrownDesign
 
 _WORDS = {
     "johns_gohar": "Johns-Gohar",

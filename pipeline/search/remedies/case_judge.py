@@ -27,7 +27,7 @@ from camwright.pipeline.checks.tolerance_corners import (
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, is_body, solution
 from camwright.pipeline.follower.camshaft_loads import unbalance
-from camwright.pipeline.remedies.lever_steps import without_exponent
+from camwright.pipeline.search.remedies.lever_steps import without_exponent
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.torque.torque import Torque
 

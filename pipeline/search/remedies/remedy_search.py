@@ -34,10 +34,16 @@ from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.lost_loads import STALLS
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
-from camwright.pipeline.remedies.case_judge import Judge, Preview, effects, newly_failing, used
-from camwright.pipeline.remedies.lever_steps import Step, Workbench, without_exponent
-from camwright.pipeline.remedies.remedy import Remedy
 from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.search.remedies.case_judge import (
+    Judge,
+    Preview,
+    effects,
+    newly_failing,
+    used,
+)
+from camwright.pipeline.search.remedies.lever_steps import Step, Workbench, without_exponent
+from camwright.pipeline.search.remedies.remedy import Remedy
 
 IN_A_RUN, LEAST_IN_A_RUN = 18, 3
 """Failed checks of a run whose remedies are sought, the worst ones: their number times that of the

@@ -17,10 +17,10 @@ from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.records.design_document import ExchangeRecord, ExchangesRecord
 from camwright.pipeline.records.redesign_document import is_refused, is_whole
-from camwright.pipeline.studies.design.design_case import Machinery
-from camwright.pipeline.studies.design.machine_frame import MODULES, STEMS
-from camwright.pipeline.studies.design.synthesised_points import PointStudy, Solved
-from camwright.pipeline.studies.design.wound_springs import of_catalogue
+from camwright.pipeline.search.machine.design_case import Machinery
+from camwright.pipeline.search.machine.machine_frame import MODULES, STEMS
+from camwright.pipeline.search.machine.synthesised_points import PointStudy, Solved
+from camwright.pipeline.search.machine.wound_springs import of_catalogue
 
 _MOST = 24  # designs tried
 _TOGETHER = 2  # solved at once

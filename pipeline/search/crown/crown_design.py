@@ -36,7 +36,7 @@ from camwright.pipeline.cycle.cycle import Cycle, turn_of_line
 from camwright.pipeline.cycle.length_history import ContactLoads
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.records.crown_document import CrownKind
-from camwright.pipeline.sizing.least_crown import (
+from camwright.pipeline.search.crown.least_crown import (
     KINDS,
     AxialFactor,
     ContactStates,
@@ -46,7 +46,7 @@ from camwright.pipeline.sizing.least_crown import (
     least_crown,
     middle_crown,
 )
-from camwright.pipeline.sizing.solved_lines import SignedRange, SolvedLines, signed_range
+from camwright.pipeline.search.crown.solved_lines import SignedRange, SolvedLines, signed_range
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,10 +11,6 @@ In the order of the calculation:
 | `sizing`        | values of the open keys, their checks             | SI                 |
 | `size_chart`    | pressure angle and curvature over the base radius | alpha, rad; rho, m |
 | `size_record`   | record, text and source of the sized values       | mm, N, deg         |
-| `solved_lines`  | axial pressure of few contacts, signed            | K, -; M, N m       |
-| `least_crown`   | crowns within a ratio at loads and tilts          | w, N/m; drop, m    |
-| `crown_design`  | crown of a case, costs, sensitivity               | SI                 |
-| `crown_record`  | record and text of a crown                        | mm, um, N/mm       |
 
 Imports `screening` and what it imports.
 """

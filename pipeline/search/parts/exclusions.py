@@ -21,7 +21,7 @@ from camwright.pipeline.records.redesign_document import (
     is_whole,
 )
 from camwright.pipeline.results.check_report import number, unit_text
-from camwright.pipeline.studies.redesign.part_search import Pruned
+from camwright.pipeline.search.parts.part_search import Pruned
 
 _SHOWN = 3  # relaxations in a line
 _TITLES = {row.id: row.title for row in LIMITS.values()}

@@ -1,0 +1,17 @@
+"""Searches over changed designs: what a case should be, by judging others beside it.
+
+In the order of the calculation:
+
+| module      | responsibility                                       | symbol, unit       |
+| ----------- | ---------------------------------------------------- | ------------------ |
+| `front`     | front of two objectives                              |                    |
+| `remedies`  | smallest change that cures a failed check            | factor             |
+| `sizes`     | open keys of a case, as small as its limits allow    | r, e, m; k, N/m    |
+| `crown`     | crown of a line contact within a ratio of pressures  | K, -; drop, m      |
+| `parts`     | Pareto front over the catalogues                     | N m; m; kg         |
+| `machine`   | from a torque to a case with all parts               | E, J; k, N/m; m    |
+| `smoothers` | smoothers on one case by previews                    | N m                |
+
+A run searches remedies, and the searches judge by previews: the packages lie on one floor with
+`preview` and `run`, without a circle of modules.
+"""
