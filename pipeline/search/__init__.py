@@ -4,6 +4,8 @@ In the order of the calculation:
 
 | module      | responsibility                                       | symbol, unit       |
 | ----------- | ---------------------------------------------------- | ------------------ |
+| `change`    | other values of a case, the case with them           | SI                 |
+| `judge`     | judgement of a change: solution, checks, figures     | utilisation, -     |
 | `front`     | front of two objectives                              |                    |
 | `remedies`  | smallest change that cures a failed check            | factor             |
 | `sizes`     | open keys of a case, as small as its limits allow    | r, e, m; k, N/m    |

@@ -27,8 +27,9 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.lost_loads import LoadEnd
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
-from camwright.pipeline.search.remedies.case_judge import Judge
-from camwright.pipeline.search.remedies.lever_steps import PARTS, Workbench, without_exponent
+from camwright.pipeline.search.change import PARTS, Change
+from camwright.pipeline.search.judge import Depth, Judge
+from camwright.pipeline.search.remedies.lever_steps import Workbench, without_exponent
 from camwright.pipeline.search.remedies.remedy import WIDTH, Remedy
 from camwright.pipeline.search.remedies.remedy_search import (
     LEVELS,
@@ -78,9 +79,9 @@ def test_a_scaled_value_has_three_digits_away_from_that_of_the_case(
     bench: Workbench, key: str, direction: Any, size: float, text: str
 ) -> None:
     step = bench.scaled(Scaled((key,), direction), size)
-    assert step.changes == {key: text}
+    assert step.change == Change(((key, text),))
     assert step.size >= size * (1.0 - 1e-8)
-    changed = value_of(bench.applied(step.changes), key)
+    changed = value_of(step.change.applied(bench.case, bench.folder), key)
     assert changed / value_of(bench.case, key) == pytest.approx(
         math.exp(direction * step.size), rel=1e-12
     )
@@ -88,13 +89,18 @@ def test_a_scaled_value_has_three_digits_away_from_that_of_the_case(
 
 def test_the_fast_way_makes_the_same_case(bench: Workbench) -> None:
     step = bench.scaled(Scaled(("cam.width", "roller.width", "roller.pin.span"), 1), 0.3)
-    assert list(step.changes) == ["cam.width", "roller.width"]  # the case has no pin
-    assert bench.tried(step.changes).to_toml() == bench.applied(step.changes).to_toml()
+    # the case has no pin
+    assert [key for key, _ in step.change.values] == ["cam.width", "roller.width"]
+    judge = Judge(bench.case, engine_torques(bench.case), bench.folder)
+    quick, read = (judge.judged(step.change, Depth(), quick=each) for each in (True, False))
+    assert quick.solved.case.to_toml() == read.solved.case.to_toml()
+    records = [[one.as_record() for one in each.checks.values()] for each in (quick, read)]
+    assert records[0] == records[1]
 
 
 def test_a_greater_roller_keeps_the_base_circle(bench: Workbench) -> None:
     lever = Scaled(("roller.radius",), 1, along=("cam.prime_radius",))
-    changed = bench.applied(bench.scaled(lever, math.log(1.5)).changes)
+    changed = bench.scaled(lever, math.log(1.5)).change.applied(bench.case, bench.folder)
     assert changed.roller.radius == pytest.approx(12e-3, rel=1e-12)
     assert changed.base_circle == pytest.approx(bench.case.base_circle, rel=1e-12)
 
@@ -102,7 +108,7 @@ def test_a_greater_roller_keeps_the_base_circle(bench: Workbench) -> None:
 def test_the_preload_of_every_load_case_changes(case: Case) -> None:
     two = with_values(case, {"load_case[0].preload": "121 N"})
     step = Workbench(two, None).scaled(Scaled(("spring.preload", "load_case[*].preload"), 1), 0.5)
-    assert set(step.changes) == {"spring.preload", "load_case[0].preload"}
+    assert {key for key, _ in step.change.values} == {"spring.preload", "load_case[0].preload"}
 
 
 def test_smoothers_act_by_their_own_key(bench: Workbench, case: Case) -> None:
@@ -117,39 +123,42 @@ def test_smoothers_act_by_their_own_key(bench: Workbench, case: Case) -> None:
 def test_better_bearings_come_by_their_dimensions_first(bench: Workbench) -> None:
     lever = Catalogued(BEARING, "C0", inverse=True)
     steps = bench.cards(lever)
-    assert [step.changes[BEARING] for step in steps[:2]] == ["maker_2_625", "track_roller_24x7"]
+    assert [dict(step.change.values)[BEARING] for step in steps[:2]] == [
+        "maker_2_625",
+        "track_roller_24x7",
+    ]
     assert all(a.size <= b.size for a, b in pairwise(steps))
     assert steps[0].figure == "C0 670 N"
-    changed = bench.applied(steps[1].changes)
+    changed = steps[1].change.applied(bench.case, bench.folder)
     assert (changed.roller.bearing.C0, changed.roller.radius) == (1300.0, 12e-3)
     assert changed.base_circle == pytest.approx(bench.case.base_circle, rel=1e-12)
 
 
 def test_a_bush_and_a_material_come_from_their_cards(bench: Workbench) -> None:
     bushes = bench.cards(Catalogued(BUSH_A, "pressure_limit"))
-    assert [step.changes[BUSH_A] for step in bushes] == [
+    assert [dict(step.change.values)[BUSH_A] for step in bushes] == [
         "pom", "bronze", "wrapped_bronze", "ptfe_lined",
     ]  # fmt: skip
-    changed = bench.applied(bushes[-1].changes)
+    changed = bushes[-1].change.applied(bench.case, bench.folder)
     assert changed.guides.a.pressure_limit == 56e6
     assert changed.guides.b == bench.case.guides.b
     assert changed.guides.a.length == bench.case.guides.a.length
     materials = bench.cards(Catalogued(CAM_MATERIAL, "yield_strength"))
-    steel = next(s for s in materials if s.changes[CAM_MATERIAL] == "through_hardened")
+    steel = next(s for s in materials if dict(s.change.values)[CAM_MATERIAL] == "through_hardened")
     assert steel.figure == "yield strength 650 MPa"
-    assert bench.applied(steel.changes).cam.material.yield_strength == 650e6
+    assert steel.change.applied(bench.case, bench.folder).cam.material.yield_strength == 650e6
 
 
 def test_a_lower_friction_is_the_better_one(bench: Workbench) -> None:
     steps = bench.cards(Catalogued("guides.b", "friction_max", less=True))
-    assert [step.changes["guides.b"] for step in steps] == [
+    assert [dict(step.change.values)["guides.b"] for step in steps] == [
         "bronze", "wrapped_bronze", "pa66_regularly_greased", "sintered_bronze",
     ]  # fmt: skip
 
 
 def test_a_counter_hole_is_drilled_once(bench: Workbench) -> None:
     assert bench.acts(Drilled())
-    drilled = bench.applied(bench.drilled(Drilled()).changes)
+    drilled = bench.drilled(Drilled()).change.applied(bench.case, bench.folder)
     assert drilled.cam.counter_hole is not None
     assert not Workbench(drilled, None).acts(Drilled())
 
@@ -161,11 +170,11 @@ def test_a_straight_follower_is_crowned_for_its_line_load(file: str, key: str) -
     case = read_case(GX120.with_name(f"{file}.toml"))
     first, again = Crowned(first=True), Crowned(first=False)
     bench = Workbench(case, None, line_load=120.04e3)
-    loads = [step.changes[f"{key}.line_load"] for step in bench.crowns(first)]
+    loads = [dict(step.change.values)[f"{key}.line_load"] for step in bench.crowns(first)]
     assert loads == ["60.1 N/mm", "121 N/mm"]
     assert bench.acts(first) and not bench.acts(again)
     assert not Workbench(case, None).acts(first)
-    crowned = bench.tried(bench.crowns(first)[1].changes)
+    crowned = bench.crowns(first)[1].change.applied(case, None)
     assert crowned.facing.crown is not None
     assert (crowned.facing.crown.kind, crowned.facing.crown.line_load) == ("johns_gohar", 121e3)
 
@@ -176,7 +185,7 @@ def test_a_crown_is_made_lighter_and_heavier(case: Case) -> None:
     bench = Workbench(crowned, None, line_load=120e3)
     for lever in (Crowned(first=True), Crowned(first=False)):
         steps = bench.crowns(lever)
-        assert [step.changes for step in steps] == [{key: "250 mm"}, {key: "1000 mm"}]
+        assert [str(step.change) for step in steps] == [f"{key}: 250 mm", f"{key}: 1000 mm"]
         assert {step.size for step in steps} == {math.log(2.0)}
     standard = with_values(case, {"roller.crown.kind": "iso16281"})
     assert not Workbench(standard, None, line_load=120e3).acts(Crowned(first=True))
@@ -185,7 +194,7 @@ def test_a_crown_is_made_lighter_and_heavier(case: Case) -> None:
 @pytest.mark.parametrize(("radius", "undercut"), [("8 mm", False), ("20 mm", True)])
 def test_an_undercut_contour_has_no_line_load(case: Case, radius: str, undercut: bool) -> None:
     changed = with_values(case, {"roller.radius": radius, "cam.prime_radius": "34 mm"})
-    base = Judge(engine_torques(changed), None, {}).preview(changed, [], undercut=True)
+    base = Judge(changed, engine_torques(changed)).judged(Change(), Depth(undercut=True))
     known = np.concatenate(
         [cycle.contact.line_load for cycle in base.solved.cycles if cycle.end is None]
     )
@@ -195,22 +204,26 @@ def test_an_undercut_contour_has_no_line_load(case: Case, radius: str, undercut:
 
 def test_a_value_that_does_not_fit_is_refused(bench: Workbench) -> None:
     with pytest.raises(InputError, match=r"guides\.spacing"):
-        bench.tried({"guides.spacing": "15 mm"})
+        Change((("guides.spacing", "15 mm"),)).replaced(bench.case)
 
 
 def test_the_line_of_a_remedy_keeps_the_width() -> None:
-    changes = {"cam.width": "26 mm", "roller.width": "26 mm"}
+    change = Change((("cam.width", "26 mm"), ("roller.width", "26 mm")))
     effects = ("fails cam_radius", "x" * 60, "adds 40 g")
-    text = Remedy("contact_pressure", changes, effects=effects).text
+    text = Remedy("contact_pressure", change, effects=effects).text
     assert text == "cam.width: 26 mm, roller.width: 26 mm; fails cam_radius; adds 40 g"
     assert len(text) <= WIDTH
-    card = Remedy("roller_static", {BEARING: "6203"}, "C0 4.75 kN", ("least C0 4.56 kN",))
+    card = Remedy(
+        "roller_static", Change(((BEARING, "6203"),)), "C0 4.75 kN", ("least C0 4.56 kN",)
+    )
     assert card.text == "roller.bearing: 6203 (C0 4.75 kN); least C0 4.56 kN"
 
 
 def test_without_a_remedy_the_line_says_so() -> None:
-    assert Remedy("jump", {}, cures=False).text == "no single change cures it"
-    closest = Remedy("jump", {"follower.mass": "90 g"}, effects=("still 200 % used",), cures=False)
+    assert Remedy("jump", Change(), cures=False).text == "no single change cures it"
+    closest = Remedy(
+        "jump", Change((("follower.mass", "90 g"),)), effects=("still 200 % used",), cures=False
+    )
     assert (
         closest.text == "no single change cures it; closest: follower.mass: 90 g; still 200 % used"
     )

@@ -18,7 +18,7 @@ from camwright.pipeline.case.case_file import case_of, read_case, with_values
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.search.remedies.lever_steps import Workbench
+from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.remedies.remedy import WIDTH
 from camwright.pipeline.search.remedies.remedy_search import (
     IN_A_RUN,
@@ -69,7 +69,7 @@ def test_a_remedy_read_back_cures_its_check(trial: Trial) -> None:
     assert angle.cam_angle is not None
     lift, slope = (float(trial.lift(angle.cam_angle, k)) for k in (0, 1))
     least = abs(slope) / math.tan(math.radians(30.0)) - lift
-    prime = float(cures["pressure_angle"].changes["cam.prime_radius"].removesuffix(" mm"))
+    prime = float(changes_in(cures["pressure_angle"].text)["cam.prime_radius"].removesuffix(" mm"))
     # the worst angle moves a little towards the greater slope, and the line profile adds to it
     assert 1e3 * least < prime < 1.02 * 1e3 * least
 
@@ -101,7 +101,7 @@ def test_a_crown_cures_the_pressure_at_the_ends() -> None:
     (remedy,) = remedies(case, None, None, failing).values()
     changes = changes_in(remedy.text)
     assert list(changes) == ["roller.crown.kind", "roller.crown.line_load"]
-    crowned = preview_case(Workbench(case, None).applied(changes))
+    crowned = preview_case(Change.of(changes).applied(case, None))
     status = {one.id: one.status for one in crowned.checks}
     assert (status["edge_pressure"], status["contact_pressure"]) == ("pass", "pass")
 
@@ -131,6 +131,6 @@ def test_two_workers_find_the_same_remedies(trial: Trial, texts: dict[str, str])
 def assert_cures(name: str, text: str) -> None:
     """The line of a remedy, applied to the case, turns its check to pass."""
     case = read_case(GX120)
-    changed = Workbench(case, case.folder).applied(changes_in(text))
+    changed = Change.of(changes_in(text)).applied(case, case.folder)
     one = next(one for one in preview_case(changed).checks if one.id == name)
     assert one.status == "pass", f"{text}: {one}"

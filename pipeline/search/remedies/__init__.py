@@ -4,9 +4,9 @@ In the order of the calculation:
 
 | module              | responsibility                                    | symbol, unit   |
 | ------------------- | ------------------------------------------------- | -------------- |
-| `lever_steps`       | values of a lever in a case; the case with them   | SI             |
-| `remedy`            | remedy of a check in one line, side effects       | N m; MPa; g    |
-| `case_judge`        | checks of a changed case, its side effects        | utilisation, - |
+| `lever_steps`       | changes of a lever in a case                      | SI             |
+| `remedy`            | remedy of a check in one line, side effects       |                |
+| `side_effects`      | checks that fail or pass with a change, figures   | N m; MPa; g    |
 | `remedy_search`     | search over the levers, verification              | factor         |
 
 Imports `results` and what it imports.

@@ -1,9 +1,8 @@
-"""Steps of a lever in a case: the changed values as text, and the case with them."""
+"""Steps of a lever in a case: the changes of its values."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from functools import cached_property
@@ -14,7 +13,6 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.levers import (
     BEARING,
     BUSH_A,
-    BUSH_B,
     CAM_MATERIAL,
     Catalogued,
     Crowned,
@@ -23,26 +21,17 @@ from camwright.pipeline.base.levers import (
     Scaled,
 )
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import Count, In, marks_of
+from camwright.pipeline.base.quantities import In, marks_of
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
-from camwright.pipeline.case.cards.substitution import (
-    with_bush,
-    with_cam_material,
-    with_roller,
-)
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import with_values
-from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
-from camwright.pipeline.case.consistency import check_numbers
-from camwright.pipeline.case.toml_text import TomlValue
+from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.contact.cam_body import BalanceHole
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller_parts import Bearing
+from camwright.pipeline.search.change import Change, number_of, unit_at
 
-PARTS = (BEARING, CAM_MATERIAL, BUSH_A, BUSH_B)
-"""Keys whose value is the name of a card."""
 _DIGITS = 3  # of a value that a designer writes
 _OF_RATING = 0.05  # share of the rating in the change of a bearing; the rest is its dimensions
 _CROWNS = (0.5, 1.0)  # line loads of the first crown over the greatest one
@@ -51,16 +40,16 @@ _SLIGHT = Decimal("1e-9")  # relative: a value is rounded up unless it is one of
 
 
 class Step(NamedTuple):
-    """Values of a lever.
+    """Change of the values of a lever.
 
     Parameters
     ----------
-    changes : dict   dotted key -> text as in a case file, or the name of a card
-    size : float     |ln| of the ratio of the new value to that of the case
-    figure : str     rating of a card in words; "": none
+    change : Change   texts as in a case file, or the name of a card
+    size : float      |ln| of the ratio of the new value to that of the case
+    figure : str      rating of a card in words; "": none
     """
 
-    changes: dict[str, str]
+    change: Change
     size: float
     figure: str = ""
 
@@ -78,51 +67,6 @@ class Workbench:
     case: Case
     folder: Path | None
     line_load: float | None = None
-
-    def applied(self, changes: Mapping[str, str]) -> Case:
-        """The case with the values of a step.
-
-        A part of the catalogue brings the values that depend on it: a bearing the size of the
-        roller, its pin, the widths, the overhang and the mass, with the same base circle.
-
-        Raises
-        ------
-        InputError
-            If the values do not fit into the case.
-        """
-        case = self.case
-        numbers: dict[str, TomlValue] = {
-            key: value if _unit(quantity_of(key)) or _is_word(key) else float(value)
-            for key, value in changes.items()
-            if key not in PARTS
-        }
-        if numbers:
-            case = with_values(case, numbers)
-        for key in PARTS:
-            if key not in changes:
-                continue
-            name = changes[key]
-            if key == BEARING:
-                case = with_roller(case, name, self.parts.rollers[name], self.folder)
-            elif key == CAM_MATERIAL:
-                case = with_cam_material(case, name, self.folder)
-            else:
-                case = with_bush(case, "a" if key == BUSH_A else "b", name, self.folder)
-        return case
-
-    def tried(self, changes: Mapping[str, str]) -> Case:
-        """As `applied`, without a comparison of the sources with the values.
-
-        Raises
-        ------
-        InputError
-            If the values do not fit into the case.
-        """
-        if any(key in PARTS or value_of(self.case, key) is None for key in changes):
-            return self.applied(changes)
-        case = replaced(self.case, {key: _read(key, text) for key, text in changes.items()})
-        check_numbers(case)
-        return case
 
     @cached_property
     def parts(self) -> Catalogue:
@@ -150,14 +94,14 @@ class Workbench:
         """Step of a lever: values of three digits, at least `size` away from those of the case."""
         factor = math.exp(lever.direction * size)
         before = self._numbers(lever.keys)
-        changes: dict[str, str] = {}
+        texts: dict[str, str] = {}
         first, *_ = before
         for key, value in before.items():
-            changes[key] = _rounded(key, value * factor, lever.direction)
-        new = _read(first, changes[first])
+            texts[key] = _rounded(key, value * factor, lever.direction)
+        new = number_of(first, texts[first])
         for key, value in self._numbers(lever.along).items():
-            changes[key] = _text(key, value + new - before[first])
-        return Step(changes, abs(math.log(new / before[first])))
+            texts[key] = _text(key, value + new - before[first])
+        return Step(Change.of(texts), abs(math.log(new / before[first])))
 
     def cards(self, lever: Catalogued) -> list[Step]:
         """Steps of a part, one for each better card of the catalogue, the smallest change first."""
@@ -171,7 +115,7 @@ class Workbench:
             if lever.key == BEARING:
                 size = self._resized(name) + _OF_RATING * size
             words = f"{lever.rating.replace('_', ' ')} {without_exponent(rating, unit)}"
-            steps.append((size, rating, Step({lever.key: name}, size, words)))
+            steps.append((size, rating, Step(Change(((lever.key, name),)), size, words)))
         return [step for *_, step in sorted(steps, key=lambda each: each[:2])]
 
     def _resized(self, name: str) -> float:
@@ -188,11 +132,12 @@ class Workbench:
     def unit(lever: Catalogued) -> str:
         """Unit of the rating of a lever."""
         part = {BEARING: BearingCard, CAM_MATERIAL: Material}.get(lever.key, Guide)
-        return _unit(marks_of(part)[lever.rating])
+        mark = marks_of(part)[lever.rating]
+        return mark.unit if isinstance(mark, In) else ""
 
     def drilled(self, lever: Drilled) -> Step:
         """Step of a counter-hole; as a change it is the smallest one."""
-        return Step({lever.key: units.format(BalanceHole().wall, "mm")}, 0.0)
+        return Step(Change(((lever.key, units.format(BalanceHole().wall, "mm")),)), 0.0)
 
     def crowns(self, lever: Crowned) -> list[Step]:
         """Steps of the crown of the follower, as a change the smallest ones.
@@ -208,13 +153,14 @@ class Workbench:
                 return []
             at = f"{key}.line_load"
             texts = [_rounded(at, share * self.line_load, 1) for share in _CROWNS]
-            return [Step({f"{key}.kind": "johns_gohar", at: text}, 0.0) for text in texts]
+            kind = f"{key}.kind", "johns_gohar"
+            return [Step(Change((kind, (at, text))), 0.0) for text in texts]
         for name, value in (("radius", crown.radius), ("line_load", crown.line_load)):
             if value is not None:
                 at = f"{key}.{name}"
                 ratios = ((1.0 / _HEAVIER, -1), (_HEAVIER, 1))
                 return [
-                    Step({at: _rounded(at, value * ratio, side)}, math.log(_HEAVIER))
+                    Step(Change(((at, _rounded(at, value * ratio, side)),)), math.log(_HEAVIER))
                     for ratio, side in ratios
                 ]
         return []
@@ -269,23 +215,9 @@ def without_exponent(value: float, unit: str, digits: int = 4) -> str:
     return f"{number} {unit}" if unit else number
 
 
-def _unit(quantity: In | Count | None) -> str:
-    return quantity.unit if isinstance(quantity, In) else ""
-
-
-def _is_word(key: str) -> bool:
-    """Whether the value of a key is a word."""
-    return key.endswith(".kind")
-
-
-def _read(key: str, text: str) -> float:
-    unit = _unit(quantity_of(key))
-    return units.parse(text, unit, key) if unit else float(text)
-
-
 def _rounded(key: str, value: float, direction: int) -> str:
     """Text of a value (SI) in the unit of its key, rounded away from that of the case."""
-    unit = _unit(quantity_of(key))
+    unit = unit_at(key)
     exact = Decimal(units.in_unit(value, unit) if unit else value)
     digit = Decimal(1).scaleb(exact.adjusted() - _DIGITS + 1)
     slack = abs(exact) * _SLIGHT
@@ -297,4 +229,4 @@ def _rounded(key: str, value: float, direction: int) -> str:
 
 def _text(key: str, value: float) -> str:
     """Text of a value (SI), to six digits."""
-    return units.shown(value, _unit(quantity_of(key)), 6)
+    return units.shown(value, unit_at(key), 6)

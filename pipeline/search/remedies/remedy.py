@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
+
+from camwright.pipeline.search.change import Change
 
 WIDTH = 87
 """Columns of the line of a remedy: 100 less the indent and the word before it."""
@@ -15,15 +17,15 @@ class Remedy:
 
     Parameters
     ----------
-    check : str        id of the check
-    changes : mapping  dotted key -> text as in a case file, or the name of a card
-    figure : str       rating of the card, or what the check needs, in words
-    effects : tuple    what else changes, the gravest first
-    cures : bool       the check passes with the change; False: it is the closest one
+    check : str       id of the check
+    change : Change   empty: none comes near
+    figure : str      rating of the card, or what the check needs, in words
+    effects : tuple   what else changes, the gravest first
+    cures : bool      the check passes with the change; False: it is the closest one
     """
 
     check: str
-    changes: Mapping[str, str]
+    change: Change
     figure: str = ""
     effects: tuple[str, ...] = ()
     cures: bool = True
@@ -31,7 +33,7 @@ class Remedy:
     @property
     def text(self) -> str:
         """The change and its side effects in at most `WIDTH` columns; effects that fit alone."""
-        change = ", ".join(f"{key}: {value}" for key, value in self.changes.items())
+        change = str(self.change)
         change += f" ({self.figure})" if self.figure and change else ""
         if not self.cures:
             closest = f"; closest: {change}" if change else ""

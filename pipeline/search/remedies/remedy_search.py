@@ -2,7 +2,7 @@
 
 The levers of all failed checks are pulled by rising steps, each solved once for every check that
 it can cure. Between the last two steps the value is found by interpolation, rounded, put into the
-case and verified by a preview.
+case and judged.
 """
 
 from __future__ import annotations
@@ -35,15 +35,11 @@ from camwright.pipeline.checks.lost_loads import STALLS
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
 from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.search.remedies.case_judge import (
-    Judge,
-    Preview,
-    effects,
-    newly_failing,
-    used,
-)
+from camwright.pipeline.search.change import Change
+from camwright.pipeline.search.judge import Depth, Judge, Judgement, used
 from camwright.pipeline.search.remedies.lever_steps import Step, Workbench, without_exponent
 from camwright.pipeline.search.remedies.remedy import Remedy
+from camwright.pipeline.search.remedies.side_effects import effects, newly_failing
 
 IN_A_RUN, LEAST_IN_A_RUN = 18, 3
 """Failed checks of a run whose remedies are sought, the worst ones: their number times that of the
@@ -217,13 +213,21 @@ def remedies(
     if not wanted:
         return {}
     corners = {each.check: each.corners for each in known.values()}
-    judge = Judge(engine_torques(case), lift, corners)
-    base = judge.preview(case, known, undercut=True)
+    judge = Judge(case, engine_torques(case), cards, lift, corners)
+    base = judge.judged(Change(), _depth(corners, known)._replace(undercut=True))
     bench = Workbench(case, cards, _greatest_line_load(base))
     return _RemedySearch(bench, judge, base, wanted).remedies()
 
 
-def _greatest_line_load(base: Preview) -> float | None:
+def _depth(corners: Mapping[str, Sequence[str]], names: Iterable[str]) -> Depth:
+    """Depth at the corners that govern checks and at the worst ones of them and of any."""
+    of_names = [corners.get(name, ()) for name in names]
+    of_any = {names[0] for names in corners.values() if names}
+    governing = {name for names in of_names for name in names[:1]}
+    return Depth(corners=governing, worst=of_any.union(*of_names), bounds=False)
+
+
+def _greatest_line_load(base: Judgement) -> float | None:
     """Greatest line load of the cycles whose loads hold, N/m; None where none is known."""
     held = [cycle.contact.line_load for cycle in base.solved.cycles if cycle.end is None]
     known = [float(np.nanmax(each)) for each in held if not np.isnan(each).all()]
@@ -231,15 +235,15 @@ def _greatest_line_load(base: Preview) -> float | None:
 
 
 class _Seen(NamedTuple):
-    """Step of a lever with the utilisation of a check, by a preview or by the search."""
+    """Step of a lever with the utilisation of a check, as judged or by the search."""
 
     step: Step
     used: float
-    previewed: bool = False
+    judged: bool = False
 
     def times(self, ratio: float) -> _Seen:
         """The step with the utilisation of the search corrected by a ratio."""
-        return self if self.previewed else self._replace(used=ratio * self.used)
+        return self if self.judged else self._replace(used=ratio * self.used)
 
 
 class _Crossing(NamedTuple):
@@ -252,10 +256,10 @@ class _Crossing(NamedTuple):
 
 
 class _Confirmed(NamedTuple):
-    """Step that cures a check, its preview, and the utilisation at the worst of all corners."""
+    """Step that cures a check, its judgement, and the utilisation at the worst of all corners."""
 
     step: Step
-    preview: Preview
+    judgement: Judgement
     used: float
 
 
@@ -263,24 +267,23 @@ class _Confirmed(NamedTuple):
 class _RemedySearch:
     """Search of the remedies of one case.
 
-    base: preview of the case; previews by corners and changes; closest: step of each check that
+    base: judgement of the case; judgements by corners and change; closest: step of each check that
     leaves least; previous: last step of each lever that scales; hopeless: levers not pulled further
     for a check.
     """
 
     bench: Workbench
     judge: Judge
-    base: Preview
+    base: Judgement
     failures: Mapping[str, Failure]
-    previews: dict[str, Preview | None] = field(default_factory=dict)
+    judgements: dict[tuple[tuple[str, ...], Change], Judgement | None] = field(default_factory=dict)
     closest: dict[str, _Seen] = field(default_factory=dict)
     previous: dict[tuple[Lever, str], _Seen] = field(default_factory=dict)
     hopeless: set[tuple[Lever, str]] = field(default_factory=set)
 
     def remedies(self) -> dict[str, Remedy]:
         """Remedy of every failure, in their order."""
-        case = self.bench.case
-        quick = self._quick(case, self.failures)
+        quick = self._used(Change(), self.failures)
         self.scale = {
             name: _ratio(failure.used, quick[name]) for name, failure in self.failures.items()
         }
@@ -309,7 +312,7 @@ class _RemedySearch:
             if not checks:
                 continue
             for step in self._steps(lever, below, level):
-                for name, value in self._used(step, checks).items():
+                for name, value in self._scaled(step, checks).items():
                     first, seen = self.failures[name].used, _Seen(step, value)
                     if value <= 1.0:
                         above = self.previous.get((lever, name))
@@ -364,24 +367,20 @@ class _RemedySearch:
         crowned = case.cam.crown is not None or case.facing.crown is not None
         return crowned and lever in LENGTHS
 
-    def _used(self, step: Step, names: Sequence[str]) -> dict[str, float]:
-        """Utilisations with a step; infinite where the case has no such cam."""
-        try:
-            case = self.bench.tried(step.changes)
-        except CamError:
-            return dict.fromkeys(names, math.inf)
-        quick = self._quick(case, names)
-        return {name: self.scale[name] * value for name, value in quick.items()}
+    def _scaled(self, step: Step, names: Collection[str]) -> dict[str, float]:
+        """Utilisations with a step, times the ratio of the failures to those of the case."""
+        used = self._used(step.change, names)
+        return {name: self.scale[name] * value for name, value in used.items()}
 
-    def _quick(self, case: Case, names: Collection[str]) -> dict[str, float]:
-        """Utilisations of a case by the coarse closed forms; infinite without a solution."""
+    def _used(self, change: Change, names: Collection[str]) -> dict[str, float]:
+        """Utilisations with a change by the coarse closed forms; infinite without a solution."""
         try:
-            return self.judge.utilisations(case, names)
+            return self.judge.used(change, names)
         except CamError:
             return dict.fromkeys(names, math.inf)
 
     def _verified(self, name: str, ways: Sequence[_Crossing]) -> Remedy | None:
-        """Remedy by the smallest way that a preview confirms; None without one.
+        """Remedy by the smallest way that its judgement confirms; None without one.
 
         Of ways of about the same size the one that makes the fewest other checks fail.
         """
@@ -393,7 +392,7 @@ class _RemedySearch:
                 confirmed = self._confirmed(name, way)
                 if confirmed is None:
                     continue
-                fails = len(newly_failing(self.base, confirmed.preview))
+                fails = len(newly_failing(self.base, confirmed.judgement))
             except CamError:  # the guides at a bound of their friction
                 continue
             if best is None or fails < best[0]:
@@ -401,26 +400,30 @@ class _RemedySearch:
         return None if best is None else best[2]
 
     def _confirmed(self, name: str, way: _Crossing) -> _Confirmed | None:
-        """Least step of a way that previews confirm at every corner; None without one."""
+        """Least step of a way whose judgement confirms it at every corner; None without one."""
         if not isinstance(way.lever, Scaled):
-            preview = self._preview(name, way.below.step)
-            return None if preview is None else self._at_every_corner(name, way.below.step, preview)
+            judgement = self._judgement(name, way.below.step)
+            return (
+                None
+                if judgement is None
+                else self._at_every_corner(name, way.below.step, judgement)
+            )
         above, below = way.above, way.below
-        best: tuple[Step, Preview] | None = None
+        best: tuple[Step, Judgement] | None = None
         is_coarse = self._is_coarse(way.lever)
         size = way.size if is_coarse else self._refined(name, way, way.lever)
         for _ in range(_COARSE_PREVIEWS if is_coarse else _PREVIEWS):
             step = self.bench.scaled(way.lever, size)
-            preview = self._preview(name, step)
-            value = math.inf if preview is None else self._judged(name, preview)
-            if preview is not None and _ENOUGH <= value <= 1.0:
-                value = self._judged(name, preview, everywhere=True)
+            judgement = self._judgement(name, step)
+            value = math.inf if judgement is None else self._use(name, judgement)
+            if judgement is not None and _ENOUGH <= value <= 1.0:
+                value = self._use(name, judgement, everywhere=True)
                 if value <= 1.0:
-                    return _Confirmed(step, preview, value)
+                    return _Confirmed(step, judgement, value)
             # the search expects 1 here, and errs by about the same ratio nearby
             ratio = _ratio(value, 1.0)
-            if value <= 1.0 and preview is not None:
-                best = step, preview
+            if value <= 1.0 and judgement is not None:
+                best = step, judgement
                 below, above = _Seen(step, value, True), above and above.times(ratio)
             else:
                 above, below = _Seen(step, value, True), below.times(ratio)
@@ -429,10 +432,10 @@ class _RemedySearch:
         # a larger change than necessary, judged at the worst corners alone so far
         return None if best is None else self._at_every_corner(name, *best)
 
-    def _at_every_corner(self, name: str, step: Step, preview: Preview) -> _Confirmed | None:
+    def _at_every_corner(self, name: str, step: Step, judgement: Judgement) -> _Confirmed | None:
         """A step that passes at every tolerance corner; None if it fails at one."""
-        value = self._judged(name, preview, everywhere=True)
-        return _Confirmed(step, preview, value) if value <= 1.0 else None
+        value = self._use(name, judgement, everywhere=True)
+        return _Confirmed(step, judgement, value) if value <= 1.0 else None
 
     def _refined(self, name: str, way: _Crossing, lever: Scaled) -> float:
         """Size of a change at which a check meets its limit, by interpolation."""
@@ -441,7 +444,7 @@ class _RemedySearch:
             if size >= below.step.size:
                 break
             step = self.bench.scaled(lever, size)
-            seen = _Seen(step, self._used(step, [name])[name])
+            seen = _Seen(step, self._scaled(step, [name])[name])
             if seen.used <= 1.0:
                 below = seen
             else:
@@ -449,34 +452,35 @@ class _RemedySearch:
             size = _crossing(above, below, self.failures[name].used)
         return size
 
-    def _preview(self, name: str, step: Step) -> Preview | None:
-        """Preview of the case with a step at the corners of a check; None without a solution."""
-        key = f"{self.failures[name].corners}: {step.changes}"
-        if key not in self.previews:
+    def _judgement(self, name: str, step: Step) -> Judgement | None:
+        """Judgement of a step at the corners of a check; None without a solution."""
+        key = self.failures[name].corners, step.change
+        if key not in self.judgements:
             try:
-                case = self.bench.applied(step.changes)
-                self.previews[key] = self.judge.preview(case, [name])
+                depth = _depth(self.judge.corners, [name])
+                self.judgements[key] = self.judge.judged(step.change, depth)
             except CamError:
-                self.previews[key] = None
-        return self.previews[key]
+                self.judgements[key] = None
+        return self.judgements[key]
 
-    def _judged(self, name: str, preview: Preview, *, everywhere: bool = False) -> float:
-        """Utilisation of a check in a preview, times the ratio of finite elements to closed forms.
+    def _use(self, name: str, judgement: Judgement, *, everywhere: bool = False) -> float:
+        """Utilisation of a check as judged, times the ratio of finite elements to closed forms.
 
         Infinite where it does not pass for another reason. Another corner than the worst ones of
         the case may govern after a change: `everywhere` judges at all of them.
         """
-        one = preview.check(name, everywhere=everywhere)
+        one = judgement.check(name, everywhere=everywhere)
         value = used(one) * self.deeper[name]
         return math.inf if value <= 1.0 and (one is None or one.status != "pass") else value
 
     def _remedy(self, name: str, lever: Lever, confirmed: _Confirmed) -> Remedy:
-        step, preview, value = confirmed
-        words = effects(name, self.base, preview)
+        step, judgement, value = confirmed
+        words = effects(name, self.base, judgement)
         if isinstance(lever, Catalogued) and lever.inverse:
-            rating = self.bench.rating(lever, step.changes[lever.key])
+            ((_, card),) = step.change.values
+            rating = self.bench.rating(lever, str(card))
             words = (self._least_rating(lever, value * rating), *words)
-        return Remedy(name, step.changes, step.figure, words)
+        return Remedy(name, step.change, step.figure, words)
 
     def _least_rating(self, lever: Catalogued, value: float) -> str:
         words = f"least {lever.rating.replace('_', ' ')}"
@@ -486,13 +490,13 @@ class _RemedySearch:
         """Closest change of a check that no single change cures."""
         before = self.base.checks.get(name)
         if before is not None and before.without:
-            return Remedy(name, {}, effects=needed_first(before.without), cures=False)
+            return Remedy(name, Change(), effects=needed_first(before.without), cures=False)
         seen = self.closest.get(name)
         needed = self._needed(name)
         if seen is None or not math.isfinite(seen.used):
-            return Remedy(name, {}, effects=needed, cures=False)
+            return Remedy(name, Change(), effects=needed, cures=False)
         left = f"still {units.used(seen.used)} used"
-        return Remedy(name, seen.step.changes, seen.step.figure, (*needed, left), cures=False)
+        return Remedy(name, seen.step.change, seen.step.figure, (*needed, left), cures=False)
 
     def _needed(self, name: str) -> tuple[str, ...]:
         """Rating that a check would need at the loads of the case; empty without one."""

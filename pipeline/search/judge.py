@@ -1,11 +1,13 @@
-"""Checks of a changed case, at its governing corners or as a preview; side effects of a change."""
+"""Judge of changed cases: a case, what all its changes share, and how deep each is judged."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,12 +29,11 @@ from camwright.pipeline.checks.tolerance_corners import (
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, is_body, solution
 from camwright.pipeline.follower.camshaft_loads import unbalance
-from camwright.pipeline.search.remedies.lever_steps import without_exponent
+from camwright.pipeline.search.change import Change
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.torque.torque import Torque
 
 _DECIDING = tuple(each for each in CHECKS if each.must_have and not each.evidence)
-_SLIGHT = 0.01  # relative change of a figure up to which the remedy leaves it out
 
 
 @dataclass(frozen=True)
@@ -48,17 +49,39 @@ class Headline:
     radius: float
 
 
-@dataclass(frozen=True, eq=False)
-class Preview:
-    """Solved preview of a case; its checks are made when they are read.
+class Depth(NamedTuple):
+    """How deep a changed case is judged.
 
     Parameters
     ----------
-    solved : Solution
-    governing : tuple   tolerance corners, besides the nominal, at which every check is judged
-    worst : tuple       those at which the check of the remedy is judged
+    tier : Tier            of the solution
+    corners : collection   names of the tolerance corners, besides the nominal, at which every
+                           check is judged
+    worst : collection     names of those at which one check alone is judged
+    undercut : bool        judge an undercut contour as well
+    bounds : bool          solve the bounds of the friction, too
     """
 
+    tier: Tier = Tier.PREVIEW
+    corners: Collection[str] = ()
+    worst: Collection[str] = ()
+    undercut: bool = False
+    bounds: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Judgement:
+    """A changed case that is solved; its checks are made when they are read.
+
+    Parameters
+    ----------
+    change : Change     of the case of the judge
+    solved : Solution   of the changed case
+    governing : tuple   tolerance corners, besides the nominal, at which every check is judged
+    worst : tuple       those at which one check alone is judged
+    """
+
+    change: Change
     solved: Solution
     governing: tuple[Corner, ...]
     worst: tuple[Corner, ...]
@@ -70,10 +93,10 @@ class Preview:
         corners = corners_of(self.solved.case) if everywhere else self.worst
         made = checks_of(self.solved, [declared])
         if made and declared in TOLERANCED and corners:
-            made = governed(made, self._tried(declared, (NOMINAL, *corners)))
+            made = governed(made, self._outcomes_at(declared, (NOMINAL, *corners)))
         return made[0] if made else None
 
-    def _tried(self, declared: Declaration, corners: Sequence[Corner]) -> tuple[Outcome, ...]:
+    def _outcomes_at(self, declared: Declaration, corners: Sequence[Corner]) -> tuple[Outcome, ...]:
         """Outcomes of one check; a corner that is already solved is not solved again."""
         known = self._outcomes.setdefault(declared.id, {})
         left = [corner for corner in corners if corner not in known]
@@ -115,20 +138,40 @@ class Preview:
 
 @dataclass(frozen=True, eq=False)
 class Judge:
-    """Checks of changed cases.
+    """A case with what all its changes share.
 
     Parameters
     ----------
-    torques : mapping   engine torque by load case; no lever changes it
-    lift : Lift         held by every case, that of a constrained synthesis; None: by the case
+    base : Case
+    torques : mapping   engine torque by load case; no change moves it
+    folder : Path       of the user's cards; None: shipped cards only
+    lift : Lift         held by every changed case; None: drawn from each
     corners : mapping   check -> names of its worst tolerance corners, the governing one first
     """
 
+    base: Case
     torques: Mapping[str, Torque]
-    lift: Lift | None
-    corners: Mapping[str, Sequence[str]]
+    folder: Path | None = None
+    lift: Lift | None = None
+    corners: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
-    def utilisations(self, case: Case, wanted: Collection[str]) -> dict[str, float]:
+    def case(self, change: Change, *, quick: bool = False) -> Case:
+        """The changed case.
+
+        Parameters
+        ----------
+        quick : bool   put numbers in place, without reading the case anew; see `Change.replaced`
+
+        Raises
+        ------
+        InputError
+            If the values do not fit into the case.
+        """
+        if quick and change.is_numbers_of(self.base):
+            return change.replaced(self.base)
+        return change.applied(self.base, self.folder)
+
+    def used(self, change: Change, names: Collection[str]) -> dict[str, float]:
         """Utilisation of each check at its own governing corner by the coarse closed forms.
 
         At the nominal where no corner governs; infinite where it is not known.
@@ -136,12 +179,13 @@ class Judge:
         Raises
         ------
         CamError
-            If the case has no such cam, or a corner no solution.
+            If there is no such case or cam, or a corner has no solution.
         """
-        contour, declared = self._contour(case), [DECLARED[name] for name in wanted]
+        case = self.case(change, quick=True)
+        contour, declared = self._contour(case), [DECLARED[name] for name in names]
         known = {corner.name: corner for corner in corners_of(case)}
         governing = {
-            name: known.get(next(iter(self.corners.get(name, ())), ""), NOMINAL) for name in wanted
+            name: known.get(next(iter(self.corners.get(name, ())), ""), NOMINAL) for name in names
         }
         corners = tuple(dict.fromkeys(governing.values()))
         made = checks_at(case, machines(case, self.torques), contour, corners, declared)
@@ -151,27 +195,23 @@ class Judge:
         }
         return {name: used(by_corner[corner].get(name)) for name, corner in governing.items()}
 
-    def preview(self, case: Case, wanted: Iterable[str], *, undercut: bool = False) -> Preview:
-        """Preview of a case, judged at the corners that govern `wanted` and at their worst ones.
+    def judged(self, change: Change, depth: Depth, *, quick: bool = False) -> Judgement:
+        """Judgement of the changed case.
 
         Parameters
         ----------
-        undercut : bool   judge an undercut contour as well
+        quick : bool   as that of `case`
 
         Raises
         ------
         CamError
-            If the case has no such cam, or it cannot be solved.
+            If there is no such case or cam, or it cannot be solved.
         """
-        contour = self._contour(case, undercut=undercut)
-        solved = solution(case, contour, Tier.PREVIEW, torques=self.torques, bounds=False)
-        of_wanted = [self.corners.get(name, ()) for name in wanted]
-        of_any = {names[0] for names in self.corners.values() if names}
-        return Preview(
-            solved,
-            governing=tuple(self._named(case, {name for names in of_wanted for name in names[:1]})),
-            worst=tuple(self._named(case, of_any.union(*of_wanted))),
-        )
+        case = self.case(change, quick=quick)
+        contour = self._contour(case, undercut=depth.undercut)
+        solved = solution(case, contour, depth.tier, torques=self.torques, bounds=depth.bounds)
+        governing, worst = (_named(case, names) for names in (depth.corners, depth.worst))
+        return Judgement(change, solved, governing, worst)
 
     def _contour(self, case: Case, *, undercut: bool = False) -> Contour:
         contour = case.contour(cam_lift(case, self.torques) if self.lift is None else self.lift)
@@ -179,10 +219,10 @@ class Judge:
             raise GeometryError("the contour is undercut")
         return contour
 
-    @staticmethod
-    def _named(case: Case, names: Collection[str]) -> list[Corner]:
-        """Corners of a case by their names."""
-        return [corner for corner in corners_of(case) if corner.name in names]
+
+def _named(case: Case, names: Collection[str]) -> tuple[Corner, ...]:
+    """Corners of a case by their names."""
+    return tuple(corner for corner in corners_of(case) if corner.name in names) if names else ()
 
 
 def used(check: Check | None) -> float:
@@ -191,53 +231,3 @@ def used(check: Check | None) -> float:
         return math.inf
     bar = 1.0 + (check.error_share or 0.0) if check.not_proven else 1.0
     return check.utilisation * bar
-
-
-def effects(name: str, before: Preview, after: Preview) -> tuple[str, ...]:
-    """Side effects of a change, the gravest first: checks that fail now, figures, checks cured.
-
-    Parameters
-    ----------
-    name : str   check that the change cures
-    """
-    failing = newly_failing(before, after)
-    cured = [
-        each
-        for each in _failing(before)
-        if each != name and each in after.checks and after.checks[each].status == "pass"
-    ]
-    words = [f"fails {', '.join(failing)}"] if failing else []
-    words += _figures(before.headline, after.headline)
-    if cured:
-        words.append(f"also cures {cured[0] if len(cured) == 1 else f'{len(cured)} others'}")
-    return tuple(words)
-
-
-def newly_failing(before: Preview, after: Preview) -> list[str]:
-    """Ids of the must-have checks that fail after a change alone."""
-    known = _failing(before)
-    return [each for each in _failing(after) if each not in known]
-
-
-def _failing(preview: Preview) -> list[str]:
-    return [one.id for one in preview.checks.values() if one.must_have and one.status == "fail"]
-
-
-def _figures(before: Headline, after: Headline) -> list[str]:
-    """Figures of the headline that change."""
-    words = []
-    for label, unit, old, new in (
-        ("ripple", "N m", before.ripple, after.ripple),
-        ("p0", "MPa", before.pressure, after.pressure),
-        ("cam radius", "mm", before.radius, after.radius),
-    ):
-        if old is not None and new is not None and abs(new - old) > _SLIGHT * abs(old):
-            digits = 4 if unit == "MPa" else 3
-            number = without_exponent(old, unit, digits).removesuffix(f" {unit}")
-            words.append(f"{label} {number} -> {without_exponent(new, unit, digits)}")
-    heavier = after.mass - before.mass
-    if abs(heavier) > _SLIGHT * before.mass:
-        words.append(
-            f"{'adds' if heavier > 0 else 'saves'} {without_exponent(abs(heavier), 'g', 3)}"
-        )
-    return words

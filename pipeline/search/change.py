@@ -1,0 +1,108 @@
+"""Change of a case: other values at dotted keys, and the case with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from camwright.pipeline.base import units
+from camwright.pipeline.base.levers import BEARING, BUSH_A, BUSH_B, CAM_MATERIAL
+from camwright.pipeline.base.quantities import In
+from camwright.pipeline.case.cards.catalogue import catalogue_of
+from camwright.pipeline.case.cards.substitution import with_bush, with_cam_material, with_roller
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import with_values
+from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
+from camwright.pipeline.case.consistency import check_numbers
+from camwright.pipeline.case.toml_text import TomlValue
+
+PARTS = (BEARING, CAM_MATERIAL, BUSH_A, BUSH_B)
+"""Keys whose value is the name of a card."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """Other values of a case.
+
+    Parameters
+    ----------
+    values : tuple   dotted key and value: text as in a case file, a number in SI, or the name of a
+                     card at one of `PARTS`
+    """
+
+    values: tuple[tuple[str, str | float], ...] = ()
+
+    @classmethod
+    def of(cls, values: Mapping[str, str] | Mapping[str, float]) -> Change:
+        """The change to the values of a mapping, in its order."""
+        return cls(tuple(values.items()))
+
+    def __str__(self) -> str:
+        return ", ".join(f"{key}: {value}" for key, value in self.values)
+
+    def is_numbers_of(self, case: Case) -> bool:
+        """Whether all values are numbers in place of others of a case."""
+        return not any(key in PARTS or value_of(case, key) is None for key, _ in self.values)
+
+    def applied(self, case: Case, folder: Path | None) -> Case:
+        """A case with the values, read and checked as a case file.
+
+        A part of the catalogue brings the values that depend on it: a bearing the size of the
+        roller, its pin, the widths, the overhang and the mass, with the same base circle.
+
+        Parameters
+        ----------
+        folder : Path   of the user's cards; None: shipped cards only
+
+        Raises
+        ------
+        InputError
+            If the values do not fit into the case.
+        """
+        given = dict(self.values)
+        cards = {key: str(given.pop(key)) for key in PARTS if key in given}
+        if given:
+            case = with_values(case, {key: _entry(key, value) for key, value in given.items()})
+        for key, name in cards.items():
+            if key == BEARING:
+                case = with_roller(case, name, catalogue_of(folder).rollers[name], folder)
+            elif key == CAM_MATERIAL:
+                case = with_cam_material(case, name, folder)
+            else:
+                case = with_bush(case, "a" if key == BUSH_A else "b", name, folder)
+        return case
+
+    def replaced(self, case: Case) -> Case:
+        """As `applied`, of numbers alone: put in place, without reading the case anew.
+
+        Sources are not compared with the values.
+
+        Raises
+        ------
+        InputError
+            If the numbers do not fit into the case.
+        """
+        case = replaced(case, {key: number_of(key, value) for key, value in self.values})
+        check_numbers(case)
+        return case
+
+
+def unit_at(key: str) -> str:
+    """Unit of the number at a key; "": none, or no number."""
+    quantity = quantity_of(key)
+    return quantity.unit if isinstance(quantity, In) else ""
+
+
+def number_of(key: str, value: str | float) -> float:
+    """Number in SI of a value at a key."""
+    if not isinstance(value, str):
+        return value
+    unit = unit_at(key)
+    return units.parse(value, unit, key) if unit else float(value)
+
+
+def _entry(key: str, value: str | float) -> TomlValue:
+    """Value as in the table of a case file."""
+    pure = isinstance(value, str) and not unit_at(key) and not key.endswith(".kind")
+    return float(value) if pure else value
