@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -29,10 +30,13 @@ from camwright.pipeline.checks.tolerance_corners import (
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, is_body, solution
 from camwright.pipeline.follower.camshaft_loads import unbalance
+from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.solver import checked, judged_at_corners
 from camwright.pipeline.torque.torque import Torque
 
+NOT_RAISED: Mapping[str, float] = MappingProxyType({})
 _DECIDING = tuple(each for each in CHECKS if each.must_have and not each.evidence)
 
 
@@ -56,14 +60,14 @@ class Depth(NamedTuple):
     ----------
     tier : Tier            of the solution
     corners : collection   names of the tolerance corners, besides the nominal, at which every
-                           check is judged
+                           check is judged; None: every corner of the case
     worst : collection     names of those at which one check alone is judged
     undercut : bool        judge an undercut contour as well
     bounds : bool          solve the bounds of the friction, too
     """
 
     tier: Tier = Tier.PREVIEW
-    corners: Collection[str] = ()
+    corners: Collection[str] | None = ()
     worst: Collection[str] = ()
     undercut: bool = False
     bounds: bool = True
@@ -79,12 +83,14 @@ class Judgement:
     solved : Solution   of the changed case
     governing : tuple   tolerance corners, besides the nominal, at which every check is judged
     worst : tuple       those at which one check alone is judged
+    whole : bool        every check is judged at every corner of the case
     """
 
     change: Change
     solved: Solution
-    governing: tuple[Corner, ...]
-    worst: tuple[Corner, ...]
+    governing: tuple[Corner, ...] = ()
+    worst: tuple[Corner, ...] = ()
+    whole: bool = False
     _outcomes: dict[str, dict[Corner, Outcome]] = field(default_factory=dict, init=False)
 
     def check(self, name: str, *, everywhere: bool = False) -> Check | None:
@@ -117,6 +123,28 @@ class Judgement:
             tried = outcomes(solved.case, solved.machines, solved.contour, corners, toleranced)
             made = governed(made, tried)
         return {one.id: one for one in made}
+
+    @cached_property
+    def trial(self) -> Trial:
+        """The solution with all its checks, of evidence and of what may be left out, too."""
+        nominal = checked(self.solved)
+        return judged_at_corners(nominal) if self.whole else nominal
+
+    @property
+    def every(self) -> tuple[Check, ...]:
+        """All checks at the corners of the judgement, in the order of `in_order`."""
+        return self.trial.checks
+
+    @property
+    def tried(self) -> tuple[Outcome, ...]:
+        """Outcomes at every corner; empty where they are not tried."""
+        return self.trial.corners
+
+    def failing(
+        self, ones: Collection[Declaration], raised: Mapping[str, float] = NOT_RAISED
+    ) -> tuple[Check, ...]:
+        """Checks of some declarations that fail; see `failing`."""
+        return failing(self.every, ones, raised)
 
     @cached_property
     def headline(self) -> Headline:
@@ -210,8 +238,8 @@ class Judge:
         case = self.case(change, quick=quick)
         contour = self._contour(case, undercut=depth.undercut)
         solved = solution(case, contour, depth.tier, torques=self.torques, bounds=depth.bounds)
-        governing, worst = (_named(case, names) for names in (depth.corners, depth.worst))
-        return Judgement(change, solved, governing, worst)
+        governing, worst = (_named(case, names or ()) for names in (depth.corners, depth.worst))
+        return Judgement(change, solved, governing, worst, whole=depth.corners is None)
 
     def _contour(self, case: Case, *, undercut: bool = False) -> Contour:
         contour = case.contour(cam_lift(case, self.torques) if self.lift is None else self.lift)
@@ -231,3 +259,26 @@ def used(check: Check | None) -> float:
         return math.inf
     bar = 1.0 + (check.error_share or 0.0) if check.not_proven else 1.0
     return check.utilisation * bar
+
+
+def failing(
+    checks: Iterable[Check],
+    ones: Collection[Declaration],
+    raised: Mapping[str, float] = NOT_RAISED,
+) -> tuple[Check, ...]:
+    """Must-have checks that fail, or would at a utilisation raised by a factor.
+
+    Parameters
+    ----------
+    ones : collection   declarations of the checks
+    raised : mapping    factor by id of the check
+    """
+
+    def fails(check: Check) -> bool:
+        factor = raised.get(check.id, 1.0) if check.status == "pass" else 1.0
+        return check.status == "fail" or (
+            factor > 1.0 and (check.utilisation or 0.0) * factor > 1.0
+        )
+
+    known = (each for each in checks if each.declaration in ones and each.must_have)
+    return tuple(each for each in known if fails(each))

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from camwright.pipeline.base import units
+from camwright.pipeline.base.crossing import first_passing
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.catalogue import Catalogue, nearest_spring
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
@@ -27,6 +28,7 @@ AS_GIVEN = "as given"
 WIDEST_PRIME = 1.5  # upper end of a search over the prime radius of the case
 _WALL_MARGIN = 1.002  # on the least prime radius, for the wall at the contour
 _END_MOST = 0.05  # of the roller's width
+_HALVINGS = 40  # of a travel
 _FORK = 2e-3  # m between roller and fork if the case has no pin
 
 
@@ -62,16 +64,11 @@ def travel_of(spring: HelicalSpring, case: Case) -> float:
         preload_spread=spring_now.preload_tolerance,
     )
 
-    def works(travel: float) -> bool:
-        return not replace(still, travel=travel).shortfalls(spring)
+    def works(travel: float) -> float | None:
+        return None if replace(still, travel=travel).shortfalls(spring) else travel
 
-    low, high = 0.0, spring.free_length - spring.solid_length
-    if not works(low):
-        return 0.0
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if works(middle) else (low, middle)
-    return low
+    stroke = spring.free_length - spring.solid_length
+    return first_passing(works, stroke, (0.0,), _HALVINGS) or 0.0
 
 
 def least_prime_radius(case: Case, roller_radius: float) -> float:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.base.crossing import first_passing
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.finite_length.axial_drop import (
@@ -434,12 +435,11 @@ class _CrownSearch:
 
     def _crossing(self, outside: float, within: float, ratio: float) -> float:
         """Design load of the ratio, on the side of `within`; of three digits if it is the least."""
-        while abs(outside - within) > _PRECISION * max(outside, within):
-            middle = 0.5 * (outside + within)
-            if self.at(middle) <= ratio:
-                within = middle
-            else:
-                outside = middle
+
+        def keeps(load: float) -> float | None:
+            return load if self.at(load) <= ratio else None
+
+        within = first_passing(keeps, outside, (within,), near=_alike) or within
         if within < outside:
             return within
         rounded = _rounded(within, np.ceil)
@@ -457,6 +457,11 @@ class _CrownSearch:
             else:
                 left = inner
         return min(self._values, key=lambda load: (self._values[load], load))
+
+
+def _alike(one: float, other: float) -> bool:
+    """Whether two design loads are within `_PRECISION`."""
+    return abs(one - other) <= _PRECISION * max(one, other)
 
 
 def _rounded(value: float, direction: Callable[[float], float], digits: int = 3) -> float:

@@ -21,6 +21,7 @@ from camwright.geometry.cam_size import (
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import least_argument
 from camwright.geometry.lift_parts import LiftParts
+from camwright.pipeline.base.crossing import first_passing
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
@@ -157,18 +158,16 @@ class RollerShapes:
         """
         low, tool = self._least_roller, least_concave_radius(self.case) or 0.0
 
-        def hinders(roller: float) -> bool:
+        def fits(roller: float) -> float | None:
+            if not roller < tool:
+                return roller
             without = self._smallest(replace(self.limits(roller), concave_radius=0.0))
             concave = self.cam.extremes(*without).concave_radius.value
-            return concave * (1.0 + _ALIKE) < tool - roller
+            return None if concave * (1.0 + _ALIKE) < tool - roller else roller
 
-        if ROLLER not in self.gaps or not tool > low or not hinders(low):
+        if ROLLER not in self.gaps or fits(low) is not None:
             return low
-        high = tool
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if hinders(middle) else (low, middle)
-        return high
+        return first_passing(fits, low, (tool,), _HALVINGS) or tool
 
     def _offset(self, prime: float, roller: float) -> float:
         if OFFSET not in self.gaps:

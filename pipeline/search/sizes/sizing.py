@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from itertools import accumulate, islice, repeat
+from operator import mul
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from camwright.geometry.display import Displayed, panels_of
 from camwright.geometry.errors import CamError, InputError
-from camwright.geometry.lift import Lift
 from camwright.pipeline.base.columns import data_frame
+from camwright.pipeline.base.crossing import first_passing
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.base.verdict import Verdict, verdict, within_depth
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import quantity_of, refused_as_written, replaced, value_of
-from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.case_values import quantity_of, refused_as_written, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.cam_shape import (
     concave_radius,
@@ -59,7 +60,8 @@ from camwright.pipeline.checks.spring_strength import (
 from camwright.pipeline.checks.tolerance_corners import governed, outcomes, spring_corners
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.records.size_document import SizeChart
-from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.search.change import Change
+from camwright.pipeline.search.judge import NOT_RAISED, Depth, Judge, Judgement, failing
 from camwright.pipeline.search.sizes.open_case import (
     FACE,
     OFFSET,
@@ -86,9 +88,6 @@ from camwright.pipeline.search.sizes.spring_choice import (
     spring_of,
     stiffer,
 )
-from camwright.pipeline.smoothing.required_lift import cam_lift
-from camwright.pipeline.solver import solve
-from camwright.pipeline.torque.torque import Torque
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -111,11 +110,12 @@ JUDGED: Mapping[str, tuple[Declaration, ...]] = {
 }  # fmt: skip
 """Checks that an open key decides."""
 
+_SCREENED = Depth(Tier.SCREENING, undercut=True)
+_PREVIEWED = Depth(corners=None, undercut=True)
 _HALF_WIDTHS = 1.25
 """Half-widths of the contact that a face has beside it: the tolerances press more than nominal."""
 _STEP, _STEPS, _HALVINGS = 1.1, 16, 12
 """Factor and number of the steps by which a cam grows: to 4.6 times the radius, 2e-5 of it left."""
-_NOT_RAISED: Mapping[str, float] = {}
 _MARGIN = 1.001
 """The ratio of preview and screening changes slightly with the radius."""
 _STIFFER, _LARGER, _TRIES = 1.1, 1.01, 8
@@ -205,8 +205,8 @@ class Sizing(Displayed):
     @property
     def no_size(self) -> bool:
         """Whether checks fail that a larger cam could pass, and none tried does."""
-        failing = any(each.status == "fail" and each.declaration in _GROWTH for each in self.checks)
-        return failing and PRIME in self.opened.gaps
+        small = any(each.status == "fail" and each.declaration in _GROWTH for each in self.checks)
+        return small and PRIME in self.opened.gaps
 
     @property
     def greatest_tried(self) -> float:
@@ -254,65 +254,66 @@ def sized(opened: OpenCase, *, least_radius: float = 0.0, progress: Progress = S
     """
     with refused_as_written(opened.case):
         shapes = shapes_of(opened, least_radius)
-        return _SizeSearch(opened, shapes, engine_torques(opened.case), progress).sized()
+        judge = Judge(opened.case, engine_torques(opened.case))
+        return _SizeSearch(opened, shapes, judge, progress).sized()
 
 
-_Tried = tuple[ChosenSpring, Shape, tuple[str, Case, Trial]]
-"""Spring and shape with text, complete case and preview."""
+class _Sized(NamedTuple):
+    """Spring and shape with the text of the complete case, its judgement and checks."""
+
+    spring: ChosenSpring
+    shape: Shape
+    text: str
+    judgement: Judgement
+    checks: tuple[Check, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class _SizeSearch:
     opened: OpenCase
     shapes: Shapes
-    torques: Mapping[str, Torque]
+    judge: Judge
     progress: Progress
 
     def sized(self) -> Sizing:
         self.progress.stage("geometry")
         exact = self.shapes.smallest()
         spring = self._spring(exact)
-        shape = self._grown(exact, spring)
-        text, case, trial = self._judged(shape, spring)
-        if self._rate_is_open and _failing(trial, _WOUND):
-            spring, shape, (text, case, trial) = self._stiffened(
-                exact, (spring, shape, (text, case, trial))
-            )
+        best = self._judged(self._grown(exact, spring), spring)
+        if self._rate_is_open and failing(best.checks, _WOUND):
+            best = self._stiffened(exact, best)
         raised: dict[str, float] = {}
         for _ in range(_TRIES):
             # the preview adds tolerances, surge, elastic stem and guides to the screening
-            screened = self._trial(shape, spring)
-            small = _failing(trial, _GROWTH) if PRIME in self.opened.gaps else ()
-            if self._spring_is_open and _failing(trial, _HELD):
-                firm = self._firm(exact, spring, _titles(_failing(trial, _HELD)), raised)
+            screened = self._screened(best.shape, best.spring)
+            small = failing(best.checks, _GROWTH) if PRIME in self.opened.gaps else ()
+            if self._spring_is_open and (loose := failing(best.checks, _HELD)):
+                firm = self._firm(exact, best.spring, _titles(loose), raised)
                 if firm is None:
                     break
-                spring, shape, (text, case, trial) = firm
-                continue
-            if small and not _failing(screened, _GROWTH):
+                best = firm
+            elif small and not screened.failing(_GROWTH):
                 raised |= _raised(small, screened)
-                larger = self._grown(exact, spring, raised)
-                if not larger.prime_radius > shape.prime_radius:
-                    prime = _LARGER * shape.prime_radius
-                    larger, _ = self._fitted(
-                        self.shapes.enlarged(shape, prime, _titles(small)), spring
-                    )
-                shape = larger
+                shape = self._grown(exact, best.spring, raised)
+                if not shape.prime_radius > best.shape.prime_radius:
+                    prime = _LARGER * best.shape.prime_radius
+                    larger = self.shapes.enlarged(best.shape, prime, _titles(small))
+                    shape, _ = self._fitted(larger, best.spring)
+                best = self._judged(shape, best.spring)
             else:
                 break
-            text, case, trial = self._judged(shape, spring)
         ids = {one.id for gap in self.opened.gaps for one in JUDGED[gap]}
-        made = [each for each in within_depth(trial.checks) if each.must_have]
+        made = [each for each in within_depth(best.checks) if each.must_have]
         return Sizing(
             opened=self.opened,
-            text=text,
-            case=case,
+            text=best.text,
+            case=best.judgement.solved.case,
             shapes=self.shapes,
             exact=exact,
-            shape=shape,
-            spring=spring,
-            values=self._values(shape, spring),
-            sources=self._sources(shape, spring),
+            shape=best.shape,
+            spring=best.spring,
+            values=self._values(best.shape, best.spring),
+            sources=self._sources(best.shape, best.spring),
             checks=tuple(each for each in made if each.id in ids and not _unlimited(each)),
             others=tuple(each.id for each in made if each.status == "fail" and each.id not in ids),
         )
@@ -330,23 +331,23 @@ class _SizeSearch:
     def _spring(self, shape: Shape, stiff: ChosenSpring | None = None) -> ChosenSpring:
         return spring_of(self.opened.case, self.opened.gaps, self.shapes.parts(shape), stiff)
 
-    def _stiffened(self, exact: Shape, first: _Tried) -> _Tried:
+    def _stiffened(self, exact: Shape, first: _Sized) -> _Sized:
         """The first of stiffer springs whose winding passes; the given one if none does."""
-        reason, spring = _titles(_failing(first[2][2], _WOUND)), first[0]
+        reason, spring = _titles(failing(first.checks, _WOUND)), first.spring
         for _ in range(_TRIES):
             spring = self._spring(exact, stiffer(spring, _STIFFER, reason))
             shape = self._grown(exact, spring)
             try:
-                judged = self._judged(shape, spring)
+                stiff = self._judged(shape, spring)
             except InputError:  # the catalogue has no spring of this rate
                 continue
-            if not _failing(judged[2], _WOUND):
-                return spring, shape, judged
+            if not failing(stiff.checks, _WOUND):
+                return stiff
         return first
 
     def _firm(
         self, exact: Shape, start: ChosenSpring, reason: str, raised: Mapping[str, float]
-    ) -> _Tried | None:
+    ) -> _Sized | None:
         """A spring whose preview holds the follower, 1 % above one that does not.
 
         None: none of those tried does.
@@ -355,28 +356,16 @@ class _SizeSearch:
         """
         grown = more_preload if PRELOAD in self.opened.gaps else stiffer
 
-        def holding(factor: float) -> _Tried | None:
+        def holding(factor: float) -> _Sized | None:
             spring = grown(start, factor, reason)
             try:
-                shape = self._grown(exact, spring, raised)
-                judged = self._judged(shape, spring)
+                firm = self._judged(self._grown(exact, spring, raised), spring)
             except CamError:  # contradicts the case, or the catalogue has no such spring
                 return None
-            return None if _failing(judged[2], _HELD) else (spring, shape, judged)
+            return None if failing(firm.checks, _HELD) else firm
 
-        low, high, least = 1.0, _PROVEN, None
-        for factor in (_PROVEN, *(_FIRMER ** (2**k) for k in range(_DOUBLINGS))):
-            high, least = factor, holding(factor)
-            if least is not None:
-                break
-            low = factor
-        if least is None:
-            return None
-        while high > _BRACKET * low:
-            middle = float(np.sqrt(low * high))
-            smaller = holding(middle)
-            low, high, least = (middle, high, least) if smaller is None else (low, middle, smaller)
-        return least
+        factors = (_PROVEN, *(_FIRMER ** (2**k) for k in range(_DOUBLINGS)))
+        return first_passing(holding, 1.0, factors, near=_bracketed, middle=_geometric_mean)
 
     def _values(self, shape: Shape, spring: ChosenSpring) -> dict[str, float]:
         own = {RATE: spring.rate, PRELOAD: spring.preload}
@@ -399,15 +388,10 @@ class _SizeSearch:
         ring = value_of(self.opened.case, "roller.bearing.ring")
         return "outer ring of its bearing" if ring else "least contact pressure within curvature"
 
-    def _lift(self, case: Case) -> Lift:
-        return given_lift(case) if case.lift is not None else cam_lift(case, self.torques)
+    def _screened(self, shape: Shape, spring: ChosenSpring) -> Judgement:
+        return self.judge.judged(Change.of(self._values(shape, spring)), _SCREENED, quick=True)
 
-    def _trial(self, shape: Shape, spring: ChosenSpring) -> Trial:
-        case = replaced(self.opened.case, self._values(shape, spring))
-        contour = case.contour(self._lift(case))
-        return solve(case, contour, tier=Tier.SCREENING, torques=self.torques)
-
-    def _fitted(self, shape: Shape, spring: ChosenSpring) -> tuple[Shape, Trial]:
+    def _fitted(self, shape: Shape, spring: ChosenSpring) -> tuple[Shape, Judgement]:
         """A shape as drawn, its roller or face by the contact, and its screening.
 
         Its radius keeps the limits at the profile tolerance, too, and has the digits of a drawing.
@@ -418,116 +402,92 @@ class _SizeSearch:
             shape = shape._replace(prime_radius=prime)
         if FACE in gaps:
             shape = shape._replace(face_width=rounded_up(shape.face_width))
-        trial = self._trial(shape, spring)
+        screened = self._screened(shape, spring)
         if FACE in gaps:
             widest = max(
                 float(np.max(np.abs(each.contour.pitch.push_arm(each.theta))
                              + _HALF_WIDTHS * each.contact.half_width))
-                for each in trial.cycles
+                for each in screened.solved.cycles
             )  # fmt: skip
             shape = shape._replace(face_width=rounded_up(max(2.0 * widest, shape.face_width)))
-            trial = self._trial(shape, spring)
+            screened = self._screened(shape, spring)
         if ROLLER in gaps and isinstance(self.shapes, RollerShapes):
-            force = np.stack([each.loads.normal_force for each in trial.cycles])
+            force = np.stack([each.loads.normal_force for each in screened.solved.cycles])
             curvature = np.stack(
-                [each.contour.pitch.curvature(each.theta) for each in trial.cycles]
+                [each.contour.pitch.curvature(each.theta) for each in screened.solved.cycles]
             )
             shape = self.shapes.best_roller(shape, force, curvature)
-            trial = self._trial(shape, spring)
-        return shape, trial
+            screened = self._screened(shape, spring)
+        return shape, screened
 
     def _grown(
-        self, shape: Shape, spring: ChosenSpring, raised: Mapping[str, float] = _NOT_RAISED
+        self, shape: Shape, spring: ChosenSpring, raised: Mapping[str, float] = NOT_RAISED
     ) -> Shape:
         """The smallest shape from this one on that passes; the shape itself if none does.
 
         raised: utilisation in the preview over that of the screening, by check.
         """
         self.progress.stage("contact")
-        least, trial = self._fitted(shape, spring)
-        failing = _failing(trial, _GROWTH, raised)
-        if PRIME not in self.opened.gaps or not failing:
+        least, screened = self._fitted(shape, spring)
+        small = screened.failing(_GROWTH, raised)
+        if PRIME not in self.opened.gaps or not small:
             return least
-        low, passed = shape.prime_radius, None
-        for _ in range(_STEPS):
-            high = _STEP * low
-            passed = self._passing(shape, high, failing, spring, raised)
-            if passed is not None:
-                break
-            low = high
-        if passed is None:
-            return least
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            smaller = self._passing(shape, middle, failing, spring, raised)
-            low, high, passed = (
-                (middle, high, passed) if smaller is None else (low, middle, smaller)
-            )
-        return passed
 
-    def _passing(
-        self,
-        shape: Shape,
-        prime: float,
-        failing: tuple[Check, ...],
-        spring: ChosenSpring,
-        raised: Mapping[str, float],
-    ) -> Shape | None:
-        larger = self.shapes.enlarged(shape, prime, _titles(failing))
-        try:
-            larger, trial = self._fitted(larger, spring)
-        except CamError:
-            return None
-        return None if _failing(trial, _GROWTH, raised) else larger
+        def passing(prime: float) -> Shape | None:
+            larger = self.shapes.enlarged(shape, prime, _titles(small))
+            try:
+                larger, screened = self._fitted(larger, spring)
+            except CamError:
+                return None
+            return None if screened.failing(_GROWTH, raised) else larger
 
-    def _judged(self, shape: Shape, spring: ChosenSpring) -> tuple[str, Case, Trial]:
-        """Text, complete case and preview of a shape."""
+        low = shape.prime_radius
+        primes = islice(accumulate(repeat(_STEP, _STEPS), mul, initial=low), 1, None)
+        return first_passing(passing, low, primes, _HALVINGS) or least
+
+    def _judged(self, shape: Shape, spring: ChosenSpring) -> _Sized:
+        """A shape with the judgement of the complete case."""
         self.progress.stage("preview")
         values = self._values(shape, spring)
         text = self.opened.with_sources(values, self._sources(shape, spring))
-        case = self.opened.sized(text)
-        contour = case.contour(self._lift(case))
-        trial = solve(case, contour, tier=Tier.PREVIEW, torques=self.torques)
-        return text, case, self._at_corners(trial) if self._spring_is_open else trial
+        judge = replace(self.judge, base=self.opened.sized(text))
+        judgement = judge.judged(Change(), _PREVIEWED)
+        checks = self._at_worst(judgement) if self._spring_is_open else judgement.every
+        return _Sized(spring, shape, text, judgement, checks)
 
-    def _at_corners(self, trial: Trial) -> Trial:
-        """The preview with its checks of the spring also at the worst of all tolerances at once.
+    def _at_worst(self, judgement: Judgement) -> tuple[Check, ...]:
+        """The checks with those of the spring also at the worst of all tolerances at once.
 
         There the closed forms have their limit: within their error bars it is held.
         """
         ones = [each for each in (*_HELD, *_WOUND) if each in TOLERANCED]
-        nominal = [each for each in trial.checks if each.declaration in ones]
+        nominal = [each for each in judgement.every if each.declaration in ones]
         if any(each.must_have and each.status == "fail" for each in nominal):
-            return trial
-        case, contour = trial.case, trial.contour
-        worst = outcomes(case, trial.solution.machines, contour, spring_corners(case), ones)
-        judged = governed(nominal, (*trial.corners, *worst))
-        beyond = {one.id: one for one in judged if one.status == "fail" and not one.not_proven}
-        return replace(trial, checks=tuple(beyond.get(each.id, each) for each in trial.checks))
-
-
-def _failing(
-    trial: Trial, ones: tuple[Declaration, ...], raised: Mapping[str, float] = _NOT_RAISED
-) -> tuple[Check, ...]:
-    """Must-have checks that fail, or would at a utilisation raised by a factor."""
-
-    def fails(check: Check) -> bool:
-        factor = raised.get(check.id, 1.0) if check.status == "pass" else 1.0
-        return check.status == "fail" or (
-            factor > 1.0 and (check.utilisation or 0.0) * factor > 1.0
+            return judgement.every
+        solved = judgement.solved
+        worst = outcomes(
+            solved.case, solved.machines, solved.contour, spring_corners(solved.case), ones
         )
+        judged = governed(nominal, (*judgement.tried, *worst))
+        beyond = {one.id: one for one in judged if one.status == "fail" and not one.not_proven}
+        return tuple(beyond.get(each.id, each) for each in judgement.every)
 
-    return tuple(
-        each for each in trial.checks if each.declaration in ones and each.must_have and fails(each)
-    )
+
+def _bracketed(low: float, high: float) -> bool:
+    """Whether the search of a firm spring ends between two factors."""
+    return high <= _BRACKET * low
 
 
-def _raised(failing: tuple[Check, ...], screened: Trial) -> dict[str, float]:
+def _geometric_mean(low: float, high: float) -> float:
+    return float(np.sqrt(low * high))
+
+
+def _raised(small: tuple[Check, ...], screened: Judgement) -> dict[str, float]:
     """Utilisation of checks in the preview over that of the screening, by id."""
-    below = {each.id: each.utilisation for each in screened.checks}
+    below = {each.id: each.utilisation for each in screened.every}
     return {
         each.id: _MARGIN * each.utilisation / share
-        for each in failing
+        for each in small
         if each.utilisation and (share := below.get(each.id))
     }
 
