@@ -366,6 +366,8 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
         "second_contact": "undercut", "tool_gouge": "concave_radius",
         # of the drive, where a case sets it: kept by the iteration of the smoothers alone
         "drive_torque": "iteration",
+        # of the slopes of the torque where it reverses, and no torque has one where a reversal ends
+        "gear_impact": "backlash",
         "machine_shaft_gap": "cam_radius",
         # limits of the contact pressure, of the lift and of the normal force
         **dict.fromkeys(
