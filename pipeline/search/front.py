@@ -28,7 +28,7 @@ def front(
 
 
 def thinned(places: Sequence[int], figures: Sequence[tuple[float, float]], most: int) -> list[int]:
-    """At most `most` points of a front: without those of least area, with both ends."""
+    """At most `most` points of a front: its ends are kept, points of least area dropped."""
     kept = list(places)
     while len(kept) > max(most, 2):
         areas = [

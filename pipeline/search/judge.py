@@ -42,9 +42,10 @@ _DECIDING = tuple(each for each in CHECKS if each.must_have and not each.evidenc
 
 @dataclass(frozen=True)
 class Headline:
-    """Figures of a design: std of the crank torque, N m, None without an engine or where the
-    follower leaves the cam or locks; peak pressure, Pa; mass of cam and follower, kg; greatest cam
-    radius, m.
+    """Figures of a design: torque ripple, peak pressure, mass, cam radius.
+
+    Standard deviation of the crank torque, N m, None without an engine or where the follower leaves
+    the cam or locks; peak pressure, Pa; mass of cam and follower, kg; greatest cam radius, m.
     """
 
     ripple: float | None
@@ -94,7 +95,7 @@ class Judgement:
     _outcomes: dict[str, dict[Corner, Outcome]] = field(default_factory=dict, init=False)
 
     def check(self, name: str, *, everywhere: bool = False) -> Check | None:
-        """One check at its worst corner, or at every corner; None where it does not apply."""
+        """Check at its worst corner, or at every corner; None where it does not apply."""
         declared = DECLARED[name]
         corners = corners_of(self.solved.case) if everywhere else self.worst
         made = checks_of(self.solved, [declared])
@@ -200,7 +201,7 @@ class Judge:
         return change.applied(self.base, self.folder)
 
     def used(self, change: Change, names: Collection[str]) -> dict[str, float]:
-        """Utilisation of each check at its own governing corner by the coarse closed forms.
+        """Utilisation of each check at its governing corner, by coarse closed forms.
 
         At the nominal where no corner governs; infinite where it is not known.
 
@@ -254,7 +255,7 @@ def _named(case: Case, names: Collection[str]) -> tuple[Corner, ...]:
 
 
 def used(check: Check | None) -> float:
-    """Utilisation of a check, its error bar included; infinite where it is not known."""
+    """Utilisation of a check with its error bar; infinite where unknown."""
     if check is None or check.utilisation is None:
         return math.inf
     bar = 1.0 + (check.error_share or 0.0) if check.not_proven else 1.0

@@ -381,7 +381,7 @@ def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) 
         "roller": "Fatigue", "stem": "Fatigue",
     }  # fmt: skip
     assert result.complete and "no part can be exchanged" in record["claim"]
-    monkeypatch.setattr(part_exchange, "_MOST", 2)
+    monkeypatch.setattr(part_exchange, "_EXCHANGES_MAX", 2)
     stopped = part_exchange.exchanged(study, exchange_of(9), ALONE, SILENT)
     assert not stopped.complete and "may pass" in stopped.sentence
 

@@ -1,4 +1,4 @@
-"""Crown of cam or follower of a case: loads and tilts of its cycle, costs, sensitivity."""
+"""Crown of cam or follower for a case: loads and tilts of its cycle, cost, sensitivity."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ _TILTS, _ROWS = (0.0, 0.5, 1.0, 1.5, 2.0), 21
 
 @dataclass(frozen=True, eq=False)
 class AxialLine:
-    """Pressure over plane strain along the centre line at y (m,), m."""
+    """Axial pressure over plane strain along the centre line at y (m,), m."""
 
     y: Array
     factor: Array
@@ -78,7 +78,7 @@ class AxialLine:
 
 @dataclass(frozen=True)
 class LifeCost:
-    """Load cycles of a body to its endurance line over those of plane strain.
+    """Load cycles of a body to its endurance line over those in plane strain.
 
     Without and with the crown; exponent: of the pressure, 2 A of the line.
     """
@@ -92,7 +92,7 @@ class LifeCost:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CrownDesign(Displayed):
-    """Crown of one body of a case, in the middle of those within a ratio.
+    """Crown of one body, in the middle of those within the pressure ratio.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ class CrownDesign(Displayed):
 
     @property
     def shape(self) -> AxialCrown | None:
-        """The crown as the case states it; None: straight."""
+        """Crown as stated in the case; None: straight."""
         crown = self.chosen.crown
         if isinstance(crown, Straight):
             return None
@@ -234,12 +234,12 @@ class CrownDesign(Displayed):
 
     @property
     def heaviest(self) -> Crown | None:
-        """Heaviest crown of the family within the ratio; None beyond those tried."""
+        """Crown of greatest drop in the family within the ratio; None beyond those tried."""
         load = self.chosen.heaviest
         return self.chosen.family.crown(load) if np.isfinite(load) else None
 
     def columns(self) -> dict[Column, Array]:
-        """Drop table: y from the middle, drop, and those at the ends of the range."""
+        """Drop table: y from the middle, drop, and drops at the ends of the range."""
         crown = self.chosen.crown
         family = self.chosen.family
         y = np.append(0.5 * family.length * np.linspace(0.0, 1.0, _ROWS)[:-1], family.gauge)
@@ -293,7 +293,7 @@ def crown(
     tolerance: float = TOLERANCE,
     progress: Progress = SILENT,
 ) -> CrownDesign:
-    """Crown of a case that keeps the axial pressure within a ratio, in the middle of those that do.
+    """Crown that keeps the axial pressure of a case within a ratio, in the middle of the range.
 
     The ratio is the signed axial pressure over the greatest of plane strain in the same load case,
     at every angle, load case and both ends of the range of tilt of its preview. A crown that the

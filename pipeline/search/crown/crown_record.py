@@ -1,4 +1,4 @@
-"""Record of the crown of a case, and its text."""
+"""Record of a crown design, and its text."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _WORDS = {
 
 
 def crown_record(design: CrownDesign) -> CrownDocument:
-    """Record of a crown."""
+    """Record of a crown design."""
     chosen, centre, rows = design.chosen, design.centres, table(design.columns())
     return {
         "case": design.case.name,
@@ -65,7 +65,7 @@ def crown_record(design: CrownDesign) -> CrownDocument:
 
 
 def crown_lines(design: CrownDesign) -> Iterator[str]:
-    """Crown, ratios, costs and sensitivity, a line each."""
+    """Lines of a crown design: crown, ratios, costs and sensitivity."""
     chosen, governing = design.chosen, _governing_record(design)
     shape, (before, after) = design.shape, design.centres
     if shape is None:

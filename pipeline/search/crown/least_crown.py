@@ -1,4 +1,4 @@
-"""Least crown that keeps the axial pressure of a contact within a ratio at all loads and tilts.
+"""Least crown that keeps the axial pressure within a ratio at all loads and tilts.
 
 A crown relieves the ends and loads the middle: with a heavier crown the greatest pressure falls as
 long as the ends govern, and rises as soon as the middle does. The crowns within a ratio thus lie
@@ -55,7 +55,7 @@ _RADIUS_DIGITS, _DROP_DECIMALS = 4, 9
 
 @dataclass(frozen=True, eq=False)
 class ContactStates:
-    """Loads of `count` contacts of the same bodies, all (count,): the rows of a cycle.
+    """Load states of `count` contacts of two bodies, all (count,), as the rows of a cycle.
 
     curvature 1/m; force N, > 0; couple N m, the greatest that can hold the bodies tilted; tilt,
     forced: greatest and forced tilt, rad; p0 Pa, of plane strain at the mean line load; load_case,
@@ -78,7 +78,7 @@ class ContactStates:
 
     @property
     def share(self) -> Array:
-        """p0 (count,) over the greatest of the same load case."""
+        """Plane-strain p0 (count,) over the greatest of the same load case."""
         greatest = np.zeros(int(self.load_case.max()) + 1)
         np.maximum.at(greatest, self.load_case, self.p0)
         return np.asarray(self.p0 / greatest[self.load_case])
@@ -90,7 +90,7 @@ class ContactStates:
 
     @property
     def governing(self) -> IntArray:
-        """Rows than which no other of the load case has more force, curvature, couple and tilt.
+        """Non-dominated load states of each load case (force, curvature, couple, tilt).
 
         The pressure grows with each of them: the greatest of a load case is at one of them.
         Of more than 16 rows of a load case those evenly between them, and the greatest p0, force,
@@ -137,7 +137,7 @@ class ContactStates:
 
 @dataclass(frozen=True)
 class CrownFamily:
-    """Crowns of one kind over a length (m), by their design load w (N/m); 0: straight.
+    """Crowns of one kind over a length (m) by design line load w (N/m); 0: straight.
 
     A `table` is a relief of the ends: straight on a share of the length, from there a parabola up
     to `reach` (m) from the middle. This and a circular crown of w end with the drop of the
@@ -156,7 +156,7 @@ class CrownFamily:
 
     @property
     def gauge(self) -> float:
-        """y, m, where the drop at the end is stated: beside the end where it is unbounded there."""
+        """Axial position, m, of the stated end drop; inside the end where the drop diverges."""
         return 0.5 * self.length * (_BOUNDED if self.kind == "lundberg" else 1.0)
 
     def drop(self, load: float) -> float:
@@ -188,14 +188,14 @@ class CrownFamily:
 def families(
     kind: CrownKind, length: float, curvature: float, modulus: float, reach: float
 ) -> tuple[CrownFamily, ...]:
-    """Families of a kind: one, or of a relief one for each straight part that is tried."""
+    """Families of a kind of crown: one, or of a relief one per straight length tried."""
     parts = _STRAIGHT_PARTS if kind == "table" else (0.0,)
     return tuple(CrownFamily(kind, length, curvature, modulus, reach, each) for each in parts)
 
 
 @dataclass(frozen=True)
 class DeviatedCrown:
-    """A crown made deeper by a deviation (m) at its ends, by the square of y inwards."""
+    """Crown with a deviation (m) of its end drop, quadratic towards the middle."""
 
     crown: Crown
     deviation: float
@@ -207,7 +207,7 @@ class DeviatedCrown:
 
 
 class AxialFactor(Protocol):
-    """Signed axial pressure of a pair over plane strain."""
+    """Stated axial pressure of a pair over plane strain."""
 
     def __call__(self, pair: FinitePair, loads: ContactLoads) -> Array:
         """Factors (count,), the worse of aligned and tilted."""
@@ -216,7 +216,7 @@ class AxialFactor(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class CrownProblem:
-    """A contact whose crown is sought.
+    """Contact with load states and pressure ratio, for which a crown is sought.
 
     Parameters
     ----------
@@ -260,7 +260,7 @@ class CrownProblem:
 
 @dataclass(frozen=True, eq=False)
 class LeastCrown:
-    """Crown of a problem within a ratio: the least one, or that in the middle of the range.
+    """Crown within a pressure ratio: the least one, or the middle of the range.
 
     load : float       design load, N/m; 0: the straight contact keeps the ratio
     lightest : float   least design load that keeps it, N/m
@@ -302,13 +302,13 @@ class LeastCrown:
         return float(self.problem.ratios(self.crown, self.rows, factor).max())
 
     def at_deviation(self, deviation: float) -> float:
-        """Greatest ratio of `rows` of a crown made deeper at its ends by a deviation, m."""
+        """Greatest pressure ratio over `rows` with a deviation of the end drop, m."""
         made = DeviatedCrown(self.crown, deviation, self.family.length)
         return float(self.problem.ratios(made, self.rows).max())
 
 
 def least_crown(problem: CrownProblem, ratio: float) -> LeastCrown:
-    """Least crown that keeps the ratio at every state, of all families that of the least drop.
+    """Crown of least drop over all families that keeps the ratio at every state.
 
     Raises
     ------
@@ -330,7 +330,7 @@ def least_crown(problem: CrownProblem, ratio: float) -> LeastCrown:
 
 
 def middle_crown(least: LeastCrown, ratio: float) -> LeastCrown:
-    """The crown whose drop is in the middle of those within a ratio.
+    """Crown of middle drop among those within the ratio.
 
     The least where none is needed, or the range is no wider than the search is precise.
 

@@ -1,4 +1,4 @@
-"""Axial pressure of contacts by half-spaces, each solved by itself: few contacts of many crowns.
+"""Axial pressure by half-spaces solved directly: few contacts with many crowns.
 
 A table of factors is for many contacts of one crown.
 """
@@ -32,7 +32,7 @@ _LADDER = 1.1
 
 @dataclass(frozen=True, eq=False)
 class SolvedLines:
-    """Axial pressure of a pair; mean_length (m) of the means at its ends."""
+    """Axial pressure of a pair by direct solution; mean_length (m) of the end means."""
 
     pair: FinitePair
     mean_length: float
@@ -105,7 +105,7 @@ class SolvedLines:
 
 
 class SignedRange(NamedTuple):
-    """Signed pressure over plane strain (count,), of the worse of aligned and tilted; moment, N m.
+    """Stated over plane-strain pressure (count,), the worse of aligned and tilted; moment, N m.
 
     The moment is the greatest, see `greatest_moment`.
     """
@@ -115,7 +115,7 @@ class SignedRange(NamedTuple):
 
 
 def signed_range(lines: SolvedLines, loads: ContactLoads) -> SignedRange:
-    """Signed pressure of contacts without a moment and under the greatest one."""
+    """Stated pressure of contacts at zero and greatest moment."""
     moment = greatest_moment(lines, loads)
     sides = (0.0, 1.0) if lines.pair.is_symmetric else (-1.0, 0.0, 1.0)
     at = loads.curvature, loads.force

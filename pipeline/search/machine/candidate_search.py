@@ -1,4 +1,4 @@
-"""Search over rollers, springs and base circles: closed-form checks of all of them as arrays."""
+"""Screening of rollers, springs and base circles for a torque, all as arrays."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ _TRAVELS = 12
 _TRAVEL_LEAST = 2e-3  # m
 _TRAVEL_MOST = 0.12  # m
 _PRELOADS = (0.15, 0.3, 0.45, 0.6)  # of the greatest force
-_SHARES = 3
-_ALIKE = 0.2  # share of the torque that one camshaft is drawn for
+_LEAST_SHARES = 3  # of the torque, for which springs are sought
+_SHARED_SHAFT = 0.2  # share of the torque that one camshaft is drawn for
 _RADII = 7
 _STEEP, _FLAT = np.radians((28.0, 6.0))  # pressure angles of the least and greatest base circle
 _RADIUS_MOST = 0.4  # m
@@ -57,7 +57,7 @@ POSITIONS = 60
 
 @dataclass(frozen=True)
 class Candidate:
-    """A design with the estimates of the screening.
+    """Screened design with the estimates of its ripple, size and checks.
 
     excess: sum of what the utilisations of its checks are above 1.
     """
@@ -74,7 +74,7 @@ class Candidate:
         return self.cam_radius + self.design.height
 
     def within(self, excess: float) -> bool:
-        """Whether its checks are above 1 by an excess at most, and its ripple is near to enough."""
+        """Whether the excess of its checks and its ripple are near enough to the limits."""
         enough = self.ripple <= OPTIMISTIC * self.design.task.ripple_allowed
         return enough and self.excess <= excess
 
@@ -94,7 +94,7 @@ class Candidate:
 
 
 def spring_wire(task: DesignTask, folder: Path | None) -> HelicalSpring:
-    """Wire of wound springs, as a spring of any size."""
+    """Wire of wound springs, as a spring of nominal size."""
     card = wire_values(without_provenance(known_cards(folder)["wires"][WIRE]))
     size: Tables = {"wire_diameter": "5 mm", "mean_diameter": "30 mm", "coils": 5.0,
                     "free_length": "80 mm"}  # fmt: skip
@@ -110,7 +110,7 @@ def candidates(
     progress: Progress,
     names: Collection[str] | None = None,
 ) -> list[Candidate]:
-    """Screened designs of all rollers of the catalogue that can bear the force.
+    """Screened designs of all catalogue rollers that can bear the force.
 
     Without those that are larger than `FAR` times one that is within all limits.
 
@@ -151,7 +151,7 @@ def _springs(
     """Springs that store the energy, with forces within the ratings of the roller."""
     swing = task.demand.energy_swing
     least = min(task.remove + _REMOVED_MORE, 1.0)
-    shares = np.linspace(least, 1.0, max(_SHARES, ceil((1.0 - least) / _ALIKE) + 1))
+    shares = np.linspace(least, 1.0, max(_LEAST_SHARES, ceil((1.0 - least) / _SHARED_SHAFT) + 1))
     travels = np.geomspace(_TRAVEL_LEAST, _TRAVEL_MOST, _TRAVELS)
     most = 0.95 * min(
         card.C0 / 1.5, 0.5 * card.C, card.radial_limit or np.inf, card.static_radial_limit or np.inf
@@ -186,7 +186,7 @@ def _alike(task: DesignTask, springs: Sequence[SpringPoint]) -> Iterator[list[Sp
     """Springs in groups of nearly equal energy: their camshafts carry the same torque."""
     groups: dict[int, list[SpringPoint]] = {}
     for point in springs:
-        groups.setdefault(round(_share(task, point) / _ALIKE), []).append(point)
+        groups.setdefault(round(_share(task, point) / _SHARED_SHAFT), []).append(point)
     yield from groups.values()
 
 

@@ -1,4 +1,4 @@
-"""Case file of a design: each part with the reason of its choice, each assumption marked."""
+"""Case file of a design, each part with its reason, each assumption marked."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ OIL_WARMER = 20.0  # K of oil and spring above the surroundings
 _KAPPA = 1.25  # viscosity ratio of the roller bearing at the least speed
 _CENTISTOKES = 1e-6
 _ROOM = Source("given: space less the height of the roller at maximum lift", confirmed=True)
-_BALANCED = 3e-3  # m/s, residual unbalance of the bench
+_BENCH_UNBALANCE = 3e-3  # m/s, residual unbalance of the bench
 PROFILE = 8e-6  # m, tolerance of the ground contour
 SEARCHED = 72  # cam angles of a turn in the search
 WRITTEN = 144  # in a case file, for the error bars of a run
 _AROUND = 0.01  # m of room and wall between parts and outside of the housing
 _TOOTH_LOSS = 0.01  # of the torque at the gear
 _BEARING_FRICTION = 1.5e-3  # deep-groove ball bearings: moment over force and half the bore
-_STEPS = (0.5, 0.25, 0.2, 0.1)  # deg, of the contour table
+_TABLE_STEPS = (0.5, 0.25, 0.2, 0.1)  # deg, of the contour table
 SYNTHESIS = """\
 kind = "constrained"
 corners = true
@@ -52,7 +52,7 @@ rest_force_weight = 0.0
 
 @dataclass(frozen=True)
 class Machinery:
-    """A design in numbers, SI: frame, spring, least radius of the roller's centre, its offset.
+    """Design in numbers, SI: frame, spring, prime radius, offset.
 
     lift: greatest lift for which the frame has room; cam_radius: that of the cam expected.
     """
@@ -75,7 +75,7 @@ class Machinery:
 
     @property
     def room(self) -> float:
-        """Radius left for the cam below the roller in the given space, m; infinite without one."""
+        """Radius available for the cam below the roller, m; infinite without a limit."""
         if self.task.space is None:
             return inf
         return self.task.space - self.height
@@ -112,7 +112,7 @@ class Machinery:
 
     @cached_property
     def oil(self) -> tuple[str, float]:
-        """The thinnest oil that keeps the bearing of the roller apart, and its viscosity, m2/s.
+        """Thinnest oil of sufficient viscosity for the roller bearing; its viscosity, m2/s.
 
         The thickest one where none does.
         """
@@ -275,7 +275,7 @@ def _shaft(design: Machinery) -> str:
     spacing = frame.bearing_spacing
     speed = design.task.cam_speed
     rotor = frame.rotor_mass(design.cam_radius)
-    residual = _BALANCED * rotor / speed
+    residual = _BENCH_UNBALANCE * rotor / speed
     gear, pinion = frame.teeth
     return f"""\
 # --- Camshaft: bore, key and bearings {seat.bearing} carry the torque of the cam.
@@ -450,7 +450,9 @@ positions = {positions}                       # per cam turn; 720 for a sign-off
 def _table_step(design: Machinery) -> float:
     """Step of the contour table, deg: chords of a circle, twice as curved as that of the cam."""
     radius, error = 2.0 * design.prime_radius, CHORD_SHARE.default * PROFILE
-    return next((s for s in _STEPS if radius * np.radians(s) ** 2 / 8.0 <= error), _STEPS[-1])
+    return next(
+        (s for s in _TABLE_STEPS if radius * np.radians(s) ** 2 / 8.0 <= error), _TABLE_STEPS[-1]
+    )
 
 
 def _load_case(name: str, speed: float, weight: float, source: str) -> str:

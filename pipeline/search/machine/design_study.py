@@ -51,8 +51,8 @@ from camwright.pipeline.search.parts.point_store import SOLVED
 RECORD = "design.json"
 PICTURE = "design.png"
 # Of the size of a design, for its tolerances: of the space that is offered, and as printed.
-_SPARE, _SPARE_PRINTED = 1.001, 1.0005
-_BINDING = 3  # limits that the nearest design uses fully, named with those that it fails
+_ROOM_SPARE, _SPARE_PRINTED = 1.001, 1.0005
+_BINDING_NAMED = 3  # limits that the nearest design uses fully, named with those that it fails
 _OURS = re.compile(
     rf"design\.(json|png)|point_\d+\.toml|{SOLVED}|.*\.csv|cards\.toml|springs\.toml"
 )
@@ -102,7 +102,7 @@ def points_folder(out: Path) -> Path:
 
 
 def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> DesignDocument:
-    """Case file of a task, the front of ripple and size, and what conflicts where there is none.
+    """Case file of a task, front of ripple and size; conflicting limits where none passes.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
         else:
             progress.stage("relaxations")
             nearest = failing[0] if failing else None
-            room = inf if roomy is None else _SPARE * roomy.point.size
+            room = inf if roomy is None else _ROOM_SPARE * roomy.point.size
             changes = relaxations(study, nearest, out, workers, progress, room)
     document: DesignDocument = {
         "schema": 1,
@@ -350,7 +350,7 @@ def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[So
         near = points[0]
         failing = near.failing or ["the limits of the synthesis at the ends of the tolerances"]
         binding = [DECLARED[name].title for name in near.figures["binding"] if name in DECLARED]
-        return failing + [title for title in binding if title not in failing][:_BINDING]
+        return failing + [title for title in binding if title not in failing][:_BINDING_NAMED]
     if screened:
         counts = Counter(each.governing for each in screened if each.excess > 0.0)
         return [DECLARED[name].title for name, _ in counts.most_common(3)]

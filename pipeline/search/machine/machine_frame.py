@@ -1,4 +1,4 @@
-"""Parts about a cam, sized by its roller and its torque: stem, guides, fork, shaft, key, gear.
+"""Parts around a cam, sized by roller and torque: stem, guides, fork, shaft, key, gear.
 
 Proportions of drawn machines, rounded to sizes of standards; the checks judge them.
 """
@@ -29,7 +29,7 @@ _OVERHANG = 2e-4  # m, of the roller beyond both ends of the cam at its offset
 
 @dataclass(frozen=True)
 class MachineFrame:
-    """Parts that follow from roller and cam torque; lengths in m.
+    """Parts sized by roller and cam torque; lengths in m.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class MachineFrame:
         return 1e-3 * ceil(1e3 * (reach + self.seat_thickness) + 3.0)
 
     def mass(self, lift: float, spring: float) -> float:
-        """Mass of all that moves with the follower, a third of a spring (kg) among it, kg."""
+        """Moving mass of the follower with a third of the spring (kg), kg."""
         solid = 0.25 * pi * STEEL
         disc = solid * (self.card.outer_diameter**2 - self.card.bore**2) * self.card.width
         pin = solid * self.card.bore**2 * (self.pin_span + self.cheek_width)
@@ -134,13 +134,13 @@ class MachineFrame:
 
     @property
     def housing_width(self) -> float:
-        """From the outer face of the gear to that of the further bearing."""
+        """Distance from the gear's outer face to that of the further bearing, m."""
         gear = 0.5 * self.gear_width - self.gear_position
         return gear + self.bearing_spacing + 0.5 * self.seat.width
 
     @property
     def cam_width(self) -> float:
-        """Within the flat of the roller at its axial offset."""
+        """Cam width within the roller's flat at its axial offset, m."""
         return cam_width_under(self.card)
 
     @property
@@ -168,20 +168,20 @@ class MachineFrame:
 
 
 def stem_of(card: BearingCard) -> float:
-    """Stem diameter, m: that of the sizes which is nearest to 0.42 roller diameters."""
+    """Standard stem diameter nearest to 0.42 roller diameters, m."""
     wanted = 1e3 * 0.42 * card.outer_diameter
     return 1e-3 * min(STEMS, key=lambda size: abs(size - wanted))
 
 
 def cam_width_under(card: BearingCard) -> float:
-    """Width of a cam whose ends lie within the flat of a roller at its axial offset, m."""
+    """Cam width whose ends lie on a roller's flat at its axial offset, m."""
     return card.width - 2.0 * (ROLLER_CHAMFER + AXIAL_OFFSET) - _OVERHANG
 
 
 def frame_of(
     name: str, card: BearingCard, torque: float, force: float, ratio: float, sizes: Sequence[Seat]
 ) -> MachineFrame | None:
-    """Frame of a roller for a cam torque, N m, and a normal force, N; None: no seat is enough."""
+    """Parts for a roller, cam torque, N m, and normal force, N; None: no seat is enough."""
     cam_width = cam_width_under(card)
     width = cam_width - 4e-4
     for seat in sizes:

@@ -1,4 +1,4 @@
-"""Parts of a design that passes, exchanged for the next smaller of their catalogue while it passes.
+"""Exchange of a passing design's parts for the next smaller ones while it passes.
 
 Each exchange is solved and judged as the points of the front are: preview at all tolerance corners.
 """
@@ -22,16 +22,16 @@ from camwright.pipeline.search.machine.machine_frame import MODULES, STEMS
 from camwright.pipeline.search.machine.synthesised_points import PointStudy, Solved
 from camwright.pipeline.search.machine.wound_springs import of_catalogue
 
-_MOST = 24  # designs tried
-_TOGETHER = 2  # solved at once
-_SAME = 1e-6  # m, of equal sizes
-_STEP = 1e-4  # m, of a prime radius as a drawing states it
+_EXCHANGES_MAX = 24  # designs tried
+_SOLVED_AT_ONCE = 2  # solved at once
+_EQUAL_LENGTHS = 1e-6  # m, of equal sizes
+_RADIUS_STEP = 1e-4  # m, of a prime radius as a drawing states it
 _RIM = 0.8  # bores in the radius of the gear, at least
 
 
 @dataclass(frozen=True)
 class Shelves:
-    """Parts of the catalogues by increasing size."""
+    """Catalogue parts by increasing size."""
 
     seats: Sequence[Seat]
     rollers: Mapping[str, BearingCard]
@@ -39,7 +39,7 @@ class Shelves:
 
     @classmethod
     def of(cls, study: PointStudy) -> Shelves:
-        """Those of the shipped cards and of the user's beside the torque table."""
+        """Parts of the shipped cards and of the user's beside the torque table."""
         parts = catalogue_of(study.folder)
         rollers = undominated(parts.rollers, better_roller)
         known = {name: card for name, card in rollers.items() if card.balls is not None}
@@ -50,7 +50,7 @@ class Shelves:
 
 @dataclass(frozen=True)
 class Smaller:
-    """A design with one part the next smaller of its catalogue, in words."""
+    """Design with one part exchanged for the next smaller one, in words."""
 
     part: str
     was: str
@@ -60,7 +60,7 @@ class Smaller:
 
 @dataclass(frozen=True)
 class Exchanged:
-    """A design whose parts were exchanged.
+    """Design after the exchanges, with the record of each.
 
     kept: exchanges with which it passes, in their order; failing: exchanges of the last design
     with why each fails; complete: whether every part of it was tried.
@@ -73,9 +73,9 @@ class Exchanged:
 
     @property
     def sentence(self) -> str:
-        """What the exchanges have shown."""
+        """Result of the exchanges in words."""
         if not self.complete:
-            return f"{_MOST} exchanges of parts tried: a design of smaller parts may pass"
+            return f"{_EXCHANGES_MAX} exchanges of parts tried: a design of smaller parts may pass"
         return "no part can be exchanged for the next smaller of its catalogue"
 
     def as_record(self) -> ExchangesRecord:
@@ -89,7 +89,7 @@ class Exchanged:
 
 
 def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progress) -> Exchanged:
-    """The design with the smallest parts that single exchanges reach.
+    """Design with the smallest parts reachable by single exchanges.
 
     One part at a time becomes the next smaller of its catalogue: the shaft with key and bearings,
     the roller, the spring if it is of a catalogue, the stem with its bushes, the module of the
@@ -100,30 +100,32 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
     shelves, kept = Shelves.of(study), list[Smaller]()
     failing: dict[str, tuple[Smaller, str]] = {}
     place = unchanged = tried = 0
-    while unchanged < len(_WAYS) and tried < _MOST:
-        progress.advance(tried, _MOST)
+    while unchanged < len(_WAYS) and tried < _EXCHANGES_MAX:
+        progress.advance(tried, _EXCHANGES_MAX)
         ways = list(_WAYS[place](point.design, shelves))
         after = _WAYS[(place + 1) % len(_WAYS)](point.design, shelves)
-        ahead = [] if len(ways) >= _TOGETHER else list(after)[:1]  # solved while another waits
+        ahead = (
+            [] if len(ways) >= _SOLVED_AT_ONCE else list(after)[:1]
+        )  # solved while another waits
         solving = [workers.submit(study.solved, each.design) for each in (*ways, *ahead)]
         tried += len(ways)
         unchanged += 1
         for each, solution in zip(ways, solving, strict=False):
             solved: Solved = solution.result()
-            if solved.has_cam and solved.passes and solved.size <= point.size + _SAME:
+            if solved.has_cam and solved.passes and solved.size <= point.size + _EQUAL_LENGTHS:
                 kept.append(each)
                 point, failing, unchanged = solved, {}, 0
                 break
             failing[each.part] = each, why_not(solved)
         if unchanged:
             place = (place + 1) % len(_WAYS)
-    progress.advance(_MOST, _MOST)
+    progress.advance(_EXCHANGES_MAX, _EXCHANGES_MAX)
     complete = unchanged >= len(_WAYS)
     return Exchanged(point, tuple(kept), tuple(failing.values()), complete)
 
 
 def why_not(point: Solved) -> str:
-    """Why a design does not pass, in words."""
+    """Reason why a design does not pass, in words."""
     if is_refused(point.record):
         return point.record["why"]
     if point.failing:
@@ -189,7 +191,7 @@ def _spring(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
 
 def _stem(design: Machinery, _: Shelves) -> Iterator[Smaller]:
     frame = design.frame
-    lesser = [1e-3 * each for each in STEMS if 1e-3 * each < frame.stem - _SAME]
+    lesser = [1e-3 * each for each in STEMS if 1e-3 * each < frame.stem - _EQUAL_LENGTHS]
     for size in lesser[-1:]:
         other = replace(design, frame=replace(frame, stem_chosen=size))
         yield Smaller("stem with bushes", _mm(frame.stem), _mm(size), other)
@@ -197,7 +199,7 @@ def _stem(design: Machinery, _: Shelves) -> Iterator[Smaller]:
 
 def _module(design: Machinery, _: Shelves) -> Iterator[Smaller]:
     frame = design.frame
-    lesser = [1e-3 * each for each in MODULES if 1e-3 * each < frame.module - _SAME]
+    lesser = [1e-3 * each for each in MODULES if 1e-3 * each < frame.module - _EQUAL_LENGTHS]
     for size in lesser[-1:]:
         if not 0.5 * size * frame.teeth[0] > _RIM * frame.seat.bore:
             return
@@ -218,7 +220,7 @@ def _with_cam(design: Machinery, other: Machinery) -> Machinery:
 
 
 def _steps(length: float) -> float:
-    return _STEP * round(length / _STEP)
+    return _RADIUS_STEP * round(length / _RADIUS_STEP)
 
 
 def _mm(length: float) -> str:

@@ -1,4 +1,4 @@
-"""Change of one option of a design with which the search finds a case, half of which finds none.
+"""Relaxation of one design option to the least change with which a design passes.
 
 A change is measured by the logarithm of its value over that of the task.
 """
@@ -33,9 +33,9 @@ _SHORTEST = 0.05  # of the life
 _FREE_SPACE = 5.0  # of the space
 _COOL = 20.0  # degC of the surroundings
 _ICE = 273.15  # K
-_SPARE = 1.005  # of the size of a design
-_EQUAL = 1e-9  # difference of equal changes
-_FIRST = 0.6  # change that is tried first, a factor of 1.8
+_SIZE_SPARE = 1.005  # of the size of a design
+_EQUAL_CHANGES = 1e-9  # difference of equal changes
+_FIRST_CHANGE = 0.6  # change that is tried first, a factor of 1.8
 _STRIDE = 0.9 * WIDTH  # from the change that a design needs
 _MORE = 0.1 * WIDTH  # above it, for the first trial
 _USUAL = 10  # values tried
@@ -43,7 +43,7 @@ _USUAL = 10  # values tried
 
 @dataclass(frozen=True)
 class Lever:
-    """An option that is relaxed from the value of the task to a loosest one.
+    """Design option with its range from the task's value to the loosest one.
 
     options: options of the command at a value; shown: a value in words; reached: value that a
     draft keeps, None where it does not tell; order: in which designs are drafted; whole: whether
@@ -73,14 +73,14 @@ class Lever:
         return self.stated * exp(copysign(change, self._end))
 
     def needed(self, draft: Solved) -> float:
-        """Change with which a design passes, by its draft; infinite: not known."""
+        """Change with which a design would pass, by its draft; infinite: not known."""
         value = 0.0 if self.reached is None else self.reached(draft)
         return copysign(1.0, self._end) * log(value / self.stated) if value > 0.0 else inf
 
 
 @dataclass(frozen=True)
 class Bracket:
-    """Two changes of an option: the search finds a design with `passing`, none with `failing`.
+    """Two changes of an option: at `passing` a design passes, at `failing` none does.
 
     needed: change that the design needs; stride: below it, of the change to be tried next.
     """
@@ -99,12 +99,12 @@ class Bracket:
     @property
     def halved(self) -> bool:
         """Whether half of the change fails, as far as `WIDTH` tells them apart."""
-        return self.passing <= max(WIDTH, 2.0 * self.failing + _EQUAL) or self.lever.whole
+        return self.passing <= max(WIDTH, 2.0 * self.failing + _EQUAL_CHANGES) or self.lever.whole
 
     def inner(self) -> float:
-        """Change to be tried next: below that needed, that, above it, or the middle."""
+        """Next change to try: just below, at or above the needed one, or the middle."""
         for change in (self.needed - self.stride, self.needed, self.needed + _STRIDE):
-            if self.failing + _EQUAL < change < self.passing - _EQUAL:
+            if self.failing + _EQUAL_CHANGES < change < self.passing - _EQUAL_CHANGES:
                 return change
         return 0.5 * (self.failing + self.passing)
 
@@ -126,7 +126,7 @@ class _Search:
 
     def fails(self, lever: Lever, change: float) -> bool:
         """Whether no design is known to pass with a change, or with any up to the greatest."""
-        return self.failing.get(lever.name, 0.0) > min(change, lever.greatest) - _EQUAL
+        return self.failing.get(lever.name, 0.0) > min(change, lever.greatest) - _EQUAL_CHANGES
 
     def bracket(self, lever: Lever, change: float) -> Bracket | None:
         """Bracket that passes with a change, at most the greatest; None: no design passes."""
@@ -187,7 +187,7 @@ def relaxations(
     progress: Progress,
     room: float = inf,
 ) -> list[RelaxationRecord]:
-    """Relaxations of one option each, with the command line of each; the smallest first.
+    """Relaxations of single options with their command lines, the smallest first.
 
     With each the command passes, and does not at `fails_at`, half of the change or more. With the
     first that is nearer to the value of the task by `WIDTH` at most, and no other option passes
@@ -225,8 +225,8 @@ def relaxations(
 
 
 def _first(search: _Search, levers: tuple[Lever, ...], nearest: Solved | None) -> Bracket | None:
-    """A change that passes: what the nearest design needs, one of `_FIRST`, or the greatest."""
-    trials = [(lever, change) for change in (_FIRST, inf) for lever in levers]
+    """Change that passes: that of the nearest design, one of `_FIRST_CHANGE`, or the greatest."""
+    trials = [(lever, change) for change in (_FIRST_CHANGE, inf) for lever in levers]
     if nearest is not None and nearest.has_cam:
         needed = [(lever, lever.needed(nearest) + _MORE) for lever in levers]
         near = [(lever, change) for lever, change in needed if 0.0 < change < lever.greatest]
@@ -259,7 +259,7 @@ def _levers(task: DesignTask) -> Iterator[Lever]:
         yield Lever(
             SPACE, task.space, _FREE_SPACE * task.space,
             lambda value: {"space": _text(value, "mm")}, lambda value: _text(value, "mm"),
-            lambda draft: _SPARE * draft.size, lambda candidate: candidate.size,
+            lambda draft: _SIZE_SPARE * draft.size, lambda candidate: candidate.size,
         )  # fmt: skip
     yield Lever(
         "--speed", task.speed, _SLOWEST * task.speed,

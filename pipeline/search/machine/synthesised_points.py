@@ -1,4 +1,4 @@
-"""Designs solved in full: prime radius and preload by the constrained synthesis, then rounded."""
+"""Solved designs: prime radius and preload by constrained synthesis, then rounded."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ from camwright.pipeline.search.machine.torque_task import DesignTask
 from camwright.pipeline.search.parts.point_store import PointTask, solved
 from camwright.pipeline.smoothing.constraints import check_of
 
-_FRONT = 5  # of the front of the screening within the limits
-_NEAREST = 2  # of the front of those near to them
+_FRONT_WITHIN = 5  # of the front of the screening within the limits
+_FRONT_NEAR = 2  # of the front of those near to them
 _ROLLERS = 3  # whose likeliest designs are tried
-_NEAR = 0.5  # excess that a synthesis may remove
-_ALIKE = 0.02  # relative size within which the lesser ripple replaces
-_GAIN = 0.03  # of the ripple, between points
+_CURABLE_EXCESS = 0.5  # excess that a synthesis may remove
+_SIZES_THAT_TIE = 0.02  # relative size within which the lesser ripple replaces
+_RIPPLE_GAIN = 0.03  # of the ripple, between points
 _SHRUNK, _GROWN = 0.9, 1.1  # of the prime radius of the screening
 _AT_MOST = 0.999  # of the greatest prime radius, above which it is that one
 _CREDIT = 1.02  # of the gain of the best design by its offset, for that of another
 _CURABLE = 1.2  # utilisation that a larger cam may cure
 _SHORT = 1.05  # utilisation that a synthesis with corrections may cure
-_TOGETHER = 2  # drafts solved at once where the first that passes is enough
+_DRAFTS_AT_ONCE = 2  # drafts solved at once where the first that passes is enough
 _FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
 RESERVE = 0.01  # of the ripple allowed, for the corrections by finite elements
 
 
 class DraftLimit(TypedDict):
-    """The limit that a synthesis exceeds most."""
+    """Limit that a synthesis exceeds most."""
 
     title: str
     check: str
@@ -52,7 +52,7 @@ class DraftLimit(TypedDict):
 
 
 class DraftRecord(TypedDict):
-    """Record of a synthesis on few cam angles, by the keys of that of a preview."""
+    """Record of a coarse synthesis, with the keys of a preview record."""
 
     verdict: Verdict
     ripple_left_Nm: float
@@ -66,7 +66,7 @@ class DraftRecord(TypedDict):
 
 @dataclass(frozen=True)
 class PointStudy:
-    """A task with the folder of its points and the name of the torque table in it."""
+    """Design task with the folder of its solved points."""
 
     task: DesignTask
     folder: Path
@@ -78,13 +78,13 @@ class PointStudy:
         return case_text(design, "design", self.file, smoothing=smoothing)
 
     def solved(self, design: Machinery, smoothing: str = SYNTHESIS) -> Solved:
-        """A design with its record, cached or solved, its checks judged at all tolerance ends."""
+        """Design previewed at all tolerance ends, from the store or solved."""
         text = self.text(design, smoothing)
         record = solved(PointTask(text, "", self.folder, self.version, "whole"))
         return Solved(design, record, smoothing)
 
     def drafted(self, design: Machinery, smoothing: str) -> Solved:
-        """A design with the record of its synthesis on few cam angles, cached or solved."""
+        """Design synthesised on few cam angles, from the store or solved."""
         text = self.text(design, smoothing)
         rough: RoughRecord | RefusedPoint
         rough = solved(PointTask(text, "", self.folder, self.version, "coarse"))
@@ -109,7 +109,7 @@ class PointStudy:
 
 @dataclass(frozen=True)
 class Solved:
-    """A design with the record of its preview or synthesis, and the lines of its smoothing."""
+    """Design with its preview or draft record."""
 
     design: Machinery
     record: PointRecord | DraftRecord | RefusedPoint
@@ -148,14 +148,14 @@ class Solved:
 
     @property
     def passes(self) -> bool:
-        """Whether all limits are kept, the ripple with a reserve for the finite elements."""
+        """Whether all limits are kept, the ripple with a reserve for finite elements."""
         most = (1.0 - RESERVE) * self.design.task.ripple_allowed
         if is_refused(self.record):
             return False
         return self.record["verdict"] == "pass" and self.ripple <= most
 
     def better_than(self, other: Solved) -> bool:
-        """Whether it passes where the other does not, or leaves less ripple in the same size.
+        """Whether it passes where the other fails, or leaves less ripple at equal size.
 
         Where neither passes, whether its checks fail by less.
         """
@@ -163,7 +163,7 @@ class Solved:
             return self.has_cam
         if not (self.passes and other.passes):
             return self.passes or (not other.passes and self.shortfall < other.shortfall)
-        return self.ripple < other.ripple and self.size <= (1.0 + _ALIKE) * other.size
+        return self.ripple < other.ripple and self.size <= (1.0 + _SIZES_THAT_TIE) * other.size
 
     @property
     def size(self) -> float:
@@ -205,13 +205,13 @@ class Solved:
 
 
 def promising(task: DesignTask, screened: Sequence[Candidate]) -> list[Candidate]:
-    """Designs of the screening that may be on the front, by increasing size.
+    """Screened designs that may lie on the front, by increasing size.
 
     The front of those within the limits, the smallest ones near to them, and the likeliest of the
     likeliest rollers.
     """
-    chosen = _screened_front(task, screened, 0.0, _FRONT)
-    chosen += _screened_front(task, screened, _NEAR, _NEAREST)
+    chosen = _screened_front(task, screened, 0.0, _FRONT_WITHIN)
+    chosen += _screened_front(task, screened, _CURABLE_EXCESS, _FRONT_NEAR)
     left = list(screened)
     for _ in range(_ROLLERS):
         likely = likeliest(left)
@@ -231,23 +231,25 @@ def _screened_front(
     largest = FAR * min((each.size for each in good), default=0.0)
     good = [each for each in good if each.size <= largest]
     figures = [(each.size, each.ripple) for each in good]
-    places = front(figures, _ALIKE, _GAIN * task.demand.ripple)
+    places = front(figures, _SIZES_THAT_TIE, _RIPPLE_GAIN * task.demand.ripple)
     return [good[k] for k in thinned(places, figures, most)]
 
 
 def likeliest(screened: Sequence[Candidate]) -> Candidate | None:
-    """The screened design with the most room to ripple and limits; None: each is hopeless."""
+    """Screened design with the most room to ripple and limits; None if all are hopeless."""
     best = min(screened, key=lack, default=None)
-    return best if best is not None and lack(best) <= OPTIMISTIC + _NEAR**2 else None
+    return best if best is not None and lack(best) <= OPTIMISTIC + _CURABLE_EXCESS**2 else None
 
 
 def lack(candidate: Candidate) -> float:
-    """Ripple over that allowed, and the excess of the checks, which a synthesis may remove."""
-    return candidate.ripple / candidate.design.task.ripple_allowed + _NEAR * candidate.excess
+    """Ripple over that allowed plus weighted excess of the checks: estimate of infeasibility."""
+    return (
+        candidate.ripple / candidate.design.task.ripple_allowed + _CURABLE_EXCESS * candidate.excess
+    )
 
 
 def draft(study: PointStudy, candidate: Candidate) -> Solved:
-    """A screened design with the prime radius and preload of least ripple within all limits.
+    """Screened design with prime radius and preload of least ripple, by a coarse synthesis.
 
     By the synthesis on few cam angles, both free about the values of the screening. The cam grows
     where its limits conflict by little and the prime radius is the greatest one, unless the space
@@ -278,7 +280,7 @@ def _free(study: PointStudy, candidate: Candidate, growth: float) -> Solved:
 
 
 def synthesised(study: PointStudy, point: Solved) -> Solved:
-    """A draft solved in full, with its prime radius and preload as a drawing states them.
+    """Draft solved in full, prime radius and preload rounded as in a drawing.
 
     Where a check fails by little, both are first those of the full synthesis, with the corrections
     for the guides.
@@ -291,7 +293,7 @@ def synthesised(study: PointStudy, point: Solved) -> Solved:
 
 
 def settled(study: PointStudy, point: Solved) -> Solved:
-    """The design of a synthesis with its prime radius and preload as a drawing states them.
+    """Design of a synthesis previewed with rounded prime radius and preload.
 
     The cam radius of the synthesis is that of the room and of the counterweight.
     """
@@ -317,14 +319,14 @@ def _rounded(design: Machinery) -> Machinery:
 
 
 class Drafts(NamedTuple):
-    """Drafts with a cam; replaced: those in whose place the same design with an offset is."""
+    """Drafts with a cam; `replaced`: drafts superseded by the same design with an offset."""
 
     points: list[Solved]
     replaced: list[Solved]
 
 
 def drafts(study: PointStudy, screened: Sequence[Candidate], workers: Crew) -> Drafts:
-    """Drafts of the designs of the screening that may be on the front.
+    """Drafts of the screened designs that may lie on the front.
 
     Without an offset; where the best of them is better with one, all others that may pass with its
     gain as well.
@@ -359,7 +361,7 @@ def _drafted(study: PointStudy, chosen: Sequence[Candidate], workers: Crew) -> l
 def solved_front(
     study: PointStudy, drafted: Drafts, workers: Crew, progress: Progress
 ) -> tuple[list[Solved], list[Solved]]:
-    """Designs of the front of the drafts that pass, and those that do not, the nearest first.
+    """Passing designs on the front of the drafts, and failing ones, the nearest first.
 
     Where none of the front passes, the other drafts that pass are solved, those replaced at last.
     """
@@ -387,14 +389,14 @@ def passing_draft(
     workers: Crew,
     order: Callable[[Candidate], float] = lack,
 ) -> Solved | None:
-    """First draft that passes in full of those of `solved_front`; None: none does.
+    """First draft that passes when solved in full; None if none does.
 
     Those without an offset are drafted first, in an order: where one passes, no other is.
     """
     chosen = sorted(promising(study.task, screened), key=order)
     plain: list[Solved] = []
-    for start in range(0, len(chosen), _TOGETHER):
-        batch = _drafted(study, chosen[start : start + _TOGETHER], workers)
+    for start in range(0, len(chosen), _DRAFTS_AT_ONCE):
+        batch = _drafted(study, chosen[start : start + _DRAFTS_AT_ONCE], workers)
         first = _passing(study, batch)
         if first is not None:
             return first

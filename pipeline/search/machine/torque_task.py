@@ -1,4 +1,4 @@
-"""Task of a design: a torque over one cycle, speeds, and requirements, given or assumed."""
+"""Design task: torque over one cycle, speeds, requirements, stated or assumed."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _OVER = 1.2  # over-speed over the greatest speed
 _LIFE = "2000 h"
 _AMBIENT = "40 degC"
 _REMOVE = 0.5
-_WHOLE = 0.02  # of a turn: a span this near to whole turns is a cycle of them
+_WHOLE_TURNS = 0.02  # of a turn: a span this near to whole turns is a cycle of them
 
 NAMES = ("speeds", "overspeed", "cycle", "ratio", "space", "life", "ambient", "remove")
 """Options that are assumed where they are not given."""
@@ -34,7 +34,7 @@ _UNITS = {"cycle": "deg", "space": "mm", "life": "h", "ambient": "K"}
 
 @dataclass(frozen=True, eq=False)
 class TorqueDemand:
-    """Torque that the cam is to balance: its ripple and the energy to be stored.
+    """Torque to balance: ripple, and energy to store.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class TorqueDemand:
 
 @dataclass(frozen=True, kw_only=True)
 class DesignTask:
-    """A torque and the requirements on the cam that balances it, SI.
+    """Torque, and requirements on the cam that balances it, SI.
 
     space: from the far side of the cam to the top of the roller at maximum lift, None: not limited;
     remove: share of the torque ripple to be removed; options: stated options by name.
@@ -86,11 +86,11 @@ class DesignTask:
 
     @property
     def assumed(self) -> frozenset[str]:
-        """Names of the options that were not given."""
+        """Names of the options not stated."""
         return frozenset(NAMES) - frozenset(self.options)
 
     def relaxed(self, changes: DesignOptions) -> DesignTask:
-        """The task with other options beside those given."""
+        """Task with some options changed."""
         options: DesignOptions = {**self.options, **changes}
         return task_of(self.file, **options)
 
@@ -108,7 +108,7 @@ class DesignTask:
 
     @property
     def ripple_allowed(self) -> float:
-        """Torque ripple that may be left, standard deviation, N m."""
+        """Allowed residual torque ripple, standard deviation, N m."""
         return (1.0 - self.remove) * self.demand.ripple
 
     def source(self, name: str, reason: str = "") -> Source:
@@ -272,7 +272,7 @@ def _cycle(path: Path, cycle: str | float | None) -> float:
     span = float(angle[-1] - angle[0])
     for whole in (span, span + spacing):
         turns = max(round(whole / FULL_TURN), 1)
-        if abs(whole / FULL_TURN - turns) <= _WHOLE:
+        if abs(whole / FULL_TURN - turns) <= _WHOLE_TURNS:
             return turns * FULL_TURN
     limit = "whole turns of the shaft, or the angle of the cycle as --cycle"
     raise InputError(f"{text.name} span", f"{np.degrees(span):.6g} deg", limit)

@@ -1,4 +1,4 @@
-"""Springs of a design: those of a catalogue, and wound ones of standard wires, as arrays."""
+"""Springs for a design as arrays: catalogue springs, and wound ones of standard wires."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ LOOSE_GAPS, LOOSE_SOLID = 1.15, 1.3
 
 @dataclass(frozen=True)
 class SpringPoint:
-    """A spring at work: its winding, preload, N, and greatest lift, m."""
+    """Spring in operation: winding, preload, N, greatest lift, m."""
 
     spring: HelicalSpring
     preload: float
@@ -55,7 +55,7 @@ def wound(
     travel: Array,
     cam_speed: float,
 ) -> list[SpringPoint]:
-    """The lightest wound spring of each rate, preload and travel that meets its limits.
+    """Lightest wound spring within its limits for each rate, preload and travel.
 
     Those without one are left out. Rates are rounded with the number of coils.
 
@@ -128,7 +128,7 @@ def of_catalogue(
     travels: Sequence[float],
     cam_speed: float,
 ) -> list[SpringPoint]:
-    """Springs of a catalogue with the preload at which they store an energy, J, over a travel, m.
+    """Catalogue springs with the preload at which they store an energy, J, over a travel, m.
 
     Those that do not hold it are left out.
     """

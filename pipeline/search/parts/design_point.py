@@ -1,4 +1,4 @@
-"""Point of a Pareto front from a case.
+"""Point of a Pareto front, from a case.
 
 `point_of` is a pure function of a case with plain numbers as result, for studies of many cases in
 parallel.
@@ -32,15 +32,15 @@ from camwright.pipeline.smoothing.synthesis_problem import coarsened
 from camwright.pipeline.solver import judged_at_corners
 from camwright.pipeline.torque.torque import Torque
 
-_BINDING = 0.99  # utilisation
+_BINDING_USE = 0.99  # utilisation
 # Of the safety of the keyway root: least over the limit, for tolerance corners and error bar.
 _ROOT_SPARE = 1.06
-_WORTH = 1e-3  # of the engine's ripple: progress at which a coarse search goes on
+_COARSE_PROGRESS = 1e-3  # of the engine's ripple: progress at which a coarse search goes on
 
 
 @dataclass(frozen=True)
 class Rough:
-    """Result of the synthesis alone: residual over engine torque ripple, lengths m, mass kg.
+    """Result of a coarse synthesis: residual ripple ratio, lengths m, mass kg.
 
     limit, utilisation: id and utilisation of the limit furthest exceeded; "" and 0: feasible;
     preload: N; binding: ids of the limits that are used up, the most used first.
@@ -63,7 +63,7 @@ class Rough:
         return cls(feasible=False, ripple=1.0, cam_radius=0.0, mass=0.0)
 
     def as_record(self) -> RoughRecord:
-        """Record for JSON, SI: equal to the one that is read again."""
+        """JSON record, SI, which reads back equal."""
         return {
             "feasible": self.feasible,
             "ripple": self.ripple,
@@ -80,7 +80,7 @@ class Rough:
 
 @dataclass(frozen=True)
 class DesignPoint:
-    """Result of a case by its preview, SI.
+    """Result of a previewed case, SI.
 
     ripple_before, ripple_left: standard deviation of the crank torque without and with the cam,
     N m; mass: of cam, follower and the half of the spring not part of the follower; shortfalls:
@@ -137,7 +137,7 @@ class DesignPoint:
 
 
 def point_of(case: Case) -> DesignPoint:
-    """Point of a case by constrained synthesis and preview.
+    """Point of a case by constrained synthesis with corrections, and preview.
 
     Each check is judged at its worst tolerance corner, unless one fails nominally, and where none
     fails the keyway root by finite elements, if its bound does not prove it.
@@ -180,7 +180,7 @@ def point_of(case: Case) -> DesignPoint:
 
 
 def rough_point(case: Case, torques: Mapping[str, Torque], *, fine: bool = True) -> Rough:
-    """Point of a case by the synthesis, without its corrections and checks.
+    """Point of a case by the synthesis alone, without corrections and checks.
 
     The limit of the ripple is compared with its minimum afterwards: as a constraint it would hide
     the ripple of an infeasible case.
@@ -193,7 +193,11 @@ def rough_point(case: Case, torques: Mapping[str, Torque], *, fine: bool = True)
     every = problem_of(case, torques)
     problem = replace(every, left_out=frozenset({TORQUE_REDUCTION.id}))
     coarse = coarsened(problem)
-    design = continued(problem, approached(coarse)) if fine else synthesise(coarse, worth=_WORTH)
+    design = (
+        continued(problem, approached(coarse))
+        if fine
+        else synthesise(coarse, worth=_COARSE_PROGRESS)
+    )
     drawn, lift = redrawn(case, design.variables), design.lift()
     contour = drawn.contour(lift)
     uses = dict(design.utilisation)
@@ -211,7 +215,7 @@ def rough_point(case: Case, torques: Mapping[str, Torque], *, fine: bool = True)
         drawn.cam.prime_radius,
         drawn.spring.preload,
         float(lift.highest.value),
-        tuple(sorted((name for name in uses if uses[name] > _BINDING), key=lambda n: -uses[n])),
+        tuple(sorted((name for name in uses if uses[name] > _BINDING_USE), key=lambda n: -uses[n])),
     )
 
 

@@ -1,4 +1,4 @@
-"""Redesign without a result: limits that excluded the choices, changes that would admit one."""
+"""Reasons for a redesign without result: excluding limits, and relaxations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Search order of the catalogue, by bounds and by solved points.
+"""Search over the catalogue, ordered by bounds and by solved points.
 
 For each roller the best spring and bush by the synthesis alone, without a limit on the cam radius,
 then under decreasing limits. The choices depend on the case alone, not on the processes.
@@ -32,7 +32,7 @@ Branch = Generator[Choice, Rough, None]
 
 @dataclass(frozen=True)
 class Pruned:
-    """A part excluded without solution, the reason, and the limit; "": excluded by no limit."""
+    """Part excluded without solution, with reason and limit; "": by no limit."""
 
     part: str
     why: str
@@ -41,7 +41,7 @@ class Pruned:
 
 @dataclass(frozen=True)
 class Pair:
-    """Spring and bush of a roller, and the lower bound of their residual ripple."""
+    """Spring and bush for a roller, with a lower bound of the residual ripple."""
 
     spring: str
     bush: str
@@ -53,7 +53,7 @@ Found = tuple[list[Pair], Rough | None]
 
 
 def branch(roller: str, least: Mapping[str, float], bushes: Sequence[str]) -> Branch:
-    """Choices of a roller, one at a time; the point of each is sent back.
+    """Generator of a roller's choices; the solved point of each is sent back.
 
     First without a limit on the cam radius, then under limits below the best cam so far. A smaller
     limit never reduces the ripple: the ripple of a pair is its bound under the next limit.
@@ -111,7 +111,7 @@ def _within(roller: str, pairs: Sequence[Pair], room: float) -> Generator[Choice
 def branches(
     case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool
 ) -> tuple[dict[str, Branch], list[Pruned]]:
-    """Search branch of each roller, and the excluded parts with reasons.
+    """Search branches by roller, and excluded parts with reasons.
 
     Parameters
     ----------

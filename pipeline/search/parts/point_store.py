@@ -1,4 +1,4 @@
-"""Points solved in worker processes and cached on disk by case."""
+"""Points solved in worker processes and stored by case."""
 
 from __future__ import annotations
 
@@ -47,18 +47,18 @@ class PointTask:
 
     @property
     def key(self) -> str:
-        """Key of the point in the store of its folder."""
+        """Key of the point in the store."""
         digest = hashlib.sha256(f"{self.version}\0{self.base}\0{self.text}".encode()).hexdigest()
         return f"{self.tier}_{digest[:24]}"
 
 
 def points(folder: Path) -> Store[Any]:
-    """Solved points of a folder."""
+    """Store of solved points of a folder."""
     return Store(folder / SOLVED, JSON)
 
 
 def solved(task: PointTask) -> Any:
-    """Record of a point, stored or solved: the one of `Answer` for its tier, or a refusal."""
+    """Record of a point from the store, or solved; or its refusal."""
     return points(task.folder).kept(task.key, partial(_record, task), lambda r: "feasible" in r)
 
 

@@ -59,7 +59,7 @@ Solved = tuple[Choice, PointRecord | RefusedPoint]
 
 @dataclass(frozen=True, eq=False)
 class RedesignTask:
-    """A case to be redesigned: its folder, catalogue, output folder and source version."""
+    """Case to redesign, with catalogue, output folder and source version."""
 
     case: Case
     folder: Path

@@ -1,4 +1,4 @@
-"""Lower bounds of the residual ripple of a spring and a roller, without synthesis."""
+"""Lower bounds of the residual ripple for a spring and a roller, without synthesis."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from camwright.pipeline.smoothing.scenario import Scenario
 from camwright.pipeline.smoothing.synthesis_problem import thinned
 
 RESERVE = 0.05  # relative ripple, for friction and inertia, which the bound neglects
-_COEFFICIENTS, _POINTS = 36, 144
+_BOUND_COEFFICIENTS, _BOUND_POINTS = 36, 144  # splines and cam angles of a bound
 
 
 @dataclass(frozen=True, eq=False)
 class RippleBound:
-    """Lower bound of the residual ripple of a spring with a maximum energy.
+    """Lower bound of the residual ripple for a spring of limited energy.
 
     The torque is the slope of the stored energy: the best approximation by the slope of any E(psi)
     between 0 and the maximum energy bounds the residual of every cam, without friction and inertia.
@@ -41,19 +41,19 @@ class RippleBound:
         """Residual over engine torque ripple, 0 to 1, at a maximum energy (J)."""
         if not energy > 0.0:
             return 1.0
-        theta = uniform_turn(_POINTS)
-        engine = thinned(self.torque, _POINTS)
+        theta = uniform_turn(_BOUND_POINTS)
+        engine = thinned(self.torque, _BOUND_POINTS)
         engine = engine - engine.mean()
         scale = float(np.linalg.norm(engine))
-        level, columns = basis_rows(theta, _COEFFICIENTS)
-        slope = basis_matrix(theta, _COEFFICIENTS, 1).toarray()
+        level, columns = basis_rows(theta, _BOUND_COEFFICIENTS)
+        slope = basis_matrix(theta, _BOUND_COEFFICIENTS, 1).toarray()
         norm = Norm(engine / scale, -slope * (energy / (self.gear_ratio * scale)))
-        one, point = np.ones(_POINTS), np.arange(_POINTS)
+        one, point = np.ones(_BOUND_POINTS), np.arange(_BOUND_POINTS)
         rows = [
             Linear("least", 0.0 * one, -level, columns, point, point, elastic=False),
             Linear("most", -one, level, columns, point, point, elastic=False),
         ]
-        none, box = np.zeros(_COEFFICIENTS), np.full((2, _COEFFICIENTS), 10.0)
+        none, box = np.zeros(_BOUND_COEFFICIENTS), np.full((2, _BOUND_COEFFICIENTS), 10.0)
         box[0] *= -1.0
         program = solved([norm], rows, np.diag(none), none, box, 1.0)
         if program is None:
@@ -62,7 +62,7 @@ class RippleBound:
 
 
 def bearable_force(card: BearingCard, case: Case) -> float:
-    """Maximum normal force (N) of a roller, by its ratings and its outer ring."""
+    """Maximum normal force (N) of a roller, by ratings and outer ring."""
     limits = (
         card.C0 / case.limits[ROLLER_STATIC_SAFETY],
         card.C * case.limits[ROLLER_LOAD_SHARE],
@@ -73,7 +73,7 @@ def bearable_force(card: BearingCard, case: Case) -> float:
 
 
 def bearable_energy(force: float, rate: float, preload: float, relief: float) -> float:
-    """Energy (J) at which the spring force at full lift is the maximum normal force (N).
+    """Energy (J) at which the spring force at full lift reaches a normal force (N).
 
     relief: share of the spring force that the inertia of the follower may cancel.
     """
@@ -82,7 +82,7 @@ def bearable_energy(force: float, rate: float, preload: float, relief: float) ->
 
 
 def relief_of(scenarios: tuple[Scenario, ...], jump: float | None) -> float:
-    """Maximum share of the spring force that inertia cancels in the slowest load case.
+    """Maximum share of the spring force relieved by inertia in the slowest load case.
 
     The limit of jump holds in the fastest; inertia is proportional to the square of the speed.
     """

@@ -1,4 +1,4 @@
-"""Remedies: for a failed check the smallest single change of the case that turns it to pass.
+"""Remedies: smallest single change of a case that turns a failed check to pass.
 
 In the order of the calculation:
 

@@ -1,4 +1,4 @@
-"""Steps of a lever in a case: the changes of its values."""
+"""Steps of a lever: changed values as text, and the case with them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller_parts import Bearing
 from camwright.pipeline.search.change import Change, number_of, unit_at
 
-_DIGITS = 3  # of a value that a designer writes
+_DESIGN_DIGITS = 3  # of a value that a designer writes
 _OF_RATING = 0.05  # share of the rating in the change of a bearing; the rest is its dimensions
 _CROWNS = (0.5, 1.0)  # line loads of the first crown over the greatest one
 _HEAVIER = 2.0  # ratio of the drops of a crown and of the next heavier or lighter one
@@ -40,7 +40,7 @@ _SLIGHT = Decimal("1e-9")  # relative: a value is rounded up unless it is one of
 
 
 class Step(NamedTuple):
-    """Change of the values of a lever.
+    """Step of a lever: changed values as text, and size of the change.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Workbench:
-    """A case and the folder of the user's cards.
+    """Case with the user's cards, in which levers are applied.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class Workbench:
         return bool(first) and next(iter(first.values())) > 0.0
 
     def scaled(self, lever: Scaled, size: float) -> Step:
-        """Step of a lever: values of three digits, at least `size` away from those of the case."""
+        """Step of a scaled lever: values of three digits, changed by at least `size`."""
         factor = math.exp(lever.direction * size)
         before = self._numbers(lever.keys)
         texts: dict[str, str] = {}
@@ -104,7 +104,7 @@ class Workbench:
         return Step(Change.of(texts), abs(math.log(new / before[first])))
 
     def cards(self, lever: Catalogued) -> list[Step]:
-        """Steps of a part, one for each better card of the catalogue, the smallest change first."""
+        """Steps to each better card of the catalogue, the smallest change first."""
         here, unit = self.rating_here(lever), self.unit(lever)
         steps: list[tuple[float, float, Step]] = []
         for name, rating in self._ratings(lever).items():
@@ -136,11 +136,11 @@ class Workbench:
         return mark.unit if isinstance(mark, In) else ""
 
     def drilled(self, lever: Drilled) -> Step:
-        """Step of a counter-hole; as a change it is the smallest one."""
+        """Step that adds a counter-hole, counted as the smallest change."""
         return Step(Change(((lever.key, units.format(BalanceHole().wall, "mm")),)), 0.0)
 
     def crowns(self, lever: Crowned) -> list[Step]:
-        """Steps of the crown of the follower, as a change the smallest ones.
+        """Steps that add or change the follower's crown, counted as the smallest changes.
 
         None without the ends of both bodies, or where a table or a standard states the crown.
         """
@@ -192,7 +192,7 @@ class Workbench:
         return {name: mark.read(value) for name, value in known.items() if value is not None}
 
     def rating_here(self, lever: Catalogued) -> float | None:
-        """Rating of the part of the case, SI; None where it states none."""
+        """Rating of the case's own part, SI; None where it states none."""
         case = self.case
         if lever.key == CAM_MATERIAL:
             card = case.cam.material
@@ -219,7 +219,7 @@ def _rounded(key: str, value: float, direction: int) -> str:
     """Text of a value (SI) in the unit of its key, rounded away from that of the case."""
     unit = unit_at(key)
     exact = Decimal(units.in_unit(value, unit) if unit else value)
-    digit = Decimal(1).scaleb(exact.adjusted() - _DIGITS + 1)
+    digit = Decimal(1).scaleb(exact.adjusted() - _DESIGN_DIGITS + 1)
     slack = abs(exact) * _SLIGHT
     away = ROUND_CEILING if direction > 0 else ROUND_FLOOR
     number = f"{((exact - direction * slack) / digit).to_integral_value(away) * digit:f}"

@@ -32,7 +32,7 @@ class Remedy:
 
     @property
     def text(self) -> str:
-        """The change and its side effects in at most `WIDTH` columns; effects that fit alone."""
+        """Change and side effects in at most `WIDTH` columns; effects as far as they fit."""
         change = str(self.change)
         change += f" ({self.figure})" if self.figure and change else ""
         if not self.cures:
@@ -42,7 +42,7 @@ class Remedy:
 
 
 def joined(parts: Iterable[str]) -> str:
-    """Parts of a line, as many as fit into `WIDTH` columns; the first always."""
+    """Parts joined in one line, as many as fit `WIDTH` columns; at least the first."""
     line, *rest = parts
     for part in rest:
         if len(line) + 2 + len(part) <= WIDTH:

@@ -1,4 +1,4 @@
-"""Search of the smallest single change for each failed check, and its verification.
+"""Search and verification of the smallest single change for each failed check.
 
 The levers of all failed checks are pulled by rising steps, each solved once for every check that
 it can cure. Between the last two steps the value is found by interpolation, rounded, put into the
@@ -46,15 +46,16 @@ IN_A_RUN, LEAST_IN_A_RUN = 18, 3
 load cases, and the least number."""
 LEVELS = (0.15, 0.4, 0.8, math.log(4.0), 2.0, 3.0)
 """Sizes of the steps, |ln| of the factor on a value."""
-_ALIKE = 1.1  # ratio of two sizes that count as equal: the side effects then decide
-_TRIES = 3  # levers verified for a check
-_COARSE = (0.4, math.log(4.0))  # levels of the length of a crowned contact, each a new table
+_SIZES_THAT_TIE = 1.1  # ratio of two sizes that count as equal: the side effects then decide
+_LEVERS_VERIFIED = 3  # levers verified for a check
+_COARSE_LEVELS = (0.4, math.log(4.0))  # levels of the length of a crowned contact, each a new table
 _COARSE_PREVIEWS = 2
-_REFINED = 1  # interpolations between two steps, at most
+_INTERPOLATIONS = 1  # interpolations between two steps, at most
 _PREVIEWS = 5  # of one lever for a check, at most
 _ENOUGH = 0.9  # utilisation of a change that is small enough
 _FURTHER = 1.005  # size of a change over the interpolated one
-_HOPELESS = 4.0  # utilisation at the end of the range, extrapolated, beyond which a lever is left
+_HOPELESS_USE = 4.0
+"""Utilisation, extrapolated to the end of its range, beyond which a lever is left."""
 _CORNERS = 5  # worst ones of a check, at which its remedy is sought
 _FROM = 0.3  # size of a change from which it is extrapolated
 _FIRST = {
@@ -67,7 +68,7 @@ _LEAST_USED = 1e-3  # utilisation of an interpolation
 
 
 class Failure(NamedTuple):
-    """A failed check: id, utilisation at the worst corner, names of the worst corners in order."""
+    """Failed check: id, utilisation at the worst corner, worst corners in order."""
 
     check: str
     used: float
@@ -75,7 +76,7 @@ class Failure(NamedTuple):
 
 
 def failures_of(trial: Trial) -> tuple[Failure, ...]:
-    """Must-have checks of the design that fail in a trial, the worst first."""
+    """Failed must-have checks of the design in a trial, worst first."""
     failing = [
         one
         for one in trial.checks
@@ -101,7 +102,7 @@ def _worst_corners(trial: Trial, one: Check) -> tuple[str, ...]:
 
 
 class Order(NamedTuple):
-    """Plain values from which a worker process finds the remedies of a trial.
+    """Input of a remedy search in plain values, for a worker process.
 
     Parameters
     ----------
@@ -122,7 +123,7 @@ class Order(NamedTuple):
 
     @property
     def parts(self) -> tuple[Order, ...]:
-        """Orders of one half of the checks each, for two processes; related checks together.
+        """Two orders of half of the checks each, related checks together.
 
         The remedy of a check does not depend on the others that are sought.
         """
@@ -133,7 +134,7 @@ class Order(NamedTuple):
 
 
 def order_of(trial: Trial, folder: Path | None) -> Order:
-    """Order for the remedies of the worst failed checks of a trial; see `IN_A_RUN`.
+    """Remedy search of the worst failed checks of a trial; see `IN_A_RUN`.
 
     Parameters
     ----------
@@ -152,14 +153,14 @@ def order_of(trial: Trial, folder: Path | None) -> Order:
 
 
 def texts_of(order: Order) -> dict[str, str]:
-    """Remedy of each failed check in one line, by its id; a function of a worker process."""
+    """Remedies of an order, one line by check id; runs in a worker process."""
     case = parse_case(order.case, order.folder)
     made = remedies(case, order.cards, order.lift, order.failures, order.sought)
     return {name: remedy.text for name, remedy in made.items()}
 
 
 def remedies_of(trial: Trial) -> dict[str, Remedy]:
-    """Remedies of the failed must-have checks of a trial by id; empty where none fails."""
+    """Remedies of a trial's failed must-have checks by id; empty if none fails."""
     case = as_drawn(trial)
     return remedies(case, case.folder, _held_lift(trial), failures_of(trial))
 
@@ -170,7 +171,7 @@ def _held_lift(trial: Trial) -> Lift | None:
 
 
 def with_remedies(checks: Iterable[Check], texts: Mapping[str, str]) -> tuple[Check, ...]:
-    """The checks with the remedies of those that fail."""
+    """Checks with the remedies of the failed ones."""
     return tuple(
         replace(one, remedy=texts.get(one.id, "")) if one.status == "fail" else one
         for one in checks
@@ -178,7 +179,7 @@ def with_remedies(checks: Iterable[Check], texts: Mapping[str, str]) -> tuple[Ch
 
 
 def as_drawn(trial: Trial) -> Case:
-    """Case of a trial with the width of the smoother that has drawn its lift."""
+    """Case of a trial with the smoother width by which its lift was drawn."""
     case, strength = trial.case, trial.smoothing.strength
     if strength is None or strength == 1.0:
         return case
@@ -296,7 +297,9 @@ class _RemedySearch:
         for level in LEVELS:
             names = [name for name in self.failures if name not in made]
             for name, ways in self._crossings(names, below, level).items():
-                remedy = self._verified(name, sorted(ways, key=lambda way: way.size)[:_TRIES])
+                remedy = self._verified(
+                    name, sorted(ways, key=lambda way: way.size)[:_LEVERS_VERIFIED]
+                )
                 if remedy is not None:
                     made[name] = remedy
             below = level
@@ -338,7 +341,7 @@ class _RemedySearch:
         """Steps of a lever with a size above `below`, up to a level."""
         if isinstance(lever, Scaled):
             most = math.log(lever.most)
-            if below < most and (level in _COARSE or not self._is_coarse(lever)):
+            if below < most and (level in _COARSE_LEVELS or not self._is_coarse(lever)):
                 yield self.bench.scaled(lever, min(level, most))
         elif isinstance(lever, Drilled):
             if below == 0.0:
@@ -347,7 +350,7 @@ class _RemedySearch:
             if below == 0.0:
                 yield from self.bench.crowns(lever)
         else:
-            low, top = _ALIKE * below, _ALIKE * level
+            low, top = _SIZES_THAT_TIE * below, _SIZES_THAT_TIE * level
             steps = [
                 step
                 for step in self.bench.cards(lever)
@@ -355,7 +358,7 @@ class _RemedySearch:
             ]
             if not self._is_coarse(lever):
                 yield from steps
-            elif level <= _COARSE[-1]:
+            elif level <= _COARSE_LEVELS[-1]:
                 yield from steps[:1]
 
     def _is_coarse(self, lever: Scaled | Catalogued) -> bool:
@@ -386,7 +389,7 @@ class _RemedySearch:
         """
         best: tuple[int, float, Remedy] | None = None
         for way in ways:
-            if best is not None and (best[0] == 0 or way.size > _ALIKE * best[1]):
+            if best is not None and (best[0] == 0 or way.size > _SIZES_THAT_TIE * best[1]):
                 break
             try:
                 confirmed = self._confirmed(name, way)
@@ -440,7 +443,7 @@ class _RemedySearch:
     def _refined(self, name: str, way: _Crossing, lever: Scaled) -> float:
         """Size of a change at which a check meets its limit, by interpolation."""
         size, above, below = way.size, way.above, way.below
-        for _ in range(_REFINED):
+        for _ in range(_INTERPOLATIONS):
             if size >= below.step.size:
                 break
             step = self.bench.scaled(lever, size)
@@ -510,7 +513,7 @@ class _RemedySearch:
 
 
 def needed_first(without: str) -> tuple[str, ...]:
-    """What must hold before any change can cure a check, by its load cases without loads.
+    """Precondition of any remedy of a check, from its load cases without valid loads.
 
     Parameters
     ----------
@@ -532,7 +535,7 @@ def _hopeless(lever: Scaled, seen: _Seen, first: float) -> bool:
     if size < _FROM or not (0.0 < first < math.inf and 0.0 < seen.used < math.inf):
         return False
     slope = math.log(seen.used / first) / size
-    return math.log(first) + slope * math.log(lever.most) > math.log(_HOPELESS)
+    return math.log(first) + slope * math.log(lever.most) > math.log(_HOPELESS_USE)
 
 
 def _crossing(above: _Seen | None, below: _Seen, first: float) -> float:

@@ -29,7 +29,7 @@ def effects(name: str, before: Judgement, after: Judgement) -> tuple[str, ...]:
 
 
 def newly_failing(before: Judgement, after: Judgement) -> list[str]:
-    """Ids of the must-have checks that fail after a change alone."""
+    """Ids of the must-have checks that fail only after a change."""
     known = _failing(before)
     return [each for each in _failing(after) if each not in known]
 

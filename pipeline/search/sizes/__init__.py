@@ -1,4 +1,4 @@
-"""Sizing: the keys that a case leaves open, as small as its limits allow.
+"""Sizing: open keys of a case, as small as its limits allow.
 
 In the order of the calculation:
 

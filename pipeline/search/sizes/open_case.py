@@ -1,4 +1,4 @@
-"""A case that leaves keys open for `size`, and the case with their values."""
+"""Case with open keys for `size`, and its completion."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _HEAD = "\n# Values of the keys that the case left open, by camwright size.\n"
 
 @dataclass(frozen=True, eq=False)
 class OpenCase:
-    """A case with open keys.
+    """Case with open keys.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class OpenCase:
     folder: Path | None = None
 
     def with_sources(self, values: Mapping[str, float], sources: Mapping[str, str]) -> str:
-        """Text of the complete case: that of the file, and the values as tables ``[[added]]``.
+        """Text of the complete case: the file's text, the values as tables ``[[added]]``.
 
         Parameters
         ----------
@@ -76,7 +76,7 @@ class OpenCase:
         return f"{self.text.rstrip()}\n{_HEAD}{tomli_w.dumps({'added': [table]})}"
 
     def sized(self, text: str) -> Case:
-        """The complete case from its text.
+        """Complete case, from its text.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class OpenCase:
 
 
 def read_open_case(path: str | Path, free: Collection[str] = ()) -> OpenCase:
-    """Read a case that may leave the keys of `GAPS` open.
+    """Case read from a file that may leave the keys of `GAPS` open.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def read_open_case(path: str | Path, free: Collection[str] = ()) -> OpenCase:
 def parse_open_case(
     content: str | bytes, folder: Path | None = None, free: Collection[str] = ()
 ) -> OpenCase:
-    """A case with open keys from its text; included files are read from `folder`."""
+    """Case with open keys from its text; included files are read from `folder`."""
     stated = tables_in(content)
     text = content if isinstance(content, str) else content.decode("utf-8-sig")
     if free:

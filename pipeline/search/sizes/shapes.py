@@ -1,4 +1,4 @@
-"""Prime or base radius, offset, roller and face of an open case, by its geometric limits."""
+"""Prime or base radius, offset, roller and face of an open case, by geometric limits."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 
 DIGITS = 6
 """Decimal digits of a sized length in m: a micrometre."""
-_HALVINGS = 10
+_ROLLER_HALVINGS = 10
 """Of the range of a roller; a thousandth of the tool radius is left."""
-_ALIKE = 1e-9
+_RADII_THAT_TIE = 1e-9
 """Relative difference of two radii up to which they are equal."""
 
 
@@ -53,7 +53,7 @@ NARROWEST = "narrowest face"
 
 
 class Shape(NamedTuple):
-    """Prime or base radius, offset, and roller radius or face width, m; what governs, in words.
+    """Prime or base radius, offset, roller radius or face width, m; governing limit in words.
 
     Under a flat face the prime radius is the base radius.
     """
@@ -73,7 +73,7 @@ class Shape(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RollerShapes:
-    """Shapes of a roller cam within the limits of a case.
+    """Shapes of a roller cam within the geometric limits of a case.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ class RollerShapes:
         if limits.back != limits.rise:
             governs += f", {shown(limits.back, 'deg')} on the return"
         by_curvature = self.cam.least_prime_radius(limits, offset)
-        if by_curvature > by_angle * (1.0 + _ALIKE):
+        if by_curvature > by_angle * (1.0 + _RADII_THAT_TIE):
             prime, governs = by_curvature, "curvature of the pitch curve"
         wall = least_base_circle(self.case) + roller
         if wall > prime:
@@ -163,11 +163,11 @@ class RollerShapes:
                 return roller
             without = self._smallest(replace(self.limits(roller), concave_radius=0.0))
             concave = self.cam.extremes(*without).concave_radius.value
-            return None if concave * (1.0 + _ALIKE) < tool - roller else roller
+            return None if concave * (1.0 + _RADII_THAT_TIE) < tool - roller else roller
 
         if ROLLER not in self.gaps or fits(low) is not None:
             return low
-        return first_passing(fits, low, (tool,), _HALVINGS) or tool
+        return first_passing(fits, low, (tool,), _ROLLER_HALVINGS) or tool
 
     def _offset(self, prime: float, roller: float) -> float:
         if OFFSET not in self.gaps:
@@ -175,7 +175,7 @@ class RollerShapes:
         return rounded(self.cam.best_offset(prime, self.limits(roller)))
 
     def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:
-        """A shape with a larger prime radius, m, and the offset that fits it."""
+        """Shape with a larger prime radius, m, and its best offset."""
         offset = self._offset(prime, shape.roller_radius)
         return Shape(prime, offset, shape.roller_radius, shape.face_width, governs, BALANCE)
 
@@ -197,7 +197,7 @@ class RollerShapes:
         return f"{words}; roller {shown(low, 'mm')} to {shown(high, 'mm')}"
 
     def record(self, shape: Shape) -> RollerSizeRecord:
-        """Lengths of a shape with its extremes on the exact lift."""
+        """Record of a shape with its extremes on the exact lift."""
         pitch = self.cam.extremes(shape.prime_radius, shape.offset)
         concave = pitch.concave_radius.value
         return {
@@ -248,7 +248,7 @@ class RollerShapes:
 
 @dataclass(frozen=True, eq=False)
 class FaceShapes:
-    """Shapes of a cam under a flat face within the limits of a case; see `RollerShapes`."""
+    """Shapes of a flat-face cam within the geometric limits of a case; see `RollerShapes`."""
 
     case: Case
     gaps: tuple[str, ...]
@@ -286,7 +286,7 @@ class FaceShapes:
         )
 
     def record(self, shape: Shape) -> FaceSizeRecord:
-        """Lengths of a shape with its extremes on the exact lift."""
+        """Record of a shape with its extremes on the exact lift."""
         return {
             **_lengths(shape),
             "face_width_mm": in_unit(shape.face_width, "mm"),
@@ -339,22 +339,22 @@ def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
 
 
 def allowance(case: Case) -> float:
-    """Half of the profile tolerance, m, by which a cam may be smaller than drawn."""
+    """Half of the profile tolerance, m: possible undersize of the cam."""
     return 0.5 * case.cam.profile_tolerance
 
 
 def least_base_circle(case: Case) -> float:
-    """Least radius of the base circle by the wall around the bore, m."""
+    """Least base radius by the wall around the bore, m."""
     return case.limits[MINIMUM_WALL] * case.cam.held_radius
 
 
 def rounded(length: float) -> float:
-    """A length to the last digit of a drawing, m."""
+    """Length rounded to the last digit of a drawing, m."""
     return round(float(length), DIGITS) + 0.0  # no negative zero
 
 
 def rounded_up(length: float) -> float:
-    """A length at least half a digit of a drawing greater, m: a limit is kept with a margin."""
+    """Length rounded up by at least half a drawing digit, m."""
     return round(float(np.ceil(length * 10**DIGITS + 0.5)) / 10**DIGITS, DIGITS)
 
 

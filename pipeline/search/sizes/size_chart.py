@@ -1,4 +1,4 @@
-"""Pressure angle and curvature over the base radius: the classical chart of cam size."""
+"""Chart of cam size: pressure angle and curvature over the base radius."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from camwright.pipeline.case.limits import UNDERCUT_FACTOR
 from camwright.pipeline.records.size_document import SizeChart, SizeCurve, SizePanel
 from camwright.pipeline.search.sizes.shapes import FaceShapes, RollerShapes, Shape, Shapes
 
-_LEAST, _MOST = 0.4, 2.2
+_LEAST_RADIUS, _GREATEST_RADIUS = 0.4, 2.2
 """Range of the chart over the prime or base radius of the sized cam."""
-_CLEAR = 1.02
+_BEYOND_OFFSET = 1.02
 """Least prime radius of the chart over offset and roller radius."""
-_POINTS, _BEST_POINTS = 73, 19
+_CHART_POINTS, _BEST_POINTS = 73, 19
 
 
 def chart_record(case: Case, shapes: Shapes, shape: Shape) -> SizeChart:
-    """Curves of the chart about a sized shape, in mm and deg."""
+    """Curves of the chart around a sized shape, in mm and deg."""
     panels = (
         _face_panels(case, shapes, shape)
         if isinstance(shapes, FaceShapes)
@@ -33,8 +33,14 @@ def chart_record(case: Case, shapes: Shapes, shape: Shape) -> SizeChart:
 
 def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[SizePanel]:
     cam, inset = shapes.cam, shape.roller_radius
-    low = max(_LEAST * shape.prime_radius, _CLEAR * abs(shape.offset), _CLEAR * shape.roller_radius)
-    primes, some = (_about(low, shape.prime_radius, count) for count in (_POINTS, _BEST_POINTS))
+    low = max(
+        _LEAST_RADIUS * shape.prime_radius,
+        _BEYOND_OFFSET * abs(shape.offset),
+        _BEYOND_OFFSET * shape.roller_radius,
+    )
+    primes, some = (
+        _about(low, shape.prime_radius, count) for count in (_CHART_POINTS, _BEST_POINTS)
+    )
 
     def best(prime: float) -> float:
         offset = cam.best_offset(prime, shapes.angle_limits)
@@ -64,7 +70,10 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[SizePanel]:
 
 
 def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[SizePanel]:
-    bases, cam = _about(_LEAST * shape.prime_radius, shape.prime_radius, _POINTS), shapes.cam
+    bases, cam = (
+        _about(_LEAST_RADIUS * shape.prime_radius, shape.prime_radius, _CHART_POINTS),
+        shapes.cam,
+    )
     radii = bases + cam.least_radius(0.0).value
     factors = [cam.undercut_factor(float(each)) for each in bases]
     limit, least = case.limits[UNDERCUT_FACTOR], in_unit(shapes.least_radius, "mm")
@@ -76,7 +85,7 @@ def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[SizePanel
 
 
 def _about(least: float, radius: float, count: int) -> Array:
-    return np.linspace(least, max(_MOST * radius, 1.5 * least), count)
+    return np.linspace(least, max(_GREATEST_RADIUS * radius, 1.5 * least), count)
 
 
 def _curve(

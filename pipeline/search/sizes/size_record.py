@@ -46,7 +46,7 @@ def size_record(sizing: Sizing) -> SizeDocument:
 
 
 def size_lines(sizing: Sizing) -> Iterator[str]:
-    """Sized values with their reasons, the cam and its checks, a line each."""
+    """Lines of a sizing: values with reasons, the cam and its checks."""
     if not sizing.values:
         yield f"no key is open; size finds {', '.join(GAPS)}"
     for key, value in sizing.values.items():

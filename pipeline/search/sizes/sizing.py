@@ -1,4 +1,4 @@
-"""Values of the keys that a case leaves open, as small as its limits allow, and their checks."""
+"""Open keys of a case: smallest values within its limits, and their checks."""
 
 from __future__ import annotations
 
@@ -112,11 +112,11 @@ JUDGED: Mapping[str, tuple[Declaration, ...]] = {
 
 _SCREENED = Depth(Tier.SCREENING, undercut=True)
 _PREVIEWED = Depth(corners=None, undercut=True)
-_HALF_WIDTHS = 1.25
+_FACE_HALF_WIDTHS = 1.25
 """Half-widths of the contact that a face has beside it: the tolerances press more than nominal."""
-_STEP, _STEPS, _HALVINGS = 1.1, 16, 12
+_SIZE_STEP, _SIZE_STEPS, _SIZE_HALVINGS = 1.1, 16, 12
 """Factor and number of the steps by which a cam grows: to 4.6 times the radius, 2e-5 of it left."""
-_MARGIN = 1.001
+_USE_MARGIN = 1.001
 """The ratio of preview and screening changes slightly with the radius."""
 _STIFFER, _LARGER, _TRIES = 1.1, 1.01, 8
 """Factors of rate and of radius by which a failing preview is repeated; how often."""
@@ -128,7 +128,7 @@ ratio of passing to failing value at which the search ends."""
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sizing(Displayed):
-    """Sizes of an open case.
+    """Sizes of an open case, with the checks they decide.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ class Sizing(Displayed):
         )
 
     def plot(self) -> tuple[Axes, ...]:
-        """The `chart`, a panel per quantity with its limits."""
+        """Figure of the `chart`, a panel for each quantity with its limits."""
         quantities = self.chart["panels"]
         panels = panels_of(len(quantities))
         for axes, panel in zip(panels, quantities, strict=True):
@@ -204,14 +204,14 @@ class Sizing(Displayed):
 
     @property
     def no_size(self) -> bool:
-        """Whether checks fail that a larger cam could pass, and none tried does."""
+        """Whether checks fail that depend on the size, at every size tried."""
         small = any(each.status == "fail" and each.declaration in _GROWTH for each in self.checks)
         return small and PRIME in self.opened.gaps
 
     @property
     def greatest_tried(self) -> float:
-        """Greatest prime or base radius that was tried, m."""
-        return self.exact.prime_radius * _STEP**_STEPS
+        """Greatest prime or base radius tried, m."""
+        return self.exact.prime_radius * _SIZE_STEP**_SIZE_STEPS
 
 
 def unit_of(key: str) -> str:
@@ -406,7 +406,7 @@ class _SizeSearch:
         if FACE in gaps:
             widest = max(
                 float(np.max(np.abs(each.contour.pitch.push_arm(each.theta))
-                             + _HALF_WIDTHS * each.contact.half_width))
+                             + _FACE_HALF_WIDTHS * each.contact.half_width))
                 for each in screened.solved.cycles
             )  # fmt: skip
             shape = shape._replace(face_width=rounded_up(max(2.0 * widest, shape.face_width)))
@@ -442,8 +442,8 @@ class _SizeSearch:
             return None if screened.failing(_GROWTH, raised) else larger
 
         low = shape.prime_radius
-        primes = islice(accumulate(repeat(_STEP, _STEPS), mul, initial=low), 1, None)
-        return first_passing(passing, low, primes, _HALVINGS) or least
+        primes = islice(accumulate(repeat(_SIZE_STEP, _SIZE_STEPS), mul, initial=low), 1, None)
+        return first_passing(passing, low, primes, _SIZE_HALVINGS) or least
 
     def _judged(self, shape: Shape, spring: ChosenSpring) -> _Sized:
         """A shape with the judgement of the complete case."""
@@ -486,7 +486,7 @@ def _raised(small: tuple[Check, ...], screened: Judgement) -> dict[str, float]:
     """Utilisation of checks in the preview over that of the screening, by id."""
     below = {each.id: each.utilisation for each in screened.every}
     return {
-        each.id: _MARGIN * each.utilisation / share
+        each.id: _USE_MARGIN * each.utilisation / share
         for each in small
         if each.utilisation and (share := below.get(each.id))
     }

@@ -1,4 +1,4 @@
-"""Rate and preload of an open case: contact at all speeds, within its tolerances."""
+"""Spring rate and preload of an open case: contact at all speeds and tolerances."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from camwright.pipeline.search.sizes.spring_size import (
     smallest_spring,
 )
 
-_DIGITS = 4
+_SPRING_DIGITS = 4
 """Significant digits of a sized rate or preload."""
-_ROUND_OFF = 1e-12
+_DIGIT_ROUND_OFF = 1e-12  # relative, of a value that has the digits already
 
 
 def conditions_of(case: Case) -> tuple[HoldingCondition, ...]:
-    """Conditions that hold the follower on the cam, at the worst ends of the tolerances.
+    """Contact conditions of the follower at the worst ends of the tolerances.
 
     No jump up to `limits.jump_speed` times the greatest speed, and the share
     `limits.contact_force_margin` of the preload left at that speed.
@@ -73,7 +73,7 @@ class ChosenSpring(NamedTuple):
 def spring_of(
     case: Case, gaps: Sequence[str], lift: LiftParts, stiff: ChosenSpring | None = None
 ) -> ChosenSpring:
-    """Spring of the open keys: its least energy at full lift, or the least preload or rate.
+    """Spring for the open keys: of least energy at full lift, or of least preload or rate.
 
     What is stated stays: the preload is the least one that holds the follower beside a stated
     rate, or the rate beside a stated preload. The rate of a spring with a design is that of the
@@ -121,12 +121,12 @@ def spring_of(
 
 
 def more_preload(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
-    """A spring with a greater preload, for a reason."""
+    """Spring with its preload multiplied by `factor` and rounded up; reason in words."""
     return spring._replace(preload=_up_to_digits(factor * spring.preload), preload_by=reason)
 
 
 def stiffer(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
-    """A spring with a greater rate, for a reason."""
+    """Spring with its rate multiplied by `factor` and rounded up; reason in words."""
     return spring._replace(rate=_up_to_digits(factor * spring.rate), rate_by=reason)
 
 
@@ -134,16 +134,16 @@ def _up_to_digits(value: float) -> float:
     """A rate or preload, >= 0, to four digits, not below it."""
     if value == 0.0:
         return 0.0
-    step = 10.0 ** (np.floor(np.log10(value)) - _DIGITS + 1)
-    return _to_digits(float(np.ceil(value / step * (1.0 - _ROUND_OFF)) * step))
+    step = 10.0 ** (np.floor(np.log10(value)) - _SPRING_DIGITS + 1)
+    return _to_digits(float(np.ceil(value / step * (1.0 - _DIGIT_ROUND_OFF)) * step))
 
 
 def _to_digits(value: float) -> float:
-    return float(f"{value:.{_DIGITS}g}")
+    return float(f"{value:.{_SPRING_DIGITS}g}")
 
 
 def greatest_coil_mass(case: Case, rate: float) -> float:
-    """Mass of the active coils, kg, at which the surge frequency is at its limit.
+    """Mass of the active coils, kg, at the limit of the surge frequency.
 
     f1 = sqrt(k/m)/2 at `limits.spring_surge` times the greatest frequency of the cam.
     """

@@ -1,4 +1,4 @@
-"""Preload and rate of a follower spring that hold the follower on the cam."""
+"""Preload and rate of a spring that keeps the follower in contact."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _RATE_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, kw_only=True)
 class HoldingCondition:
-    """The spring holds the follower at a speed: P + k s + F + m w^2 s'' + c w s' >= share P.
+    """Contact condition at a speed: P + k s + F + m w^2 s'' + c w s' >= share P.
 
     F is `held` and the force of the machine over the cam angle.
 
@@ -73,13 +73,13 @@ class HoldingCondition:
         positive("preload_factor", self.preload_factor)
 
     def preload(self, rate: float, s: Array, s1: Array, s2: Array) -> Array:
-        """Preload (...), N, that a cam angle needs at a rate, N/m."""
+        """Preload (...), N, required at a cam angle by a rate, N/m."""
         w = self.cam_speed
         throw = -self.mass * w**2 * s2 - self.damping * w * s1 - self.held
         return self._of_force(self.rate_factor * rate * s - throw)
 
     def preload_under(self, force: ExternalForce, theta: Array) -> Array:
-        """Preload (...), N, that the force of the machine takes at cam angles (...), rad."""
+        """Preload (...), N, required by the machine force at cam angles (...), rad."""
         return self._of_force(force.at(theta))
 
     def _of_force(self, towards: Array) -> Array:
@@ -109,7 +109,7 @@ def preload_needed(
     conditions: Sequence[HoldingCondition],
     force: ExternalForce = NO_FORCE,
 ) -> Extremum:
-    """Least preload that holds the follower in all conditions, N, and its cam angle, rad.
+    """Least preload for all contact conditions, N, and its cam angle, rad.
 
     Negative if the rate alone holds it.
 
@@ -135,7 +135,7 @@ def smallest_spring(
     rate: float | None = None,
     force: ExternalForce = NO_FORCE,
 ) -> SpringSize:
-    """Spring of the least energy at full lift, hence of the least wire at a given stress.
+    """Spring of least energy at full lift, hence least wire at a given stress.
 
     The energy (P + k h)^2 / (2 k) with the least preload P(k), a convex function, is convex in the
     rate k: it has one minimum.
@@ -180,7 +180,7 @@ def least_rate(
     conditions: Sequence[HoldingCondition],
     force: ExternalForce = NO_FORCE,
 ) -> float:
-    """Least rate that holds the follower in all conditions beside a preload, N/m.
+    """Least rate for all contact conditions at a preload, N/m.
 
     0 if the preload alone holds it. The preload needed, P(k), falls with the rate: it crosses
     the given one once.
