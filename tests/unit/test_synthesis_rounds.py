@@ -32,7 +32,7 @@ def case() -> Case:
     """A case with few splines, corrected by its solutions alone and for no corners."""
     values = {"coefficients": 24, "starts": 1, "corners": False, "correction_margin": 0.0}
     stated = {f"smoothing.{name}": value for name, value in values.items()}
-    stated["solver.max_trials"] = preview._ROUNDS
+    stated["solver.max_trials"] = preview._PREVIEW_ROUNDS
     return with_values(read_case(PRESS).with_positions(72), stated)
 
 
