@@ -352,29 +352,35 @@ def exchange_of(size: float, *failing: str) -> Any:
 
 
 def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A shaft that passes thrice, a stem that passes once the shaft is the least, no roller."""
-    tried: list[tuple[str, Any]] = []
+    """A shaft that passes down to 6, a stem that passes once the shaft is the least, no roller."""
+    tried: list[Any] = []
 
-    def way(part: str, steps: dict[Any, Any]) -> Any:
-        return lambda design, _: (
-            part_exchange.Smaller(part, str(design), str(each), each)
-            for each in steps.get(design, [])
-        )
+    def way(part: str, shelf: dict[Any, Any]) -> Any:
+        def smaller(design: Any, _: Any, stride: int) -> Any:
+            lesser = shelf.get(design, [])  # by decreasing size
+            for each in lesser[: min(stride, len(lesser))][-1:]:
+                yield part_exchange.Smaller(part, str(design), str(each), each)
 
-    ways = way("shaft", {9: [8], 8: [7], 7: [6]}), way("roller", {6: [60], 5: [50]}), way(
-        "stem", {9: [90], 6: [5], 5: [4]}
-    )  # fmt: skip
+        return smaller
+
+    shafts = [12, 11, 10, 9, 8, 7, 6, 3, 2]
+    ways = (
+        way("shaft", {each: shafts[k + 1 :] for k, each in enumerate(shafts)}),
+        way("roller", {6: [60], 5: [50]}),
+        way("stem", {12: [90], 6: [5], 5: [4]}),
+    )
     monkeypatch.setattr(part_exchange, "_WAYS", ways)
     monkeypatch.setattr(part_exchange.Shelves, "of", lambda _: None)
 
     def solved(design: Any) -> Any:
         tried.append(design)
-        return exchange_of(design, *(["Fatigue"] if design in (60, 50, 90, 4) else []))
+        return exchange_of(design, *(["Fatigue"] if design in (60, 50, 90, 4, 3, 2) else []))
 
     study: Any = SimpleNamespace(solved=solved)
-    result = part_exchange.exchanged(study, exchange_of(9), ALONE, SILENT)
+    result = part_exchange.exchanged(study, exchange_of(12), ALONE, SILENT)
     assert result.point.size == 5
-    assert [each.becomes for each in result.kept] == ["8", "7", "6", "5"]
+    assert [each.becomes for each in result.kept] == ["11", "9", "7", "6", "5"]
+    assert {3, 2} <= set(tried) and not {10, 8} & set(tried)  # strides of 1, 2, 4, 2, 4, 2, 1
     record = result.as_record()
     assert part_errors("design", "ExchangesRecord", record) == []
     assert {each["part"]: each["why"] for each in record["failing"]} == {
@@ -382,7 +388,7 @@ def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) 
     }  # fmt: skip
     assert result.complete and "no part can be exchanged" in record["claim"]
     monkeypatch.setattr(part_exchange, "_EXCHANGES_MAX", 2)
-    stopped = part_exchange.exchanged(study, exchange_of(9), ALONE, SILENT)
+    stopped = part_exchange.exchanged(study, exchange_of(12), ALONE, SILENT)
     assert not stopped.complete and "may pass" in stopped.sentence
 
 
@@ -398,7 +404,7 @@ def test_the_next_smaller_parts_follow_the_catalogues(tmp_path: Path) -> None:
     prime = 1e-4 * np.ceil(1e4 * frame.least_radius)
     design = Machinery(task, frame, point, prime, 9e-3, 0.04, oils=oils_of(None))
     shelves = part_exchange.Shelves.of(PointStudy(task, tmp_path, "torque.csv", ""))
-    smaller = [each for way in part_exchange._WAYS for each in way(design, shelves)]
+    smaller = [each for way in part_exchange._WAYS for each in way(design, shelves, 1)]
     by_part: dict[str, list[Any]] = {}
     for each in smaller:
         by_part.setdefault(each.part, []).append(each.design)

@@ -1,4 +1,4 @@
-"""Exchange of a passing design's parts for the next smaller ones while it passes.
+"""Exchange of a passing design's parts for smaller ones while it passes.
 
 Each exchange is solved and judged as the points of the front are: preview at all tolerance corners.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.worker_processes import Crew
@@ -22,6 +23,7 @@ from camwright.pipeline.search.machine.machine_frame import MODULES, STEMS
 from camwright.pipeline.search.machine.synthesised_points import PointStudy, Solved
 from camwright.pipeline.search.machine.wound_springs import of_catalogue
 
+T = TypeVar("T")
 _EXCHANGES_MAX = 24  # designs tried
 _SOLVED_AT_ONCE = 2  # solved at once
 _EQUAL_LENGTHS = 1e-6  # m, of equal sizes
@@ -50,7 +52,7 @@ class Shelves:
 
 @dataclass(frozen=True)
 class Smaller:
-    """Design with one part exchanged for the next smaller one, in words."""
+    """Design with one part exchanged for a smaller one, in words."""
 
     part: str
     was: str
@@ -91,34 +93,41 @@ class Exchanged:
 def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progress) -> Exchanged:
     """Design with the smallest parts reachable by single exchanges.
 
-    One part at a time becomes the next smaller of its catalogue: the shaft with key and bearings,
+    One part at a time becomes a smaller one of its catalogue: the shaft with key and bearings,
     the roller, the spring if it is of a catalogue, the stem with its bushes, the module of the
-    gear. A hub that becomes smaller is tried with the base circle less by as much, then with the
-    same one; oil, fork and housing follow from the parts. An exchange that passes is kept;
-    the search ends when every part of the same design has failed.
+    gear. The stride along a catalogue doubles with each exchange that passes and halves with each
+    that fails, down to the next smaller part. A hub that becomes smaller is tried with the base
+    circle less by as much, then with the same one; oil, fork and housing follow from the parts. An
+    exchange that passes is kept; the search ends when the next smaller of every part of the same
+    design has failed.
     """
     shelves, kept = Shelves.of(study), list[Smaller]()
     failing: dict[str, tuple[Smaller, str]] = {}
     place = unchanged = tried = 0
+    stride = 1
     while unchanged < len(_WAYS) and tried < _EXCHANGES_MAX:
         progress.advance(tried, _EXCHANGES_MAX)
-        ways = list(_WAYS[place](point.design, shelves))
-        after = _WAYS[(place + 1) % len(_WAYS)](point.design, shelves)
-        ahead = (
-            [] if len(ways) >= _SOLVED_AT_ONCE else list(after)[:1]
-        )  # solved while another waits
+        ways = list(_WAYS[place](point.design, shelves, stride))
+        after = _WAYS[(place + 1) % len(_WAYS)](point.design, shelves, 1)
+        # Solved while another waits, and of use if that fails: not where exchanges pass.
+        ahead = [] if not unchanged or len(ways) >= _SOLVED_AT_ONCE else list(after)[:1]
         solving = [workers.submit(study.solved, each.design) for each in (*ways, *ahead)]
         tried += len(ways)
-        unchanged += 1
         for each, solution in zip(ways, solving, strict=False):
             solved: Solved = solution.result()
             if solved.has_cam and solved.passes and solved.size <= point.size + _EQUAL_LENGTHS:
                 kept.append(each)
                 point, failing, unchanged = solved, {}, 0
+                stride *= 2
                 break
-            failing[each.part] = each, why_not(solved)
-        if unchanged:
-            place = (place + 1) % len(_WAYS)
+            if stride == 1:
+                failing[each.part] = each, why_not(solved)
+        else:
+            if stride == 1 or not ways:
+                unchanged += 1
+                place = (place + 1) % len(_WAYS)
+                stride = 1
+            stride = max(stride // 2, 1)
     progress.advance(_EXCHANGES_MAX, _EXCHANGES_MAX)
     complete = unchanged >= len(_WAYS)
     return Exchanged(point, tuple(kept), tuple(failing.values()), complete)
@@ -140,12 +149,12 @@ def _words(each: Smaller) -> ExchangeRecord:
     return {"part": each.part, "from": each.was, "to": each.becomes}
 
 
-def _shaft(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
+def _shaft(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smaller]:
     frame = design.frame
     lesser = [each for each in shelves.seats if each.bore < frame.seat.bore]
     if not lesser:
         return
-    seat = lesser[-1]
+    seat = _down(lesser, stride)
     smaller = replace(frame, seat=seat)
     hub = frame.least_radius - smaller.least_radius
     words = _mm(frame.seat.bore), _mm(seat.bore)
@@ -155,12 +164,12 @@ def _shaft(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
         yield Smaller("shaft with key and bearings", *words, _with_cam(design, other))
 
 
-def _roller(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
+def _roller(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smaller]:
     frame = design.frame
     order = list(shelves.rollers)
     if frame.roller not in order or order[0] == frame.roller:
         return
-    name = order[order.index(frame.roller) - 1]
+    name = _down(order[: order.index(frame.roller)], stride)
     smaller = replace(frame, roller=name, card=shelves.rollers[name])
     if smaller.stem > frame.stem:
         smaller = replace(smaller, stem_chosen=frame.stem)
@@ -169,7 +178,7 @@ def _roller(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
     yield Smaller("roller", frame.roller, name, other)
 
 
-def _spring(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
+def _spring(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smaller]:
     point = design.spring
     spring = point.spring
     if not spring.name:  # wound for its forces
@@ -177,7 +186,7 @@ def _spring(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
     lesser = [each for each in shelves.springs if each.mass < spring.mass]
     if not lesser:
         return
-    lighter = lesser[-1]
+    lighter = _down(lesser, stride)
     speed = design.task.cam_speed
     for other in of_catalogue([lighter], [point.energy], [point.travel], speed):
         drawn = replace(other.spring, temperature=spring.temperature, relaxation=spring.relaxation)
@@ -189,28 +198,35 @@ def _spring(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
         )
 
 
-def _stem(design: Machinery, _: Shelves) -> Iterator[Smaller]:
+def _stem(design: Machinery, _: Shelves, stride: int) -> Iterator[Smaller]:
     frame = design.frame
     lesser = [1e-3 * each for each in STEMS if 1e-3 * each < frame.stem - _EQUAL_LENGTHS]
-    for size in lesser[-1:]:
+    if lesser:
+        size = _down(lesser, stride)
         other = replace(design, frame=replace(frame, stem_chosen=size))
         yield Smaller("stem with bushes", _mm(frame.stem), _mm(size), other)
 
 
-def _module(design: Machinery, _: Shelves) -> Iterator[Smaller]:
+def _module(design: Machinery, _: Shelves, stride: int) -> Iterator[Smaller]:
     frame = design.frame
-    lesser = [1e-3 * each for each in MODULES if 1e-3 * each < frame.module - _EQUAL_LENGTHS]
-    for size in lesser[-1:]:
-        if not 0.5 * size * frame.teeth[0] > _RIM * frame.seat.bore:
-            return
+    rim = _RIM * frame.seat.bore
+    modules = [1e-3 * each for each in MODULES if 0.5e-3 * each * frame.teeth[0] > rim]
+    lesser = [each for each in modules if each < frame.module - _EQUAL_LENGTHS]
+    if lesser:
+        size = _down(lesser, stride)
         other = replace(design, frame=replace(frame, module=size))
         yield Smaller("module of the gear", _mm(frame.module), _mm(size), other)
 
 
-_WAYS: tuple[Callable[[Machinery, Shelves], Iterator[Smaller]], ...] = (
+def _down(lesser: Sequence[T], stride: int) -> T:
+    """Part a stride below, of smaller parts by increasing size; the smallest if there are fewer."""
+    return lesser[-min(stride, len(lesser))]
+
+
+_WAYS: tuple[Callable[[Machinery, Shelves, int], Iterator[Smaller]], ...] = (
     _shaft, _roller, _spring, _stem, _module,
 )  # fmt: skip
-"""Designs with one part the next smaller, the part of the greatest gain first."""
+"""Designs with one part smaller by a stride, the part of the greatest gain first."""
 
 
 def _with_cam(design: Machinery, other: Machinery) -> Machinery:
