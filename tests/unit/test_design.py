@@ -376,7 +376,7 @@ def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) 
         tried.append(design)
         return exchange_of(design, *(["Fatigue"] if design in (60, 50, 90, 4, 3, 2) else []))
 
-    study: Any = SimpleNamespace(solved=solved)
+    study: Any = SimpleNamespace(solved=solved, text=str)
     result = part_exchange.exchanged(study, exchange_of(12), ALONE, SILENT)
     assert result.point.size == 5
     assert [each.becomes for each in result.kept] == ["11", "9", "7", "6", "5"]

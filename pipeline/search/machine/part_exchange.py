@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from camwright.pipeline.base.progress import Progress
-from camwright.pipeline.base.worker_processes import Crew
+from camwright.pipeline.base.worker_processes import Crew, PendingCall
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.catalogue import better_roller, catalogue_of, undominated
 from camwright.pipeline.case.cards.shaft_seats import Seat, seats
@@ -25,7 +25,6 @@ from camwright.pipeline.search.machine.wound_springs import of_catalogue
 
 T = TypeVar("T")
 _EXCHANGES_MAX = 24  # designs tried
-_SOLVED_AT_ONCE = 2  # solved at once
 _EQUAL_LENGTHS = 1e-6  # m, of equal sizes
 _RADIUS_STEP = 1e-4  # m, of a prime radius as a drawing states it
 _RIM = 0.8  # bores in the radius of the gear, at least
@@ -103,17 +102,25 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
     """
     shelves, kept = Shelves.of(study), list[Smaller]()
     failing: dict[str, tuple[Smaller, str]] = {}
+    begun: dict[str, PendingCall] = {}
+
+    def solving(design: Machinery) -> PendingCall:
+        text = study.text(design)
+        if text not in begun:
+            begun[text] = workers.submit(study.solved, design)
+        return begun[text]
+
     place = unchanged = tried = 0
     stride = 1
     while unchanged < len(_WAYS) and tried < _EXCHANGES_MAX:
-        progress.advance(tried, _EXCHANGES_MAX)
         ways = list(_WAYS[place](point.design, shelves, stride))
         after = _WAYS[(place + 1) % len(_WAYS)](point.design, shelves, 1)
-        # Solved while another waits, and of use if that fails: not where exchanges pass.
-        ahead = [] if not unchanged or len(ways) >= _SOLVED_AT_ONCE else list(after)[:1]
-        solving = [workers.submit(study.solved, each.design) for each in (*ways, *ahead)]
-        tried += len(ways)
-        for each, solution in zip(ways, solving, strict=False):
+        for each, then in zip(ways, [*ways[1:], next(after, None)], strict=False):
+            progress.advance(tried, _EXCHANGES_MAX)
+            tried += 1
+            solution = solving(each.design)
+            if unchanged and then is not None:  # likely to fail: solved while another waits
+                solving(then.design)
             solved: Solved = solution.result()
             if solved.has_cam and solved.passes and solved.size <= point.size + _EQUAL_LENGTHS:
                 kept.append(each)
