@@ -146,9 +146,18 @@ class BearingLine:
             self._bound[touch] = self._bound_to(np.flatnonzero(np.frombuffer(touch, dtype=bool)))
         return self._bound[touch]
 
+    @cached_property
+    def _modes(self) -> Array:
+        """Rigid modes (k, 2), the rotation that of the length."""
+        return np.asarray(self.rigid_modes / np.array([1.0, self.positions[-1]]))
+
+    @cached_property
+    def _softness(self) -> Array:
+        """Compliance (k, k) of beam and bore, m/N."""
+        return np.asarray(self.compliance + np.diag(1.0 / self.stiffness))
+
     def _bound_to(self, knots: NDArray[np.intp]) -> BoundKnots:
-        modes = self.rigid_modes[knots] / np.array([1.0, self.positions[-1]])
-        softness = self.compliance[np.ix_(knots, knots)] + np.diag(1.0 / self.stiffness[knots])
+        modes, softness = self._modes[knots], self._softness[knots[:, None], knots]
         scale = (
             float(softness.diagonal().max(initial=0.0)) or 1.0
         )  # no knot: a step without meaning

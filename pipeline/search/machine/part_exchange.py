@@ -94,8 +94,8 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
 
     One part at a time becomes a smaller one of its catalogue: the shaft with key and bearings,
     the roller, the spring if it is of a catalogue, the stem with its bushes, the module of the
-    gear. The stride along a catalogue doubles with each exchange that passes and halves with each
-    that fails, down to the next smaller part. A hub that becomes smaller is tried with the base
+    gear. The stride along a catalogue doubles while exchanges pass; once one fails it halves with
+    each, down to the next smaller part. A hub that becomes smaller is tried with the base
     circle less by as much, then with the same one; oil, fork and housing follow from the parts. An
     exchange that passes is kept; the search ends when the next smaller of every part of the same
     design has failed.
@@ -111,7 +111,7 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
         return begun[text]
 
     place = unchanged = tried = 0
-    stride = 1
+    stride, growth = 1, 2.0
     while unchanged < len(_WAYS) and tried < _EXCHANGES_MAX:
         ways = list(_WAYS[place](point.design, shelves, stride))
         after = _WAYS[(place + 1) % len(_WAYS)](point.design, shelves, 1)
@@ -125,7 +125,7 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
             if solved.has_cam and solved.passes and solved.size <= point.size + _EQUAL_LENGTHS:
                 kept.append(each)
                 point, failing, unchanged = solved, {}, 0
-                stride *= 2
+                stride = max(int(growth * stride), 1)
                 break
             if stride == 1:
                 failing[each.part] = each, why_not(solved)
@@ -133,8 +133,9 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
             if stride == 1 or not ways:
                 unchanged += 1
                 place = (place + 1) % len(_WAYS)
-                stride = 1
-            stride = max(stride // 2, 1)
+                stride, growth = 1, 2.0
+            else:
+                stride, growth = stride // 2, 0.5
     progress.advance(_EXCHANGES_MAX, _EXCHANGES_MAX)
     complete = unchanged >= len(_WAYS)
     return Exchanged(point, tuple(kept), tuple(failing.values()), complete)
