@@ -9,11 +9,11 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, median, readonly
 
-_BESIDE = 5
+_SIDE_POINTS = 5
 """Values on either side of the interval in which a discontinuity is sought."""
-_DEGREE = 4
+_FIT_DEGREE = 4
 """Of the polynomial of the smooth part."""
-_PLACES = 9
+_JUMP_PLACES = 9
 """Places of a discontinuity within the interval; eight times as many for a kink alone."""
 _JUMP_OVER_KINK = 0.3
 """A jump explains the values if it leaves at most this share of the residual of a kink."""
@@ -66,7 +66,9 @@ def acceleration_jump(values: Array) -> Jump:
     """
     spacing = FULL_TURN / values.size
     best = None
-    for stride in range(max(1, round(_NARROWEST_STEP / spacing)), values.size // (2 * _BESIDE) + 1):
+    for stride in range(
+        max(1, round(_NARROWEST_STEP / spacing)), values.size // (2 * _SIDE_POINTS) + 1
+    ):
         if best is not None and stride * spacing > _WIDEST_STEP:
             break
         here = _at_spacing(values, stride)
@@ -80,11 +82,11 @@ def acceleration_jump(values: Array) -> Jump:
 def _at_spacing(values: Array, stride: int) -> Jump:
     count, step = values.size, stride * FULL_TURN / values.size
     start = np.arange(0, count, stride)
-    near = np.arange(1 - _BESIDE, _BESIDE + 1)
+    near = np.arange(1 - _SIDE_POINTS, _SIDE_POINTS + 1)
     window = values[(start[:, None] + stride * near) % count]
-    acceleration = np.diff(window[:, _BESIDE - 2 : _BESIDE + 1], 2)[:, 0] / step**2
+    acceleration = np.diff(window[:, _SIDE_POINTS - 2 : _SIDE_POINTS + 1], 2)[:, 0] / step**2
     span = float(np.ptp(acceleration))
-    window = window - window[:, _BESIDE - 1 : _BESIDE]
+    window = window - window[:, _SIDE_POINTS - 1 : _SIDE_POINTS]
     jumps, kinks = _fits()
     with_jump, place = _residual(window, jumps.complement)
     with_kink, _ = _residual(window, kinks.complement)
@@ -104,7 +106,7 @@ def _at_spacing(values: Array, stride: int) -> Jump:
     unresolved = left > _UNRESOLVED * span
     counted = np.where(proven | unresolved, size, 0.0)
     worst = int(np.argmax(counted))
-    theta = (start[worst] + stride * place[worst] / (_PLACES - 1.0)) * FULL_TURN / count
+    theta = (start[worst] + stride * place[worst] / (_JUMP_PLACES - 1.0)) * FULL_TURN / count
     return Jump(float(counted[worst]), float(theta % FULL_TURN), span, noise, not unresolved.any())
 
 
@@ -123,20 +125,20 @@ class _Fits(NamedTuple):
 @cache
 def _fits() -> tuple[_Fits, _Fits]:
     """Fits with a jump and a kink in the middle interval, and with a kink anywhere."""
-    middle = np.linspace(0.0, 1.0, _PLACES)
-    everywhere = np.linspace(1.5 - _BESIDE, _BESIDE - 0.5, 8 * (2 * _BESIDE - 2) + 1)
+    middle = np.linspace(0.0, 1.0, _JUMP_PLACES)
+    everywhere = np.linspace(1.5 - _SIDE_POINTS, _SIDE_POINTS - 0.5, 8 * (2 * _SIDE_POINTS - 2) + 1)
     return _fit(middle, (2, 3)), _fit(everywhere, (3,))
 
 
 def _fit(places: Array, powers: tuple[int, ...]) -> _Fits:
-    x = np.arange(1 - _BESIDE, _BESIDE + 1) / _BESIDE
-    smooth = x[:, None] ** np.arange(_DEGREE + 1)
+    x = np.arange(1 - _SIDE_POINTS, _SIDE_POINTS + 1) / _SIDE_POINTS
+    smooth = x[:, None] ** np.arange(_FIT_DEGREE + 1)
     complement, row = [], []
-    for place in places / _BESIDE:
+    for place in places / _SIDE_POINTS:
         beyond = np.maximum(x - place, 0.0)
         basis = np.column_stack([smooth, *(beyond**power for power in powers)])
         complement.append(np.linalg.qr(basis, mode="complete")[0][:, basis.shape[1] :])
-        row.append(2.0 * np.linalg.pinv(basis)[_DEGREE + 1] / _BESIDE**2)
+        row.append(2.0 * np.linalg.pinv(basis)[_FIT_DEGREE + 1] / _SIDE_POINTS**2)
     rows = np.array(row)
     return _Fits(readonly(complement), readonly(rows), readonly(np.linalg.norm(rows, axis=1)))
 

@@ -27,7 +27,7 @@ _ZERO_OFFSET = 1e-9
 _ROOT_HALVINGS = 60  # of the bracket of a prime radius, to round-off
 _SCANNED = 25
 """Offsets of a scan where a curvature limits the radius, which need not be convex in the offset."""
-_SECTIONS = 32
+_OFFSET_SECTIONS = 32
 """Of the two steps of the scan about its least: 2e-8 of the greatest offset is left."""
 _REAL = 1e-6
 """Imaginary over real part up to which a computed root is real: a double root within round-off."""
@@ -35,7 +35,7 @@ _BESIDE_AXIS = 1e-9
 """Least distance of the prime radius from the offset, over the offset."""
 _OFFSET_SHARE = 0.999
 """Greatest offset over the prime radius."""
-_SAMPLES = 721
+_EXTREME_SAMPLES = 721  # of the turn of an eccentric, between which extremes are refined
 # Share of a radius of curvature left for the rounding of an offset; use of an offset beyond it.
 _OFFSET_ROUNDING, _REFUSED_USE = 1e-3, 100.0
 
@@ -245,7 +245,7 @@ class EccentricCam(RollerCam):
             height = disc.height(phi) - disc.height_base
             return np.stack([height, disc.height_rate(phi), disc.height_rate_slope(phi)])
 
-        return LiftParts((LiftPart(0.0, FULL_TURN, derivatives, _SAMPLES),))
+        return LiftParts((LiftPart(0.0, FULL_TURN, derivatives, _EXTREME_SAMPLES),))
 
     def least_prime_radius(self, limits: PitchLimits, offset: float = 0.0) -> float:
         """Smallest prime radius at an offset, m; the pitch curve has the curvature of a circle."""
@@ -386,4 +386,4 @@ def _least_of_scan(function: Callable[[float], float], most: float) -> float:
     k = int(np.argmin([function(float(each)) for each in offsets]))
     step = 2.0 * most / (_SCANNED - 1)
     low, high = float(offsets[k]) - step, float(offsets[k]) + step
-    return least_argument(function, low, high, _SECTIONS)
+    return least_argument(function, low, high, _OFFSET_SECTIONS)

@@ -27,7 +27,7 @@ _ANGLE_RESOLVED = 0.01
 _POSITIONS_MAX = 720
 _CANDIDATES_MAX = 32
 _ZOOM_POINTS = np.linspace(-1.0, 1.0, 9)
-_ZOOMS = 20
+_GAP_ZOOMS = 20  # of the search of the least gap
 
 Gap = Callable[[Array, Array], Array]
 """Cam angles of the contact and of another contour point, broadcast -> gap at that point, m."""
@@ -102,7 +102,7 @@ def second_contact(gap: Gap, count: int) -> SecondContact:
         return SecondContact(np.inf, np.nan, np.nan)
     near = np.argsort(distance[row, column], kind="stable")[:_CANDIDATES_MAX]
     contact, other, half = position[row[near]], along[column[near]], 0.5 * FULL_TURN / count
-    for _ in range(_ZOOMS):
+    for _ in range(_GAP_ZOOMS):
         step = half * _ZOOM_POINTS
         contacts = contact[:, None] + np.repeat(step, len(step))
         others = other[:, None] + np.tile(step, len(step))

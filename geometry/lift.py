@@ -39,7 +39,7 @@ GAP_MAX = np.radians(30.0)
 
 _RESAMPLED = 720
 _DRAWN = 721
-_SEARCH = 4
+_SEARCH_FACTOR = 4
 """Search points per sample: a quintic has at most four extremes per part."""
 
 
@@ -184,7 +184,7 @@ class Lift(Displayed):
     @property
     def search_count(self) -> int:
         """Equal angles per turn that bracket every extreme of a function of this lift."""
-        return _SEARCH * len(self.theta)
+        return _SEARCH_FACTOR * len(self.theta)
 
     @cached_property
     def acceleration_jump(self) -> Jump:

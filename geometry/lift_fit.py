@@ -19,7 +19,7 @@ _PARTS_GROWTH = 1.25
 """Ratio of successive numbers of spline parts."""
 _POINTS_PER_PART = 2.0
 """Minimum: fewer would fit the noise."""
-_ORDER = 4
+_DIFFERENCE_ORDER = 4
 """Of the differences from which the noise is estimated: a smooth lift leaves nothing in them."""
 _SIGMA = 1.4826
 """Standard deviation of a normal distribution over its median magnitude."""
@@ -147,9 +147,9 @@ def estimated_noise(theta: ArrayLike, values: ArrayLike) -> float | None:
     even = uniform_turn(angle.size) + angle[0]
     if np.abs(angle - even).max() > EVEN * (FULL_TURN / angle.size):
         return None
-    rounds = np.append(value, value[:_ORDER])
-    scale = np.sqrt(float(comb(2 * _ORDER, _ORDER)))
-    return float(_SIGMA * np.median(np.abs(np.diff(rounds, _ORDER))) / scale)
+    rounds = np.append(value, value[:_DIFFERENCE_ORDER])
+    scale = np.sqrt(float(comb(2 * _DIFFERENCE_ORDER, _DIFFERENCE_ORDER)))
+    return float(_SIGMA * np.median(np.abs(np.diff(rounds, _DIFFERENCE_ORDER))) / scale)
 
 
 def measured_lift(theta: ArrayLike, values: ArrayLike) -> FittedLift | None:

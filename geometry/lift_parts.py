@@ -19,7 +19,7 @@ LiftFunction = Callable[[Array, Array, Array], Array]
 AngleFunction = Callable[[Array], Array]
 """Cam angle (...), rad -> value (...)."""
 
-_SAMPLES = 33
+_PART_SAMPLES = 33
 """Per half of a segment: extremes of a law are further apart than a step."""
 _DWELL_SAMPLES = 2
 """Samples of half a dwell."""
@@ -88,7 +88,7 @@ class LiftParts:
             half = 0.5 * segment.angle
             for k in range(2):
                 law = partial(_half, segment, float(level), k)
-                count = _DWELL_SAMPLES if segment.law == DWELL else _SAMPLES
+                count = _DWELL_SAMPLES if segment.law == DWELL else _PART_SAMPLES
                 parts.append(LiftPart(float(start) + k * half, half, law, count))
         return cls(tuple(parts))
 

@@ -17,11 +17,11 @@ POINTS_MIN = 48
 HARMONICS_MAX = 60
 """Maximum waves per turn of a form deviation; above are roughness and noise."""
 
-_STEPS_MAX = 50
+_FIT_STEPS_MAX = 50  # of an iteration of phase, size or contact angle
 _LAST_STEP = 1e-13  # m or rad, of a converged fit
 _TURNS_TRIED = 72
 _POLYGON = 5760
-_SAMPLES = 1440
+_LIFT_SAMPLES = 1440  # of the lift of a real contour
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,7 @@ def inspected(contour: Contour, points: ArrayLike) -> Inspection:
     """
     measured = _checked(points)
     phase, size = _rough_phase(contour, measured), 0.0
-    for _ in range(_STEPS_MAX):
+    for _ in range(_FIT_STEPS_MAX):
         turned = rotation(-phase) @ measured
         theta, distance = _feet(contour, turned)
         normal = contour.normal(theta)
@@ -150,7 +150,7 @@ def real_contour(contour: Contour, inspection: Inspection, *, keep_phase: bool =
     surface = contour.points(theta) + inspection.form(theta) * contour.normal(theta)
     if keep_phase:
         surface = rotation(inspection.phase) @ surface
-    angles = uniform_turn(_SAMPLES)
+    angles = uniform_turn(_LIFT_SAMPLES)
     height = contour.standing(surface, angles)
     rough = Lift(angles, height - height.min())
     base = float(height.min()) + min(rough.lowest.value, 0.0)
@@ -193,7 +193,7 @@ def _feet(contour: Contour, points: Array) -> tuple[Array, Array]:
     away = np.mod(grid - polar + np.pi, FULL_TURN) - np.pi
     angle, _ = _polar(points)
     theta = angle + np.interp(angle, polar[order], away[order], period=FULL_TURN)
-    for _ in range(_STEPS_MAX):
+    for _ in range(_FIT_STEPS_MAX):
         frame = contour.local_frame(theta)
         apart = points - frame.point
         height = np.sum(apart * frame.normal, axis=0)

@@ -15,7 +15,7 @@ from camwright.geometry.monotone_cubic import MonotoneCubic
 from camwright.meshes.element_size import EDGES_PER_TURN, ElementSize, SizeField
 from camwright.meshes.outline import OutlinePiece, Zone, arc, line
 
-_SAMPLES = 7200  # of the contour, 0.05 deg apart
+_CONTOUR_SAMPLES = 7200  # of the contour, 0.05 deg apart
 _WALL_MIN = 0.01  # over the bore radius
 _EDGES_ACROSS_HOLE_WALL = 4
 _WALL_DECIMALS = 9  # of a wall, m: walls nearer to each other are equal
@@ -52,7 +52,7 @@ def trace(contour: ContourLike) -> SampledContour:
     GeometryError
         If the contour is undercut: its samples run backwards.
     """
-    theta = np.linspace(0.0, FULL_TURN, _SAMPLES + 1)
+    theta = np.linspace(0.0, FULL_TURN, _CONTOUR_SAMPLES + 1)
     points = contour.points(theta)
     chord = np.diff(points, axis=1)
     normal = contour.normal(0.5 * (theta[1:] + theta[:-1]))
@@ -92,7 +92,7 @@ def _foot(path: SampledContour, point: Array, tolerance: float) -> float:
 
     squared = ((path.points - point[:, None]) ** 2).sum(axis=0)
     near = path.theta[int(np.argmin(squared))]
-    step = 2.0 * FULL_TURN / _SAMPLES
+    step = 2.0 * FULL_TURN / _CONTOUR_SAMPLES
 
     def along(theta: float) -> float:
         here = np.array([theta])
@@ -179,7 +179,7 @@ def least_wall(
     """
     # rounded: on a dwell all are equal but for round-off, and the first is taken
     worst = int(np.argmin(np.round(wall_at(path.points, bore_radius, keyway), _WALL_DECIMALS)))
-    step = FULL_TURN / _SAMPLES
+    step = FULL_TURN / _CONTOUR_SAMPLES
 
     def wall_of(theta: float) -> float:
         return float(wall_at(path.contour.points(np.array([theta])), bore_radius, keyway)[0])

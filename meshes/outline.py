@@ -15,7 +15,7 @@ from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.errors import MeshError
 from camwright.meshes.element_size import SizeField
 
-_SAMPLES = 4001  # of the size along a piece of outline, besides those clustered at its ends
+_SIZE_SAMPLES = 4001  # of the size along a piece of outline, besides those clustered at its ends
 
 _CROSSING_BLOCK = 256  # segments compared with all others at once
 
@@ -96,7 +96,7 @@ def _graded(at: Callable[[Array], Array], start: float, stop: float, size: SizeF
         return np.array([stop])
     # samples clustered at the ends, where the size is smallest, next to the contact
     near = np.geomspace(1e-8, 0.5, 1500)
-    u = np.unique(np.r_[np.linspace(0.0, 1.0, _SAMPLES), near, 1.0 - near])
+    u = np.unique(np.r_[np.linspace(0.0, 1.0, _SIZE_SAMPLES), near, 1.0 - near])
     density = span / size(at(start + span * u))
     count = np.r_[0.0, np.cumsum(np.diff(u) * 0.5 * (density[1:] + density[:-1]))]
     edges = max(1, int(np.ceil(count[-1] - 1e-6)))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from scipy.interpolate import BSpline
 
 _STEP_ERROR = 1e-8  # m; a smaller one only enlarges the file
-_EDGES = 8
+_EDGES_MOST = 8
 """Edges at each rim of the contour's face: with one, OpenCASCADE errs by 1e-3 in the volume."""
 
 _UP, _DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
@@ -103,7 +103,7 @@ class _Spline:
     @property
     def corners(self) -> Array:
         first, last = self.spline.t[[0, -1]]
-        corners: Array = self.spline(np.linspace(first, last, _EDGES + 1))
+        corners: Array = self.spline(np.linspace(first, last, _EDGES_MOST + 1))
         corners[-1] = corners[0]
         return corners
 

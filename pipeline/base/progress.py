@@ -31,7 +31,7 @@ USUAL = {
 }  # fmt: skip
 """Usual duration of the stages without steps, s, of the reference case on two cores: their percent
 and remaining time on a terminal are estimates by it."""
-_MOST = 0.99  # share of an estimate that is exceeded
+_ESTIMATED_MOST = 0.99  # share of an estimate that is exceeded
 
 
 class Progress(Protocol):
@@ -80,7 +80,7 @@ def share(task: Task) -> float | None:
     if task.total:
         return task.completed / task.total
     usual: float | None = task.fields.get("usual")
-    return None if usual is None else min((task.elapsed or 0.0) / usual, _MOST)
+    return None if usual is None else min((task.elapsed or 0.0) / usual, _ESTIMATED_MOST)
 
 
 class _Percent(ProgressColumn):

@@ -41,7 +41,7 @@ _ANGLES = (  # endings, since prefixes go before them
     *("radian", "degree", "turn", "arcminute", "arcsecond", "grade"),
     *("revolutions_per_minute", "revolutions_per_second"),
 )
-_LONGEST = 80
+_LONGEST_TEXT = 80  # characters of a number with its unit
 
 
 class _Common(NamedTuple):
@@ -123,7 +123,7 @@ def _from_table(text: str) -> _Common | None:
     """Unit composed of those of the table, from left to right as pint does; None otherwise."""
     if text == _CELSIUS:
         return _COMMON["K"]._replace(zero=_ZERO_CELSIUS)
-    if text and (len(text) > _LONGEST or not _UNIT.fullmatch(text)):
+    if text and (len(text) > _LONGEST_TEXT or not _UNIT.fullmatch(text)):
         return None
     size, powers, sign = Decimal(1), [0] * 5, 1
     if text.startswith("1"):
@@ -156,7 +156,7 @@ def _unit(text: str) -> PlainUnit:
     """The pint unit of `text`; ValueError if it is none."""
     if not text:
         return _registry().dimensionless
-    if len(text) > _LONGEST or not _UNIT.fullmatch(text):
+    if len(text) > _LONGEST_TEXT or not _UNIT.fullmatch(text):
         raise ValueError(text)
     spelled = _IMPLIED_POWER.sub(r"**\1", text.replace("^", "**")).replace("****", "**")
     try:
@@ -222,7 +222,7 @@ def _accepted(unit: str) -> str:
 
 def _number_and_unit(text: str) -> tuple[Decimal, str] | None:
     """Number and unit of a text; a fraction, ``1 3/8 in``, counts as one number. None: neither."""
-    if len(text) > _LONGEST:
+    if len(text) > _LONGEST_TEXT:
         return None
     if fraction := _FRACTION.fullmatch(text):
         sign, whole, above, below, unit = fraction.groups()
@@ -295,7 +295,7 @@ def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.forma
 
 def rounded(text: str, digits: int = 4) -> str:
     """Text with its number rounded; unchanged where it has no more digits, or is no number."""
-    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST_TEXT else None
     number = Decimal(match.group(1)) if match else Decimal("NaN")
     if (
         match is None

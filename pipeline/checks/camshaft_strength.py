@@ -88,7 +88,7 @@ from camwright.pipeline.follower.shaft_strength import (
 )
 
 REVERSED = 0.7  # of the bending limit, for reversed torque
-_RIGID = 1e9  # N m/rad, of a shaft without diameter or material
+_RIGID_STIFFNESS = 1e9  # N m/rad, of a shaft without diameter or material
 MESH_STIFFNESS = 20e9
 """Of steel teeth over their width, N/m2: ISO 6336-1, mean value (recalled, verify)."""
 _STEEL = 206e9  # Pa, of the teeth of `MESH_STIFFNESS`
@@ -694,7 +694,7 @@ gear_contact = check(
 def _rotor(machine: Machine, contour: Contour) -> Rotor:
     """Gear, cam and the shaft between both, rigid without diameter or material."""
     shaft, cam = camshaft_of(machine), machine.cam
-    gear, card, twist = gear_of(shaft), shaft.material, _RIGID
+    gear, card, twist = gear_of(shaft), shaft.material, _RIGID_STIFFNESS
     if shaft.thinnest is not None and card is not None:
         section = np.pi * shaft.thinnest**4 / 32.0
         apart = abs(shaft.cam_position - shaft.gear_position)

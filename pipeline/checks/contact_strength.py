@@ -67,7 +67,7 @@ _EQUIVALENT = {
     "S": f"limits.{SHAKEDOWN_SAFETY.id}",
 }
 _TRACTIONS = 17  # nodes of the traction coefficient from 0 to that of full sliding
-_STATIONS = 720
+_CONTOUR_STATIONS = 720  # of the mean path speed of a follower
 
 
 class LoadCycles(NamedTuple):
@@ -248,7 +248,7 @@ def life_turns(machines: tuple[Machine, ...]) -> float:
 def load_cycles(machines: tuple[Machine, ...], contour: Contour) -> LoadCycles:
     """Load cycles in the target life: cam turns for the cam, passes for the follower."""
     turns, pitch = life_turns(machines), contour.pitch
-    path, _ = pitch.speed_and_curvature(uniform_turn(_STATIONS))
+    path, _ = pitch.speed_and_curvature(uniform_turn(_CONTOUR_STATIONS))
     return LoadCycles(turns, turns * passes(machines[0].follower, path))
 
 

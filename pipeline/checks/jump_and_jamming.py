@@ -432,7 +432,7 @@ def elastic_contact(solution: Solution) -> Demand:
     )
 
 
-_RIGID = 10.0
+_RIGID_RATIO = 10.0  # least natural over rotational frequency of a rigid follower
 
 
 @check(
@@ -479,7 +479,7 @@ def rigid_follower(solution: Solution) -> Demand:
     stem = shown(machine.axial_stiffness, "kN/m")
     return Demand(
         machine.follower_frequency / fastest if fastest > 0.0 else np.inf,
-        _RIGID,
+        _RIGID_RATIO,
         note=f"{frequency} at {stem} of the stem",
         stated={"k_s": machine.axial_stiffness, "m": machine.mass_without_spring},
     )

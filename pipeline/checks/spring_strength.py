@@ -69,7 +69,7 @@ from camwright.pipeline.follower.spring_kinds import (
 BENDING_STRENGTH = 0.54  # permissible bending stress over R_m, above 1e6 strokes
 HARDEST = "preload and rate high"
 STABLE = "stable at any deflection"
-_SAMPLES = 720  # of the turn, among which the rises of the lift are counted
+_TURN_SAMPLES = 720  # of the turn, among which the rises of the lift are counted
 _DWELL_SLOPE = 1e-6  # of the greatest slope of the lift: a dwell
 
 
@@ -722,7 +722,7 @@ gas_force_lost = _gas_check(
 
 def _strokes(solution: Solution) -> int:
     """Rises of the lift in a turn."""
-    slope = solution.contour.pitch.lift(uniform_turn(_SAMPLES), 1)
+    slope = solution.contour.pitch.lift(uniform_turn(_TURN_SAMPLES), 1)
     way = np.sign(slope[np.abs(slope) > _DWELL_SLOPE * np.abs(slope).max()])
     return int(np.sum((way > 0) & (np.roll(way, -1) < 0)))
 

@@ -20,7 +20,7 @@ from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_an
 # with more digits than printed there.
 SHEAR_MAX = 0.300283106
 SHEAR_MAX_DEPTH = 0.786151366
-_ZOOMS = 16  # in the search of the greatest von Mises stress: 2e-10 of the bracket
+_PEAK_ZOOMS = 16  # in the search of the greatest von Mises stress: 2e-10 of the bracket
 # Hertz pressure p/p0 at x/a, for piecewise-linear records.
 ELLIPSE_XI = np.cos(np.linspace(np.pi, 0.0, 65))
 ELLIPSE = np.sqrt(1 - ELLIPSE_XI**2)
@@ -190,7 +190,7 @@ def von_mises_peak(poisson: float) -> tuple[float, float]:
     def falling(depth: Array) -> Array:
         return -von_mises(subsurface_stress(0.0, depth), poisson)
 
-    lowest, depth = refined(falling, np.array([1.15]), 0.85, _ZOOMS)
+    lowest, depth = refined(falling, np.array([1.15]), 0.85, _PEAK_ZOOMS)
     # Two local maxima: one below the surface, one at it, the larger for small nu.
     at_surface = falling(np.zeros(1))
     if at_surface[0] <= lowest[0]:

@@ -23,7 +23,7 @@ _TABLE_SHARES = 21  # traction coefficients of a table, from none to full slidin
 _LEAST_STICK = 1e-9
 # Places of the greatest stress: reach beside and below the contact in half-widths, cells to the
 # reach and, of each zoom, to a cell.
-_GRID_REACH, _CELLS, _NEARBY, _ZOOMS = 1.25, 25, 5, 4
+_GRID_REACH, _CELLS, _NEARBY, _TABLE_ZOOMS = 1.25, 25, 5, 4
 _TURNS_MAX = 50
 _SPEED_CONVERGED = 1e-9  # relative speed of a periodic roller
 
@@ -102,7 +102,7 @@ def _greatest(measure: Callable[[Array, Array], Array]) -> Array:
     sides = np.linspace(-_GRID_REACH, _GRID_REACH, 2 * _CELLS + 1)
     x, depth = (each.ravel()[None] for each in np.meshgrid(sides, sides[_CELLS:]))
     nearby = np.meshgrid(*[np.linspace(-1.0, 1.0, 2 * _NEARBY + 1)] * 2)
-    for zoom in range(_ZOOMS):
+    for zoom in range(_TABLE_ZOOMS):
         values = measure(x, depth)
         worst = values.argmax(axis=1)[:, None]
         x, depth = (np.take_along_axis(np.broadcast_to(each, values.shape), worst, axis=1)

@@ -30,7 +30,7 @@ UNIFORM = 61  # speeds at equal distances
 SIGNIFICANT = 0.01  # force of a harmonic at resonance over the preload
 # Speeds about a resonance, in widths: the damping ratio times its speed.
 _ABOUT = np.array([-2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0])
-_WIDTH = 0.2  # at most, so that every speed is positive
+_RESONANCE_WIDTH = 0.2  # at most, so that every speed is positive
 _REFINED_SPEEDS = 17  # between the neighbours of a worst speed
 _MODES = 100  # beyond, the damping merges the resonances
 _MET = 600  # resonances resolved, the strongest
@@ -384,7 +384,7 @@ def _met(modes: Array, peak: Array, enough: float, top: float) -> Array:
 
 def _about(speeds: Array, damping: float) -> Array:
     """Speeds about the resonances, none closer to another than a fifth of the width."""
-    width = min(damping, _WIDTH)
+    width = min(damping, _RESONANCE_WIDTH)
     every = np.sort((speeds[:, None] * (1.0 + width * _ABOUT)).ravel())
     return every[firsts(np.round(np.log(every) / (0.2 * width)))]
 

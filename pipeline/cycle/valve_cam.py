@@ -19,7 +19,7 @@ from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.motion_laws import SegmentMotion
 from camwright.pipeline.follower.follower_forces import Loads
 
-_SEARCH = 7200
+_SEARCH_ANGLES = 7200  # of the turn, for the extremes of the reduced inertia
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ class ValveCam:
 
     def mean_reduced_inertia(self) -> float:
         """Mean J*_m of the extremes over the turn, kg m^2 (eq. 1, reconstructed)."""
-        values = self.reduced_inertia(uniform_turn(_SEARCH))
+        values = self.reduced_inertia(uniform_turn(_SEARCH_ANGLES))
         return float(0.5 * (values.max() + values.min()))
 
     def speed(self, phi: ArrayLike, mean_speed: float, dynamic: ArrayLike = 1.0) -> Array:

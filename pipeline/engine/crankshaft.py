@@ -21,8 +21,8 @@ from camwright.pipeline.torque.motor_line import MotorLine, MotorPoint
 
 SETTLED = 1e-13  # change of the speed between two passes over its mean
 PASSES_MAX = 200
-_STEP_END = 1e-12  # relative step of the kinetic energy; the next one would be its square
-_STEPS_MAX = 60
+_ENERGY_STEP_END = 1e-12  # relative step of the kinetic energy; the next one would be its square
+_SPEED_STEPS_MAX = 60  # of Newton's method on mean speed or motor line
 _STEEP = 3.0  # greatest range of the logarithm of an integrating factor
 
 # Crank torque (n,) of a mechanism without the inertia of its moving parts, N m, from crank
@@ -382,14 +382,14 @@ def _speed(energy: Array, inertia: Array, mean_speed: float, span: float) -> Arr
         )
     # The mean is a concave rising function of the constant: Newton's steps approach it from below.
     floor = max(low, 0.5 * float(inertia.mean()) * mean_speed**2)
-    for _ in range(_STEPS_MAX):
+    for _ in range(_SPEED_STEPS_MAX):
         omega = speed(floor)
         mean = _time_mean(omega)
         step = (mean_speed - mean) / (mean**2 * float((1.0 / (inertia * omega**3)).mean()))
         floor, before = max(low, floor + step), floor
-        if abs(floor - before) <= _STEP_END * floor:
+        if abs(floor - before) <= _ENERGY_STEP_END * floor:
             return speed(floor)
-    raise CamError(f"the mean crank speed did not converge within {_STEPS_MAX} steps")
+    raise CamError(f"the mean crank speed did not converge within {_SPEED_STEPS_MAX} steps")
 
 
 def _speed_on_line(
@@ -404,7 +404,7 @@ def _speed_on_line(
     step leaves the share of the error that c departs from it.
     """
     speed, order = start, _orders(driven.size, span)
-    for _ in range(_STEPS_MAX):
+    for _ in range(_SPEED_STEPS_MAX):
         energy = 0.5 * inertia * speed**2
         fall = -motor.slope(speed) / (inertia * speed)
         rate = float(fall.mean())
@@ -423,7 +423,7 @@ def _speed_on_line(
         before, speed = speed, np.sqrt(2.0 * np.maximum(raised, 0.25 * energy) / inertia)
         if float(np.abs(speed - before).max()) < SETTLED * float(speed.mean()):
             return np.asarray(speed)
-    text = f"the speed on the motor line did not converge within {_STEPS_MAX} steps"
+    text = f"the speed on the motor line did not converge within {_SPEED_STEPS_MAX} steps"
     raise CamError(f"{text}: the motor cannot carry its load")
 
 

@@ -26,10 +26,10 @@ from camwright.pipeline.engine.passing_times import Passage, Passages
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
 
 CHANGE_TIMES = 2.0  # change of the integer orders over that of the half orders, standard deviation
-_NODES = 8  # of the Gauss-Legendre rule between two edges; a gap is half a wave at most
-_STEPS_MAX = 40
+_GAUSS_NODES = 8  # of the Gauss-Legendre rule between two edges; a gap is half a wave at most
+_ESTIMATE_STEPS_MAX = 40  # of the Gauss-Newton estimate
 _SHARE_MIN = 1e-6  # of a step
-_STEP_END = 1e-9  # rad, largest change of a passing time in the last step
+_TIME_STEP_END = 1e-9  # rad, largest change of a passing time in the last step
 _ENERGY_MIN = 0.05  # least kinetic energy of an iterate, of that at mean speed
 
 
@@ -186,7 +186,7 @@ class _Times:
         inertia: Inertia,
         harmonics: int,
     ) -> _Times:
-        nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+        nodes, weights = np.polynomial.legendre.leggauss(_GAUSS_NODES)
         half = 0.5 * np.diff(passage.angle)[:, None]
         at = passage.angle[:-1, None] + half * (nodes + 1.0)
         varying, turns = periodic_cubic(inertia.varying), CYCLE_ANGLE / FULL_TURN
@@ -360,7 +360,7 @@ def _solved(parts: Sequence[_Times], state: _State, tolerance: float, change: Ar
     """
     prior = _Prior.of(state, tolerance, change)
     rows = _reduced(parts, state, prior)
-    for _ in range(_STEPS_MAX):
+    for _ in range(_ESTIMATE_STEPS_MAX):
         if rows is None:
             break
         normal = np.diag(prior.precision) + sum(row.free.T @ row.free for row in rows)
@@ -377,7 +377,7 @@ def _solved(parts: Sequence[_Times], state: _State, tolerance: float, change: Ar
             state = before.stepped(prior.whole(step), own, share)
             rows = _reduced(parts, state, prior)
             share *= 0.5
-        if rows is not None and largest < _STEP_END:
+        if rows is not None and largest < _TIME_STEP_END:
             return _judged(state, parts, rows, prior, scipy.linalg.inv(normal))
     raise CamError(
         "engine.reference: the pitch errors of the wheel cannot be estimated; check the inertia of "

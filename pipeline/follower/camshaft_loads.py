@@ -251,9 +251,9 @@ _FASTEST = 0.5  # rad, of a swing in a step
 _LONGER = 1.5  # of the flight of a rigid rotor
 _ZERO_MOMENT = 1e-9
 """First moment over the area to the power 3/2, up to which the cam is balanced."""
-_PLACES = 400  # of a counter-hole, tried between bore and contour
+_HOLE_PLACES = 400  # of a counter-hole, tried between bore and contour
 _CUTS, _PARTS = 6, 64  # of the step about the outermost place
-_ZOOMS = 14  # in the search of the greatest hole
+_HOLE_ZOOMS = 14  # in the search of the greatest hole
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -683,7 +683,7 @@ def counter_hole(
         """Wall to the contour less the required one (...), m, at hole centres `place`, m."""
         return _wall_outside(ring, direction, place) - np.sqrt(need / (np.pi * place)) - wall
 
-    places = np.linspace(bore_radius, _reach(unbalance, ring), _PLACES)
+    places = np.linspace(bore_radius, _reach(unbalance, ring), _HOLE_PLACES)
     fits = places[spare(places) >= 0.0]
     if not fits.size:
         raise GeometryError("no counter-hole that balances the cam fits between bore and contour")
@@ -727,9 +727,9 @@ def greatest_hole(
     def lost(place: Array) -> Array:
         return np.asarray(-(np.maximum(radius(place), 0.0) ** 2) * place)
 
-    places, step = np.linspace(bore_radius, _reach(unbalance, ring), _PLACES, retstep=True)
+    places, step = np.linspace(bore_radius, _reach(unbalance, ring), _HOLE_PLACES, retstep=True)
     best = int(np.argmin(lost(places)))
-    _, place = refined(lost, places[[best]], float(step), _ZOOMS)
+    _, place = refined(lost, places[[best]], float(step), _HOLE_ZOOMS)
     place = np.clip(place, places[0], places[-1])
     if not radius(place)[0] > 0.0:
         raise GeometryError("no hole fits between bore and contour")

@@ -184,7 +184,7 @@ class CheckList(Displayed, tuple[Item, ...]):
         (axes,) = panels_of(1, (7.0, 0.3 * len(ranked) + 0.4))
         colours = [_COLOURS[str(record["status"])] for _, record in ranked]
         titles = [str(record["title"]) for _, record in ranked]
-        drawn = [min(value, _LONGEST) for value, _ in ranked]
+        drawn = [min(value, _LONGEST_BAR) for value, _ in ranked]
         bars = axes.barh(range(len(ranked)), drawn, color=colours)
         axes.bar_label(bars, [f" {value:.3g}" for value, _ in ranked], fontsize="small")
         axes.set_yticks(range(len(ranked)), titles, fontsize="small")
@@ -222,7 +222,7 @@ _SHOWN = (
     "cam_angle_deg", "corner", "corner_demand", "error", "not_proven", "missing", "note", "remedy",
 )  # fmt: skip
 """Columns of a data frame of checks; the first eight in a notebook."""
-_LONGEST = 2.0
+_LONGEST_BAR = 2.0
 """Utilisation to which a bar is drawn."""
 _COLOURS = {"pass": "tab:green", "waived": "tab:olive", "fail": "tab:red"}
 

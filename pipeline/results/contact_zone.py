@@ -26,7 +26,7 @@ _RING_SPACING, _EQUAL_RINGS, _OUTER_RINGS = 0.07, 25, 7
 _SECTORS = 32
 # Radius of the zone: at least these multiples of the longest element edge at the surface, so that
 # the elements about the contact lie within it, and of the half-width.
-_EDGES, _HALF_WIDTHS = 1.6, 5.2
+_ZONE_EDGES, _ZONE_HALF_WIDTHS = 1.6, 5.2
 # The stress of the contact patch fades into that of the body between these radii, in half-widths.
 _PATCH_ALONE, _PATCH_END = 1.2, 1.5
 _WALL = 0.98  # radius of the zone over the distance to the next boundary, at most
@@ -79,7 +79,7 @@ class ZoneSite:
         others = [n for name, n in mesh.boundaries.items() if name != self.body.surface]
         far = mesh.points[:, np.unique(np.concatenate([n.ravel() for n in others]))]
         wall = _WALL * np.asarray(scipy.spatial.cKDTree(far.T).query(contacts.T)[0])
-        wanted = np.maximum(_EDGES * self._edge, _HALF_WIDTHS * half_width)
+        wanted = np.maximum(_ZONE_EDGES * self._edge, _ZONE_HALF_WIDTHS * half_width)
         return np.maximum(np.minimum(wanted, wall), 1.1 * _RING_SPACING * _EQUAL_RINGS * half_width)
 
     def interpolated(
@@ -148,7 +148,7 @@ def patch_weights(poisson: float) -> tuple[Index, Array, Array]:
                        first i nodes alone have any
     """
     patch = contact_patch(poisson).points
-    unit = zone_places(np.ones(1), np.full(1, _HALF_WIDTHS))[:, :, 0]
+    unit = zone_places(np.ones(1), np.full(1, _ZONE_HALF_WIDTHS))[:, :, 0]
     radius = np.hypot(*unit)
     blend = np.clip((_PATCH_END - radius) / (_PATCH_END - _PATCH_ALONE), 0.0, 1.0)
     inner = unit[:, blend > 0]

@@ -319,7 +319,7 @@ class TorqueOfSpeed:
     """Engine torque of a load case about its mean, as a function of crank speed.
 
     speeds (k,), rad/s; torques (k, N), crank N m: one a speed, or at Chebyshev nodes between the
-    least and the greatest of more than `_NODES` speeds.
+    least and the greatest of more than `_SPEED_NODES` speeds.
     """
 
     speeds: Array
@@ -332,8 +332,8 @@ class TorqueOfSpeed:
         state = case.load_cases[number]
         wanted = np.array([state.speed]) if speeds is None else np.unique(speeds)
         wanted = wanted[(wanted > 0.0) & np.isfinite(wanted)] if speeds is not None else wanted
-        if interpolated := wanted.size > _NODES:
-            place = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
+        if interpolated := wanted.size > _SPEED_NODES:
+            place = np.cos(np.pi * (np.arange(_SPEED_NODES) + 0.5) / _SPEED_NODES)
             wanted = wanted.min() + 0.5 * np.ptp(wanted) * (1.0 + place)
         torques = [
             engine_torque(case, state.model_copy(update={"speed": float(speed)}))
@@ -349,12 +349,12 @@ class TorqueOfSpeed:
         if not self.interpolated:
             return self.torques[np.searchsorted(self.speeds, speeds)]
         middle, half = self.speeds.mean(), self.speeds[0] - self.speeds.mean()
-        basis = chebvander((self.speeds - middle) / half, _NODES - 1)
-        weights = chebvander((speeds - middle) / half, _NODES - 1) @ np.linalg.inv(basis)
+        basis = chebvander((self.speeds - middle) / half, _SPEED_NODES - 1)
+        weights = chebvander((speeds - middle) / half, _SPEED_NODES - 1) @ np.linalg.inv(basis)
         return np.asarray(weights @ self.torques)
 
 
-_NODES = 9
+_SPEED_NODES = 9  # Chebyshev nodes of the torque over the crank speed
 
 
 def _to_all(*_: object) -> NDArray[np.bool_]:

@@ -1,4 +1,4 @@
-"""Locals are named by what they hold: six names that say nothing may only become fewer."""
+"""Locals and constants are named by what they hold: names that say nothing become fewer."""
 
 from __future__ import annotations
 
@@ -70,3 +70,37 @@ def test_vague_names_of_locals_become_fewer() -> None:
         counts[folder] += len(assignments(path.read_text(encoding="utf-8")))
     grown = {name: count for name, count in counts.items() if count > MOST.get(name, 0)}
     assert grown == {}, "name the local by its contents; where a folder has moved, move its entry"
+
+
+SHARED = 32
+"""Private names of numeric constants that stand for several values, each in another module."""
+
+
+def numbers(text: str) -> dict[str, str]:
+    """Values, as source, of the private numeric constants of a module by name."""
+    values: dict[str, str] = {}
+    for node in ast.parse(text).body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name | ast.Tuple):
+            target = node.targets[0]
+            names = target.elts if isinstance(target, ast.Tuple) else [target]
+            parts = node.value.elts if isinstance(node.value, ast.Tuple) else [node.value]
+            for name, value in zip(names, parts, strict=False):
+                is_number = isinstance(value, ast.Constant) and isinstance(value.value, int | float)
+                if isinstance(name, ast.Name) and name.id.startswith("_") and is_number:
+                    values[name.id] = ast.unparse(value)
+    return values
+
+
+def test_a_private_number_is_read() -> None:
+    assert numbers("_A, _B = 1.0, 2\n_C = 'x'\n_D = 3e-9  # m\nE = 1") == {
+        "_A": "1.0", "_B": "2", "_D": "3e-09",
+    }  # fmt: skip
+
+
+def test_names_of_several_private_numbers_become_fewer() -> None:
+    """A name such as `_MARGIN` or `_ROUND_OFF` does not say of which quantity."""
+    values: dict[str, set[str]] = {}
+    for path in (each for name in FOLDERS for each in sorted((ROOT / name).rglob("*.py"))):
+        for name, value in numbers(path.read_text(encoding="utf-8")).items():
+            values.setdefault(name, set()).add(value)
+    assert sum(len(each) > 1 for each in values.values()) <= SHARED

@@ -22,11 +22,12 @@ from camwright.geometry.arrays import Array
 
 Complex = NDArray[np.complex128]
 
-_DEGREE = 6  # of the potentials
-_POWERS = np.arange(_DEGREE + 1)
-_UNKNOWNS = 4 * _DEGREE + 2  # phi without its constant, which moves the body as that of psi does
+_POTENTIAL_DEGREE = 6  # of the potentials
+_POWERS = np.arange(_POTENTIAL_DEGREE + 1)
+_UNKNOWNS = 4 * _POTENTIAL_DEGREE + 2
+"""Phi has no constant, which moves the body as that of psi does."""
 # Search of a maximum: points along either side of a square, and the squares one in another.
-_SIDE, _SQUARES = 21, (0.5, 0.05, 0.005)
+_SIDE, _SEARCH_SQUARES = 21, (0.5, 0.05, 0.005)
 _CENTRED = 0.1  # distance of the maximum from the middle of the fit, in reaches
 _UPDATES = 4  # of the middle of the fit
 
@@ -86,7 +87,7 @@ def fitted_stress(
     wanted = 2.0 * shear / reach * (displacement[0, near] + 1j * displacement[1, near])
     matrix = np.vstack([columns.real, columns.imag])
     solution = np.linalg.lstsq(matrix, np.r_[wanted.real, wanted.imag], rcond=None)[0]
-    d = _DEGREE
+    d = _POTENTIAL_DEGREE
     phi = solution[:d] + 1j * solution[d : 2 * d]
     psi = solution[2 * d : 3 * d + 1] + 1j * solution[3 * d + 1 :]
     return FittedStress(place, reach, np.r_[0.0, phi], psi)
@@ -124,7 +125,7 @@ def _maximum(fit: FittedStress, measure: Callable[[Array], Array]) -> tuple[floa
     line = np.linspace(-1.0, 1.0, _SIDE)
     square = np.stack(np.meshgrid(line, line)).reshape(2, -1)
     place, value = fit.place, 0.0
-    for size in _SQUARES:
+    for size in _SEARCH_SQUARES:
         points = place[:, None] + size * fit.reach * square
         values = measure(fit(points))
         best = int(np.argmax(values))

@@ -43,7 +43,7 @@ def point_force_displacement(x: ArrayLike, depth: ArrayLike, poisson: float) -> 
 
 
 def point_force_stress(x: ArrayLike, depth: ArrayLike) -> Array:
-    """Stress (3, ...) xx, zz, xz of a half-plane under a unit normal force per unit length.
+    """Stress (3, ...) xx, zz, xz, 1/m, of a half-plane under a normal force of 1 N/m.
 
     References
     ----------

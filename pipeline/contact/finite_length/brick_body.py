@@ -23,9 +23,9 @@ from camwright.pipeline.contact.elasticity.elastic_body import lame_parameters
 
 Index = NDArray[np.intp]
 
-_NODES = 20
+_BRICK_NODES = 20  # of a quadratic brick of serendipity shapes
 # The 27 Gauss points of the element integrate its stiffness exactly.
-_ORDER = 5
+_QUADRATURE_ORDER = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -291,14 +291,14 @@ class _Section:
         corners = _reference().places
         nx, nz = self.x.size - 1, self.z.size - 1
         i, k = (v.ravel() for v in np.meshgrid(np.arange(nx), np.arange(nz), indexing="ij"))
-        nodes = np.empty((i.size, _NODES), dtype=np.intp)
+        nodes = np.empty((i.size, _BRICK_NODES), dtype=np.intp)
         for node, (px, py, pz) in enumerate(corners):
             place = (2 * i + px, 2 * k + pz)
             if py == 1:
                 nodes[:, node] = 2 * self.planar + self._between[place]
             else:
                 nodes[:, node] = (0 if py == 2 else self.planar) + self._planar[place]
-        return (3 * nodes[:, :, None] + np.arange(3)).reshape(i.size, 3 * _NODES)
+        return (3 * nodes[:, :, None] + np.arange(3)).reshape(i.size, 3 * _BRICK_NODES)
 
     def place(self, lattice: Array, values: Array) -> None:
         """Write unknowns of a plane, or of the nodes between two, on the lattice (i, k, 3)."""
@@ -342,8 +342,8 @@ class _SlabStiffness:
         self._section = section
         lame, shear = lame_parameters(1.0, poisson)
         unknowns = section.unknowns_of_elements()
-        rows = np.repeat(unknowns, 3 * _NODES, axis=1).ravel()
-        columns = np.tile(unknowns, (1, 3 * _NODES)).ravel()
+        rows = np.repeat(unknowns, 3 * _BRICK_NODES, axis=1).ravel()
+        columns = np.tile(unknowns, (1, 3 * _BRICK_NODES)).ravel()
         size = 3 * (2 * section.planar + section.between)
         widths, depths = np.diff(section.x), np.diff(section.z)
         width, depth = (v.ravel() for v in np.meshgrid(widths, depths, indexing="ij"))
@@ -390,8 +390,8 @@ class _Reference:
 def _reference() -> _Reference:
     from skfem import Basis, BilinearForm, ElementHexS2, MeshHex
 
-    basis = Basis(MeshHex(), ElementHexS2(), intorder=_ORDER)
-    slopes = np.empty((3, 3, _NODES, _NODES))
+    basis = Basis(MeshHex(), ElementHexS2(), intorder=_QUADRATURE_ORDER)
+    slopes = np.empty((3, 3, _BRICK_NODES, _BRICK_NODES))
     for a in range(3):
         for b in range(3):
             form = BilinearForm(lambda u, v, w, a=a, b=b: v.grad[a] * u.grad[b])  # noqa: ARG005
@@ -407,9 +407,11 @@ def shape_slopes(points: Array) -> tuple[Index, Array]:
     from skfem import Basis, ElementHexS2, MeshHex
 
     element = ElementHexS2()
-    mapping = Basis(MeshHex(), element, intorder=_ORDER).mapping
+    mapping = Basis(MeshHex(), element, intorder=_QUADRATURE_ORDER).mapping
     inside = np.concatenate([mapping.invF(each[:, None, None]) for each in points], axis=2)
-    columns = [element.gbasis(mapping, inside[:, 0], node)[0].grad[:, 0] for node in range(_NODES)]
+    columns = [
+        element.gbasis(mapping, inside[:, 0], node)[0].grad[:, 0] for node in range(_BRICK_NODES)
+    ]
     return _reference().places, np.moveaxis(np.array(columns), -1, 0).transpose(0, 2, 1)
 
 
@@ -419,7 +421,7 @@ def _element_stiffness(
     """Stiffness of bricks (elements, 60, 60) by powers 1, 0 and -1 of their size along y."""
     slopes = _reference().slopes
     count = width.size
-    parts = np.zeros((3, count, _NODES, 3, _NODES, 3))
+    parts = np.zeros((3, count, _BRICK_NODES, 3, _BRICK_NODES, 3))
     ones = np.ones(count)
     # Size along each axis but for y, whose power is counted.
     sizes = (width, ones, depth)
@@ -436,7 +438,7 @@ def _element_stiffness(
             add(c, d, d, c, shear)
         for a in range(3):
             add(c, c, a, a, shear)
-    whole = parts.reshape(3, count, 3 * _NODES, 3 * _NODES)
+    whole = parts.reshape(3, count, 3 * _BRICK_NODES, 3 * _BRICK_NODES)
     return whole[0], whole[1], whole[2]
 
 

@@ -42,12 +42,12 @@ Index = NDArray[np.intp]
 # Ratios of neighbouring nodes: of half-widths; where the load matters of line loads and curvatures,
 # with straight lines between rounded ends and with a crown. Nodes of ladder index 0.
 _WIDTH_RATIO, _LOAD_RATIO, _ROUNDED_CURVATURE_RATIO, _CROWNED_CURVATURE_RATIO = 2.0, 3.0, 4.0, 9.0
-_WIDTH, _CURVATURE, _LOAD = 1e-4, 40.0, 1e5  # m, 1/m, N/m
-_LIGHT_MOMENT = 0.24  # greatest light moment over force and length
+_GRID_HALF_WIDTH, _CURVATURE, _LOAD = 1e-4, 40.0, 1e5  # m, 1/m, N/m
+_TABLED_MOMENT = 0.24  # greatest light moment over force and length
 _FEW_ROWS = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
 
 # Places along the line at which the drop of a crown decides the tables kept.
-_PLACES = 2001
+_LINE_POINTS = 2001
 # Wider cells across for contacts that leave theirs: ratio, and how often at most.
 _WIDER, _WIDENINGS = 2.0, 3
 # Errors of the interpolation, verified by tests.
@@ -70,7 +70,7 @@ class _Ladder:
     """
 
     def __init__(self, light: int, *batches: int) -> None:
-        self.moments = np.concatenate([np.linspace(0.0, _LIGHT_MOMENT, light), _HEAVY])
+        self.moments = np.concatenate([np.linspace(0.0, _TABLED_MOMENT, light), _HEAVY])
         self.signed: Array = np.concatenate([-self.moments[:0:-1], self.moments])
         self.zero = self.moments.size - 1
         self.batches = *batches, self.moments.size
@@ -227,7 +227,7 @@ class FactorTable:
             second, load_weights = _uniform_stencil(line_load, _LOAD, _LOAD_RATIO)
         else:
             half_width, _ = self._hertz(curvature, force)
-            first, first_weights = _uniform_stencil(half_width, _WIDTH, _WIDTH_RATIO)
+            first, first_weights = _uniform_stencil(half_width, _GRID_HALF_WIDTH, _WIDTH_RATIO)
             second, load_weights = np.zeros_like(first), np.ones((force.size, 1))
         size = load_weights.shape[1]
         least, span = second.min(), np.ptp(second) + 1
@@ -273,7 +273,7 @@ class FactorTable:
             curvature = _CURVATURE * self._curvature_ratio ** key[0]
             half_width = float(np.sqrt(per_curvature / curvature))
         else:
-            half_width = _WIDTH * _WIDTH_RATIO ** key[0]
+            half_width = _GRID_HALF_WIDTH * _WIDTH_RATIO ** key[0]
             curvature = per_curvature / half_width**2
         here = replace(self.pair, curvature=curvature)
         if not self.pair.is_symmetric:
@@ -286,7 +286,7 @@ class FactorTable:
             turned = turn * self.pair.contact_length / (curvature * half_width**2)
             return {"edges": edges, "line": line / p0, "turn": turned}
 
-        places = 0.5 * self.pair.contact_length * np.linspace(-1.0, 1.0, _PLACES)
+        places = 0.5 * self.pair.contact_length * np.linspace(-1.0, 1.0, _LINE_POINTS)
         bodies = tuple(
             (body.material, body.length, body.end.kind, body.end.size) for body in self.pair.bodies
         )

@@ -20,7 +20,7 @@ _ACROSS_GROWTH = 1.4
 # Peak at a rounded end: cells over its width per cell over the half-width; widths beyond the flat
 # with cells of that size, and up to which there are cells; narrowest peak over the radius for which
 # the growth of the cells is not exceeded.
-_PER_PEAK, _PEAK_RESOLVED, _PEAK_REACH, _LEAST_CELL = 0.5, 3.0, 7.0, 2e-3
+_PER_PEAK, _PEAK_RESOLVED, _PEAK_WIDTHS, _LEAST_CELL = 0.5, 3.0, 7.0, 2e-3
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ def _rounded(flat: float, radius: float, peak: float, sizes: CellSizes) -> Array
     per_peak = sizes.per_half_width * _PER_PEAK
     resolved = int(np.ceil(_PEAK_RESOLVED * per_peak))
     beyond = np.arange(resolved + 1) / per_peak
-    while beyond[-1] < _PEAK_REACH:
+    while beyond[-1] < _PEAK_WIDTHS:
         beyond = np.append(beyond, beyond[-1] + sizes.growth * (beyond[-1] - beyond[-2]))
     width = min(peak, radius / beyond[-1], 0.25 * flat)
     # As many cells as the narrowest peak takes, of the growth that fits.
