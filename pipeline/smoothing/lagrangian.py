@@ -101,8 +101,8 @@ def lagrangian_curvature(
 ) -> Array:
     """Hessian (size, size) of the Lagrangian in the scaled unknowns at a state.
 
-    Without those of the norms by their linear residuals, which the cone program has. The second
-    derivative of the maximum lift is left out.
+    The norms of the ripples, as functions of their linear residuals, are left out: the cone program
+    holds them exactly. So is the second derivative of the maximum lift.
 
     Parameters
     ----------
