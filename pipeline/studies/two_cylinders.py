@@ -187,7 +187,7 @@ def is_conforming(pair: TwoCylinders) -> bool:
 
 
 def finite_elements(pair: TwoCylinders) -> FiniteElementContact:
-    """Contact by finite elements; error bar by a coarser mesh.
+    """Line contact of two cylinders by finite elements; error bar by a coarser mesh.
 
     Raises
     ------

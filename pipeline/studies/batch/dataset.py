@@ -253,7 +253,7 @@ def table_from(content: bytes) -> pa.Table:
 
 
 def read_parquet(path: Path) -> pa.Table:
-    """The table of a Parquet file.
+    """Table read from a Parquet file.
 
     Raises
     ------

@@ -245,7 +245,7 @@ def resident(pid: int) -> int:
 
 
 def serve(pipe: Connection) -> None:
-    """Loop of the process: solve the requests of the pipe until it is closed."""
+    """Request loop of the solver process, until its pipe is closed."""
     from camwright.pipeline.studies.batch.design_plan import study_versions
     from camwright.pipeline.studies.batch.design_solver import DesignSolver
 
