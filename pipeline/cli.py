@@ -107,7 +107,7 @@ _RESUMED_BY = {
 
 
 def main() -> NoReturn:
-    """Entry point: an error becomes a line for each fault and exit code 2, an altered run 4.
+    """Entry point: runs a command; an error prints a line per fault, exit code 2, altered run 4.
 
     A signal becomes one line and 128 + its number; one that is ignored at the start, as by
     ``nohup``, stays ignored.

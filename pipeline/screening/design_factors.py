@@ -84,7 +84,7 @@ class Group:
 
 
 def count_of(factors: Mapping[str, Factor]) -> int:
-    """Number of designs.
+    """Number of designs, from the length of their factors.
 
     Raises
     ------

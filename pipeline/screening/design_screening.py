@@ -268,7 +268,7 @@ def synthesis(case: Case) -> tuple[Case, Array]:
 
 
 def judged_columns(designs: Designs) -> dict[str, Column]:
-    """Columns (m,) of each check, ``screen``, ``governing`` and ``message``."""
+    """Columns (m,) of each check's demand, limit and status, of screen and governing check."""
     columns: dict[str, Column] = {}
     count, machine = designs.count, designs.machine
     fails = np.zeros(count, dtype=bool)
@@ -387,7 +387,7 @@ def utilisations(demand: Array, limit: Array, *, at_most: bool) -> Array:
 
 
 def headline_columns(designs: Designs) -> dict[str, Column]:
-    """Columns ``headline.{key}`` (m,) as in ``run.json``."""
+    """Columns ``headline.{key}`` (m,) of the key figures, as in ``run.json``."""
     first, cams = designs.cams[0], designs.cams
     before, lost = first.state.torque, first.ends.lost
 

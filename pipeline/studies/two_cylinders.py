@@ -155,7 +155,7 @@ class ConformingContact:
 
 
 def closed_form(pair: TwoCylinders) -> LineContact:
-    """Hertz contact, with McEwen's stresses under sliding friction."""
+    """Hertz line contact of two cylinders, with McEwen's stresses under sliding friction."""
     half_width, p0 = (
         float(v)
         for v in hertz.line_contact(pair.line_load, 1 / pair.curvature, pair.contact_modulus)
@@ -181,7 +181,7 @@ def closed_form(pair: TwoCylinders) -> LineContact:
 
 
 def is_conforming(pair: TwoCylinders) -> bool:
-    """Whether the half contact angle by Hertz exceeds `HALF_ANGLE_MAX`."""
+    """Whether the half contact angle by Hertz exceeds its range of validity, `HALF_ANGLE_MAX`."""
     half_width = closed_form(pair).half_width
     return bool(half_width > np.sin(HALF_ANGLE_MAX) * pair.smaller_radius)
 
@@ -209,7 +209,7 @@ def finite_elements(pair: TwoCylinders) -> FiniteElementContact:
 
 
 def conforming(pair: TwoCylinders) -> ConformingContact:
-    """Frictionless pin in a hole, beyond the validity of Hertz.
+    """Conforming contact of a pin in a hole without friction, beyond the validity of Hertz.
 
     Raises
     ------
@@ -333,7 +333,7 @@ def _beyond(field: Array, poisson: float) -> float:
 
 
 def patch_mesh(poisson: float) -> tuple[BodyMesh, Index]:
-    """Mesh of the finer template in the range of its stresses, and point number of each node.
+    """Contact-patch mesh within the range of its stresses, with the point number of each node.
 
     Lengths in half-widths; the surface is y = 0, the body below.
     """

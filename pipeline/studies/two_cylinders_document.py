@@ -141,7 +141,7 @@ class ContactOptions:
 def solved(
     options: ContactOptions, *, with_approach: bool = False, field: Path | None = None
 ) -> Document:
-    """Results of the command, in mm, MPa and N.
+    """Line contact of two cylinders as a document, in mm, MPa and N.
 
     Raises
     ------
@@ -185,7 +185,7 @@ def solved(
 
 
 def lines(document: Document) -> Iterator[str]:
-    """Lines of text of a document."""
+    """Lines of text of a contact document."""
     fe, theory = document["fe"], document["hertz"]
     yield f"{'':18}{'Hertz':>14}{'' if fe is None else 'finite elements':>18}"
     for name, title in (

@@ -18,7 +18,7 @@ _SIZE = (6.4, 5.2)
 
 @shipped()
 def draw(document: CrownDocument, out: Path) -> Path:
-    """Write the picture of the record of a least crown as PNG."""
+    """Write the PNG of a least crown: axial pressure at the governing state, and drop."""
     from matplotlib.figure import Figure as Canvas
 
     with style(out.stem):

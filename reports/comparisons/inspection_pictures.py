@@ -21,7 +21,7 @@ _EXAGGERATED = 0.12
 
 @shipped()
 def draw(run: Path, tolerance_um: float, folder: Path) -> Path:
-    """Write ``deviation.png`` into the folder of an inspection.
+    """Write ``deviation.png`` of an inspection: deviation, normal force, contact pressure.
 
     Returns
     -------

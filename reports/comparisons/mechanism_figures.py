@@ -26,7 +26,7 @@ _PAIRS = {
 
 @shipped()
 def draw(document: Record, out: Path) -> tuple[Path, ...]:
-    """Write the figures of a comparison as PNG files."""
+    """Write the PNG figures of a mechanism comparison: friction energy, torque, workspace."""
     space = document["workspace"]
     drawn = {
         "energies": _energies(document),

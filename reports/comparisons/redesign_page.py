@@ -39,7 +39,7 @@ _SCALE = 1e3
 
 
 def write(folder: Path, document: RedesignDocument) -> Path:
-    """Write ``redesign.png`` and ``redesign.html``.
+    """Write figure and page of a redesign's front, ``redesign.png`` and ``redesign.html``.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def write(folder: Path, document: RedesignDocument) -> Path:
 
 @shipped()
 def drawn(document: RedesignDocument) -> bytes:
-    """Ripple left over size or mass: evaluated designs, front, initial design; PNG."""
+    """PNG of residual ripple over size or mass: evaluated designs, front, initial design."""
     from matplotlib.figure import Figure
 
     name, label = AXES[document["against"]]

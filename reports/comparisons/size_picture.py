@@ -23,7 +23,7 @@ _HEADROOM = 1.9
 
 @shipped()
 def draw(document: SizeDocument, out: Path) -> Path:
-    """Write the chart of the record of a sizing as PNG or SVG, by the end of its name."""
+    """Write the chart of a sizing, pressure angle and curvature over base radius, PNG or SVG."""
     with style(out.stem):
         canvas = _chart(document)
         if out.suffix == ".png":

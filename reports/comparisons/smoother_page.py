@@ -46,7 +46,7 @@ def write(
     lead: str = "",
     common: Sequence[str] = (),
 ) -> Path:
-    """Write ``smoothers.csv``, ``smoothers.png`` and ``smoothers.html``.
+    """Write the comparison of smoothers: ``smoothers.csv``, ``.png`` and ``.html``.
 
     Parameters
     ----------

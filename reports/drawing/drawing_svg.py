@@ -14,7 +14,7 @@ _DASHES = {"dashed": (4.0, 2.5), "dashdot": (9.0, 2.0, 1.5, 2.0)}  # widths of t
 
 
 def svg_of(drawing: Drawing, colours: Mapping[str, str], font: str, attributes: str = "") -> str:
-    """SVG text of a drawing.
+    """SVG text of a line drawing of the mechanism or the cam.
 
     Parameters
     ----------

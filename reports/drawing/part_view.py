@@ -336,7 +336,7 @@ def _detail(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
 
 
 def crown_words(kind: str) -> str:
-    """Kind of a crown on a drawing."""
+    """Kind of a crown in words, for a drawing."""
     return _CROWNS.get(kind, kind)
 
 

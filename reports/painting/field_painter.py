@@ -23,7 +23,7 @@ _SCALARS = "values"
 
 
 def paint(view: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
-    """Pixels (rows, columns, 3) of a view.
+    """Pixels (rows, columns, 3) of a field on triangles, rendered off-screen by VTK.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def paint(view: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
 
 
 def painted(folder: Path, count: int, window: str) -> bool:
-    """Whether a process has painted the views of a folder in an OpenGL window; see `main`."""
+    """Whether a child process could paint the views of a folder in an OpenGL window."""
     try:
         child = subprocess.run(  # noqa: S603 - our own interpreter and module
             module_command(__name__, str(folder), str(count)),
@@ -83,7 +83,7 @@ def painted(folder: Path, count: int, window: str) -> bool:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Paint the views FOLDER/0.npz, FOLDER/1.npz ... into FOLDER/0.npy, FOLDER/1.npy ..."""
+    """Child process: paint the views FOLDER/0.npz, FOLDER/1.npz ... into FOLDER/0.npy ..."""
     folder, count = Path(arguments[0]), int(arguments[1])
     for number in range(count):
         with np.load(folder / f"{number}.npz", allow_pickle=False) as view:

@@ -34,7 +34,7 @@ class GalleryEntry:
 
 
 def page(document: Record) -> str:
-    """HTML text of the page from the contents of ``gallery.json``."""
+    """HTML page of the machine gallery, from the contents of ``gallery.json``."""
     text: str = environment().get_template("gallery.html").render(
         title="Machines and their cams", lead=LEAD,
         machines=[_entry(one) for one in document["machines"]],

@@ -88,7 +88,7 @@ class Chart:
 
 
 def drawn(record: Record) -> Canvas:
-    """The matplotlib figure of a record."""
+    """Matplotlib figure of a paper's record: panels of curves, outlines or bars."""
     from matplotlib.figure import Figure as Canvas
 
     columns = record["columns"]

@@ -39,7 +39,7 @@ class Paper:
 
 
 def page(document: Record) -> str:
-    """HTML text of the page from the contents of ``papers.json``."""
+    """HTML page of the papers' figures and values, from the contents of ``papers.json``."""
     papers = []
     for key, paper in document["papers"].items():
         doi = f", doi {paper['doi']}" if paper.get("doi") else ""

@@ -32,7 +32,7 @@ INTRODUCTION = (
 
 
 def page(document: Record) -> str:
-    """HTML text of the page from the contents of ``validation.json``."""
+    """HTML page of published and computed values, from the contents of ``validation.json``."""
     sections = [_summary(document), *(_paper(document, key) for key in document["papers"])]
     return study_page("Reproduction of published studies", sections, INTRODUCTION)
 

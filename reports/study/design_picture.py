@@ -18,7 +18,7 @@ _MOST = 3.0  # of the sizes of the front: candidates further away are left out
 
 
 def write(path: Path, document: DesignDocument) -> Path:
-    """Write the picture as PNG.
+    """Write the picture of a design as PNG: torque, front, cam with roller, parts.
 
     Parameters
     ----------

@@ -144,7 +144,7 @@ class Page:
 
 
 def titled(name: str, unit: str = "") -> tuple[str, str]:
-    """Label and unit of a column of the dataset."""
+    """Label and unit of a dataset column, for tables and axes of a study's page."""
     if name == UTILISATION:
         return "Utilisation of the governing check", ""
     if name == PASS:

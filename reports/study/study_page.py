@@ -64,7 +64,7 @@ class DesignRows:
 def write(
     path: Path, title: str, facts: Sequence[tuple[str, str]], answers: Record, designs: DesignRows
 ) -> Path:
-    """Write the page.
+    """Write the HTML page of a study.
 
     Parameters
     ----------
