@@ -48,7 +48,7 @@ RECIPE = (sys.modules[__name__], elastic_body, sparse_factor, halfplane)
 
 @dataclass(frozen=True, eq=False)
 class CorrectionField:
-    """Surface slope and curvature of a real body beyond the half-plane, per unit line load.
+    """Stress along the surface, and its curvature, of a real body beyond the half-plane, per N/m.
 
     along (count,) stress along the surface, Pa per N/m, the only component on a free surface;
     bend (count,) second derivative of the outward displacement along the surface, 1/m per N/m;

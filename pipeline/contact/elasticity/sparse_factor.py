@@ -1,4 +1,4 @@
-"""Cholesky factorisation of sparse symmetric positive definite matrices.
+"""Factorisation of sparse symmetric positive definite matrices: CHOLMOD, Pardiso or SuperLU.
 
 By CHOLMOD (package cvxopt) or Pardiso (pypardiso) where installed, else by SuperLU (SciPy);
 ``CAMWRIGHT_SOLVER=scipy`` selects SuperLU. Solutions agree to round-off.
