@@ -37,8 +37,8 @@ from camwright.pipeline.search.machine.wound_springs import SpringPoint, of_cata
 WIRE = "chrome_silicon"
 RELAXATION = 0.005  # share of the force that a preset spring loses
 _TRAVELS = 12
-_TRAVEL_LEAST = 2e-3  # m
-_TRAVEL_MOST = 0.12  # m
+_TRIED_TRAVEL_LEAST = 2e-3  # m
+_TRIED_TRAVEL_MOST = 0.12  # m
 _PRELOADS = (0.15, 0.3, 0.45, 0.6)  # of the greatest force
 _LEAST_SHARES = 3  # of the torque, for which springs are sought
 _SHARED_SHAFT = 0.2  # share of the torque that one camshaft is drawn for
@@ -152,7 +152,7 @@ def _springs(
     swing = task.demand.energy_swing
     least = min(task.remove + _REMOVED_MORE, 1.0)
     shares = np.linspace(least, 1.0, max(_LEAST_SHARES, ceil((1.0 - least) / _SHARED_SHAFT) + 1))
-    travels = np.geomspace(_TRAVEL_LEAST, _TRAVEL_MOST, _TRAVELS)
+    travels = np.geomspace(_TRIED_TRAVEL_LEAST, _TRIED_TRAVEL_MOST, _TRAVELS)
     most = 0.95 * min(
         card.C0 / 1.5, 0.5 * card.C, card.radial_limit or np.inf, card.static_radial_limit or np.inf
     )

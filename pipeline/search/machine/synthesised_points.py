@@ -31,7 +31,7 @@ _FRONT_WITHIN = 5  # of the front of the screening within the limits
 _FRONT_NEAR = 2  # of the front of those near to them
 _ROLLERS = 3  # whose likeliest designs are tried
 _CURABLE_EXCESS = 0.5  # excess that a synthesis may remove
-_SIZES_THAT_TIE = 0.02  # relative size within which the lesser ripple replaces
+_SAME_SIZE = 0.02  # relative size within which the lesser ripple replaces
 _RIPPLE_GAIN = 0.03  # of the ripple, between points
 _SHRUNK, _GROWN = 0.9, 1.1  # of the prime radius of the screening
 _AT_MOST = 0.999  # of the greatest prime radius, above which it is that one
@@ -163,7 +163,7 @@ class Solved:
             return self.has_cam
         if not (self.passes and other.passes):
             return self.passes or (not other.passes and self.shortfall < other.shortfall)
-        return self.ripple < other.ripple and self.size <= (1.0 + _SIZES_THAT_TIE) * other.size
+        return self.ripple < other.ripple and self.size <= (1.0 + _SAME_SIZE) * other.size
 
     @property
     def size(self) -> float:
@@ -231,7 +231,7 @@ def _screened_front(
     largest = FAR * min((each.size for each in good), default=0.0)
     good = [each for each in good if each.size <= largest]
     figures = [(each.size, each.ripple) for each in good]
-    places = front(figures, _SIZES_THAT_TIE, _RIPPLE_GAIN * task.demand.ripple)
+    places = front(figures, _SAME_SIZE, _RIPPLE_GAIN * task.demand.ripple)
     return [good[k] for k in thinned(places, figures, most)]
 
 

@@ -14,7 +14,7 @@ from camwright.pipeline.case.limits import UNDERCUT_FACTOR
 from camwright.pipeline.records.size_document import SizeChart, SizeCurve, SizePanel
 from camwright.pipeline.search.sizes.shapes import FaceShapes, RollerShapes, Shape, Shapes
 
-_LEAST_RADIUS, _GREATEST_RADIUS = 0.4, 2.2
+_RADIUS_FROM, _RADIUS_TO = 0.4, 2.2
 """Range of the chart over the prime or base radius of the sized cam."""
 _BEYOND_OFFSET = 1.02
 """Least prime radius of the chart over offset and roller radius."""
@@ -34,7 +34,7 @@ def chart_record(case: Case, shapes: Shapes, shape: Shape) -> SizeChart:
 def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[SizePanel]:
     cam, inset = shapes.cam, shape.roller_radius
     low = max(
-        _LEAST_RADIUS * shape.prime_radius,
+        _RADIUS_FROM * shape.prime_radius,
         _BEYOND_OFFSET * abs(shape.offset),
         _BEYOND_OFFSET * shape.roller_radius,
     )
@@ -71,7 +71,7 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[SizePanel]:
 
 def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[SizePanel]:
     bases, cam = (
-        _about(_LEAST_RADIUS * shape.prime_radius, shape.prime_radius, _CHART_POINTS),
+        _about(_RADIUS_FROM * shape.prime_radius, shape.prime_radius, _CHART_POINTS),
         shapes.cam,
     )
     radii = bases + cam.least_radius(0.0).value
@@ -85,7 +85,7 @@ def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[SizePanel
 
 
 def _about(least: float, radius: float, count: int) -> Array:
-    return np.linspace(least, max(_GREATEST_RADIUS * radius, 1.5 * least), count)
+    return np.linspace(least, max(_RADIUS_TO * radius, 1.5 * least), count)
 
 
 def _curve(
