@@ -1,4 +1,4 @@
-"""Searches over changed designs: what a case should be, by judging others beside it.
+"""Searches: changed designs of a case, judged and compared to find the best.
 
 In the order of the calculation:
 

@@ -23,7 +23,7 @@ PARTS = (BEARING, CAM_MATERIAL, BUSH_A, BUSH_B)
 
 @dataclass(frozen=True)
 class Change:
-    """Other values of a case.
+    """Change of a case: new values at dotted keys.
 
     Parameters
     ----------
@@ -35,14 +35,14 @@ class Change:
 
     @classmethod
     def of(cls, values: Mapping[str, str] | Mapping[str, float]) -> Change:
-        """The change to the values of a mapping, in its order."""
+        """Change to the values of a mapping, in its order."""
         return cls(tuple(values.items()))
 
     def __str__(self) -> str:
         return ", ".join(f"{key}: {value}" for key, value in self.values)
 
     def is_numbers_of(self, case: Case) -> bool:
-        """Whether all values are numbers in place of others of a case."""
+        """Whether all values are numbers that replace numbers of a case."""
         return not any(key in PARTS or value_of(case, key) is None for key, _ in self.values)
 
     def applied(self, case: Case, folder: Path | None) -> Case:
@@ -74,7 +74,7 @@ class Change:
         return case
 
     def replaced(self, case: Case) -> Case:
-        """As `applied`, of numbers alone: put in place, without reading the case anew.
+        """Case with its numbers replaced in place, without reading it anew; see `applied`.
 
         Sources are not compared with the values.
 
@@ -89,13 +89,13 @@ class Change:
 
 
 def unit_at(key: str) -> str:
-    """Unit of the number at a key; "": none, or no number."""
+    """Unit of the number at a key; "" for a pure number or another value."""
     quantity = quantity_of(key)
     return quantity.unit if isinstance(quantity, In) else ""
 
 
 def number_of(key: str, value: str | float) -> float:
-    """Number in SI of a value at a key."""
+    """Value at a key as a number in SI."""
     if not isinstance(value, str):
         return value
     unit = unit_at(key)

@@ -1,4 +1,4 @@
-"""Judge of changed cases: a case, what all its changes share, and how deep each is judged."""
+"""Judge of changed cases: solution, checks and figures of a case with some values changed."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Headline:
 
 
 class Depth(NamedTuple):
-    """How deep a changed case is judged.
+    """Depth of a judgement: tier of the solution, tolerance corners, bounds of the friction.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Depth(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """A changed case that is solved; its checks are made when they are read.
+    """Changed case with its solution; its checks are made on demand.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class Judgement:
 
     @cached_property
     def trial(self) -> Trial:
-        """The solution with all its checks, of evidence and of what may be left out, too."""
+        """Trial of the changed case, with all its checks, evidence and optional ones included."""
         nominal = checked(self.solved)
         return judged_at_corners(nominal) if self.whole else nominal
 
@@ -167,7 +167,7 @@ class Judgement:
 
 @dataclass(frozen=True, eq=False)
 class Judge:
-    """A case with what all its changes share.
+    """Judge of the changes of one case: torques, lift, cards and corners common to all.
 
     Parameters
     ----------

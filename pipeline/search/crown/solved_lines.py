@@ -115,7 +115,7 @@ class SignedRange(NamedTuple):
 
 
 def signed_range(lines: SolvedLines, loads: ContactLoads) -> SignedRange:
-    """Stated pressure of contacts at zero and greatest moment."""
+    """Worst stated pressure of contacts over plane strain, aligned or at the greatest moment."""
     moment = greatest_moment(lines, loads)
     sides = (0.0, 1.0) if lines.pair.is_symmetric else (-1.0, 0.0, 1.0)
     at = loads.curvature, loads.force

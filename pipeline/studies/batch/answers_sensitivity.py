@@ -144,7 +144,7 @@ def sobol_indices(output: Array, factors: int) -> tuple[SobolIndex, ...] | None:
 
 
 def independent(count: int, factors: int) -> NDArray[np.int64]:
-    """Mask of the independent rows of a Saltelli sample: its matrices A and B."""
+    """Row numbers of a Saltelli sample that are independent: those of its matrices A and B."""
     block = factors + 2
     starts = np.arange(0, count, block)
     return np.sort(np.concatenate([starts, starts + block - 1]))
