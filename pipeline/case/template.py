@@ -315,7 +315,7 @@ roughness = "0.3 um"
 profile_tolerance = "8 um"           # ground
 keyway = { width = "8 mm", depth = "3.3 mm", root_radius = "0.25 mm" }  # DIN 6885-1: 0.16 to 0.25
 fit = { least_interference = "15 um", greatest_interference = "22 um" }  # negative: clearance
-key = { length = "15 mm", form = "B", material = "c45" }
+key = { length = "15 mm", chamfer = "0.4 mm", form = "B", material = "c45" }
 
 [camshaft]
 bearing_spacing = "70 mm"

@@ -233,6 +233,48 @@ key_shear = _key_check(
     symbols={"b": "cam.keyway.width"},
     factor=1.0 / np.sqrt(3.0),
 )
+
+
+def _corner_allowed(numbers: Numbers) -> Allowed:
+    """Chamfer of the key; the key that it lacks."""
+    chamfer = numbers.known_case.cam.key_corner
+    return Allowed(chamfer, () if chamfer is not None else ("cam.key.chamfer",))
+
+
+def _corner_in_words(demand: Demand, solution: Solution) -> Demand:
+    cam, root = solution.machine.cam, "cam.keyway.root_radius"
+    missing = () if cam.keyway_root_radius is not None else (root,)
+    stated = {} if demand.value is None else {"r": demand.value}
+    stated |= {} if demand.allowed is None else {"s": demand.allowed}
+    return replace(demand, at=None, missing=(*demand.missing, *missing), stated=stated)
+
+
+@check(
+    title="Root radius of the keyway vs. chamfer of its key",
+    unit="mm",
+    source=Source(
+        "DIN 6885-1: the least chamfer of a key is the greatest root radius of its keyways",
+        confirmed=False,
+    ),
+    method="fillet of the keyway in the cam, and chamfer of the key, the least of its standard"
+    " where none is stated",
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    part="key",
+    formula="r <= s; r: cam.keyway.root_radius, s: cam.key.chamfer, else the least of DIN 6885-1",
+    symbols=dict.fromkeys("rs", f"{STATED} [mm]"),
+    reason="a key whose corners ride on the fillets wedges the keyway open instead of bearing on"
+    " its flanks",
+    load_cases=NONE,
+    levers=(levers.one("cam.key.chamfer"), levers.one("cam.keyway.root_radius", -1)),
+    page="Camshaft",
+).measured("case", allowed=_corner_allowed, remark=_corner_in_words, deviation=1e-9)
+def key_corner(cam: LoadedCam) -> Array:
+    """Root radius of the keyway in the cam, m; NaN where it is not known."""
+    radius = cam.numbers.known_case.cam.keyway_root_radius
+    return np.array([np.nan if radius is None else radius])
+
+
 _SLIP = "camshaft.slip_torque"
 
 

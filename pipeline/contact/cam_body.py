@@ -38,25 +38,29 @@ class Keyway(Part):
 
 
 class StandardKey(NamedTuple):
-    """Row of DIN 6885-1, m: key height h, depth t1 in the shaft, greatest key chamfer s, least
-    fillet radius r of the keyways.
+    """Row of DIN 6885-1, m: key height h, depth t1 in the shaft, greatest and least key chamfer s,
+    least fillet radius r of the keyways.
     """
 
     height: float
     shaft_depth: float
     chamfer: float
+    least_chamfer: float
     fillet: float
 
 
 _MILLIMETRE = 1e-3  # m
 STANDARD_KEYS: Mapping[int, StandardKey] = {
-    width: StandardKey(*(_MILLIMETRE * each for each in (height, depth, chamfer, fillet)))
-    for width, height, depth, chamfer, fillet in (
-        (2, 2, 1.2, 0.25, 0.08), (3, 3, 1.8, 0.25, 0.08), (4, 4, 2.5, 0.25, 0.08),
-        (5, 5, 3.0, 0.40, 0.16), (6, 6, 3.5, 0.40, 0.16), (8, 7, 4.0, 0.40, 0.16),
-        (10, 8, 5.0, 0.60, 0.25), (12, 8, 5.0, 0.60, 0.25), (14, 9, 5.5, 0.60, 0.25),
-        (16, 10, 6.0, 0.60, 0.25), (18, 11, 7.0, 0.60, 0.25), (20, 12, 7.5, 0.80, 0.40),
-        (22, 14, 9.0, 0.80, 0.40), (25, 14, 9.0, 0.80, 0.40), (28, 16, 10.0, 0.80, 0.40),
+    width: StandardKey(*(_MILLIMETRE * each for each in row))
+    for width, *row in (
+        (2, 2, 1.2, 0.25, 0.16, 0.08), (3, 3, 1.8, 0.25, 0.16, 0.08),
+        (4, 4, 2.5, 0.25, 0.16, 0.08), (5, 5, 3.0, 0.40, 0.25, 0.16),
+        (6, 6, 3.5, 0.40, 0.25, 0.16), (8, 7, 4.0, 0.40, 0.25, 0.16),
+        (10, 8, 5.0, 0.60, 0.40, 0.25), (12, 8, 5.0, 0.60, 0.40, 0.25),
+        (14, 9, 5.5, 0.60, 0.40, 0.25), (16, 10, 6.0, 0.60, 0.40, 0.25),
+        (18, 11, 7.0, 0.60, 0.40, 0.25), (20, 12, 7.5, 0.80, 0.60, 0.40),
+        (22, 14, 9.0, 0.80, 0.60, 0.40), (25, 14, 9.0, 0.80, 0.60, 0.40),
+        (28, 16, 10.0, 0.80, 0.60, 0.40),
     )
 }  # fmt: skip
 """Parallel keys of DIN 6885-1 by their width, mm (recalled, verify)."""
@@ -197,6 +201,13 @@ class CamBody(Part):
             "shaft_depth": key.shaft_depth or (row and row.shaft_depth),
             "chamfer": key.chamfer or (row and row.chamfer),
         }
+
+    @property
+    def key_corner(self) -> float | None:
+        """Chamfer of the key, m: as stated, else the least of its standard; None without either."""
+        row = self._standard_key
+        stated = None if self.key is None else self.key.chamfer
+        return stated or (row and row.least_chamfer)
 
     @property
     def keyway_root_radius(self) -> float | None:

@@ -148,6 +148,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_SHAFT, "test_key_by_the_flank_that_bears"): (
         "key_pressure", "key_pressure_shaft", "key_shear",
     ),
+    (_SHAFT, "test_a_chamfered_key_bears_on_the_flanks_of_a_filleted_keyway"): ("key_corner",),
     (_SHAFT, "test_keyway_root_of_the_solved_case"): ("keyway_root",),
     (_SHAFT, "test_fatigue_of_the_governing_section"): ("shaft_fatigue",),
     (_SHAFT, "test_yield_by_principal_stresses"): ("shaft_yield",),

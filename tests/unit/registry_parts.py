@@ -25,6 +25,7 @@ from trial_variants import (
     with_guide,
     with_guides,
     with_key,
+    with_keyway,
     with_limits,
     with_loads,
     with_material,
@@ -256,6 +257,14 @@ for _name, _area, _strength, _how in (
         factor=1.0 / (0.25 * _strength),
         missing=lambda: with_key(length=None),
     )
+tried(
+    "key_corner",
+    limited("key_corner", lambda p: with_key(chamfer=p)),
+    lambda: with_keyway(width=5.3e-3),  # of no standard, without radius and chamfer
+    None,  # of the case alone
+    0.16,
+    "least fillet of a standard keyway of 5 mm",
+)
 by_limit(
     "keyway_root",
     "keyway_safety",

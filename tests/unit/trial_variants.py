@@ -126,6 +126,10 @@ def with_key(**values: Any) -> Solution:
     return with_part("cam", key=made.changed(made.case().cam.key, **values))
 
 
+def with_keyway(**values: Any) -> Solution:
+    return with_part("cam", keyway=made.changed(made.case().cam.keyway, **values))
+
+
 def with_gear(**values: Any) -> Solution:
     return with_shaft(gear=made.changed(made.case().camshaft.gear, **values))
 

@@ -340,6 +340,30 @@ def test_key_by_the_flank_that_bears():
     assert key_strength.key_shear(solved()).limit == pytest.approx(tresca_free)
 
 
+@pytest.mark.parametrize("chamfer", [0.2e-3, 0.25e-3, 0.5e-3])
+def test_a_chamfered_key_bears_on_the_flanks_of_a_filleted_keyway(chamfer):
+    """The corner of the key, pushed into that of the keyway, meets both walls before the fillet.
+
+    Outlines in the corner of the walls x = 0 and y = 0: chamfer from (s, 0) to (0, s), fillet of
+    the radius r about (r, r); the key enters the steel beyond the fillet where r > s.
+    """
+    along = np.linspace(0.0, 1.0, 2001)
+    edge = chamfer * np.array([1.0 - along, along])
+
+    def enters(radius):
+        within = (edge < radius).all(axis=0)
+        return bool((within & (np.hypot(*(edge - radius)) > radius * (1.0 + 1e-9))).any())
+
+    fits = [radius for radius in np.arange(1, 121) * 5e-6 if not enters(radius)]
+    base = solved().case
+    key = replace(base.cam.key, chamfer=chamfer)
+    for radius, status in ((max(fits), "pass"), (max(fits) + 5e-6, "fail")):
+        keyway = replace(base.cam.keyway, root_radius=radius)
+        cam = replace(base.cam, key=key, keyway=keyway)
+        judged = key_strength.key_corner(with_case(base.model_copy(update={"cam": cam})))
+        assert judged.status == status, radius
+
+
 def root_stress(bore, wide, deep, fillet, outer, high):
     """Greatest principal stress at the root of a keyway, by elements, over the nominal ones.
 

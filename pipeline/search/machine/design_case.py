@@ -257,7 +257,7 @@ greatest_interference = "{1e6 * greatest:.3g} um"
 source = {_assumed("friction by DIN 7190-1")}
 
 [cam.key]
-length = "{_mm(frame.key_length)}"
+length = "{_mm(frame.key_length)}"{_chamfer(seat)}
 form = "B"
 material = "c45"
 source = {written(seat_source())}
@@ -268,6 +268,12 @@ def _root(seat: Seat) -> str:
     """Root radius of a keyway of a standard width: 1.5 times the least, within DIN 6885-1."""
     row = STANDARD_KEYS.get(round(1e3 * seat.key_width))
     return "" if row is None else f', root_radius = "{_mm(1.5 * row.fillet)}"'
+
+
+def _chamfer(seat: Seat) -> str:
+    """Chamfer of a key of a standard width: the greatest, clear of the root of its keyway."""
+    row = STANDARD_KEYS.get(round(1e3 * seat.key_width))
+    return "" if row is None else f'\nchamfer = "{_mm(row.chamfer)}"'
 
 
 def _shaft(design: Machinery) -> str:
