@@ -387,6 +387,7 @@ _STATED = (
     "lubricant.temperature",
     "roller.bearing.temperature",
     "spring.design.temperature",
+    "guides.ambient_temperature",
 )
 
 
@@ -395,11 +396,13 @@ _STATED = (
     title="Temperature of the mechanism vs. that at which its parts are judged",
     unit="degC",
     source=Source(
-        "balance of heat; temperatures stated for oil, bearing and wire, of the cards of metals",
+        "balance of heat; temperatures stated for oil, bearing, wire and around the guides, of the"
+        " cards of metals",
         confirmed=True,
     ),
-    formula="T_amb + (P_f + Q)/G <= least temperature stated for oil, roller bearing and wire, and"
-    " to which limit and full strength of the metals hold by their cards; P_f: mean power of the"
+    formula="T_amb + (P_f + Q)/G <= least temperature stated for oil, roller bearing and wire and"
+    " around the guides, above which their own friction warms the bushes, and to which limit and"
+    " full strength of the metals hold by their cards; P_f: mean power of the"
     " friction in guides, contact and roller bearing, sum of q_i P_i of the load cases by"
     " load_case.duty, else the greatest P_i, T_amb, Q, G: cooling.ambient_temperature, .heat,"
     " .conductance; without G that of the box around cam and follower in still air, 10 W/(m^2 K)",
@@ -409,9 +412,9 @@ _STATED = (
         "Q": "cooling.heat",
         "G": f"{STATED} [W/K]",
     },
-    reason="Viscosity, grease and relaxation of the wire are those of the stated temperatures,"
-    " endurance and strength of the steels those of their cards: a machine that runs hotter is not"
-    " the one that is judged.",
+    reason="Viscosity, grease, relaxation of the wire, strength and clearance of the bushes are"
+    " those of the stated temperatures, endurance and strength of the steels those of their cards:"
+    " a machine that runs hotter is not the one that is judged.",
     method="mean friction power over the load cases by their duty, without a duty the greatest,"
     " over-speed left out, at the mean friction coefficients; the shaft's own bearings and the gear"
     " count in cooling.heat",
@@ -426,7 +429,8 @@ def mechanism_temperature(solution: Solution) -> Demand | None:
     machine, contour = solution.machine, solution.contour
     numbers, cooling = solution.numbers, machine.cooling
     named = {key: numbers.get(key) for key in _STATED}
-    bushes = {guide.material.name for _, guide in machine.guides.both}  # at their own temperature
+    # warmer than around the guides, by their own friction
+    bushes = {guide.material.name for _, guide in machine.guides.both}
     named |= {
         name: card.holds_to
         for name, card in solution.case.materials.items()

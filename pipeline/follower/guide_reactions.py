@@ -190,7 +190,7 @@ class GuidePair(Part):
     ambient_temperature: Annotated[
         Temperature | None, Known("measured at the machine", "60 degC")
     ] = None
-    """temperature around the guides in operation"""
+    """temperature around the guides in operation, at least that of the mechanism"""
     a: Annotated[Guide, Used("cycle, checks of the guides")]
     """guide A next to the cam"""
     b: Annotated[Guide, Used("cycle, checks of the guides")]

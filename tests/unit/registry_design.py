@@ -92,7 +92,7 @@ tried(
     "mechanism_temperature",
     limited(
         "mechanism_temperature",
-        lambda oil: with_part("lubricant", temperature=oil + 273.15),
+        lambda around: with_part("guides", ambient_temperature=around + 273.15),
     ),
     lambda: cooled(conductance=None, heat=1e4),
     lambda: with_loads(axial_force=NAN),

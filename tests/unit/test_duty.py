@@ -137,6 +137,16 @@ def test_without_stated_temperatures_the_steels_limit_that_of_the_mechanism():
     assert "least stated: steel" in check.note
 
 
+def test_the_bushes_are_judged_at_the_temperature_of_the_mechanism_that_holds_them():
+    """50 degC of the mechanism: around guides judged in air of 49 degC it is too warm."""
+    for around, status in ((49.0, "fail"), (51.0, "pass")):
+        guides = made.changed(made.case().guides, ambient_temperature=around + 273.15)
+        judged = torque_balance.mechanism_temperature(made.solution(case=made.case(guides=guides)))
+        assert judged.status == status
+        assert judged.demand == pytest.approx(50.0, rel=1e-3)
+        assert "least stated: guides.ambient_temperature" in judged.note
+
+
 def test_load_cycles_of_the_contact_are_those_of_the_mean_speed():
     """Crank at 160 rad/s for 0.7 and 100 rad/s for 0.3 of the life: the cam at 71 rad/s."""
     text = TEXT.replace('name = "idle"\n', 'name = "idle"\nduty = 0.7\n', 1) + RATED.format(0.3)

@@ -366,8 +366,7 @@ source = {_assumed("still air about a housing of cam, gear and follower")}
 
 
 def _follower(design: Machinery) -> str:
-    frame, task = design.frame, design.task
-    stem = _mm(frame.stem)
+    frame, stem = design.frame, _mm(design.frame.stem)
     bush = f"""\
 card = "{design.bush}"
 length = "{_mm(frame.bush_length)}"
@@ -392,7 +391,7 @@ source = {_assumed("proportions")}
 
 [guides]
 spacing = "{_mm(frame.spacing(design.lift))}"
-ambient_temperature = "{units.format(task.ambient, "K")}"
+ambient_temperature = "{_celsius(design)}"        # in the housing, as warm as the oil
 
 [guides.a]
 {bush}
@@ -439,7 +438,7 @@ tool_radius = {_assumed("")}
 cam_radius = {room}
 
 [sources]
-"guides.ambient_temperature" = {written(task.source("ambient"))}
+"guides.ambient_temperature" = {_assumed("the temperature of the oil in the same housing")}
 
 [tolerances]
 source = {_assumed("ground profile; the rest: defaults")}
