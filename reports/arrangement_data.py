@@ -7,11 +7,18 @@ from functools import lru_cache
 import numpy as np
 
 from camwright.geometry.arrays import median
+from camwright.pipeline.base.counterweight_body import CounterweightBody
 from camwright.pipeline.base.envelope import Disc, MechanismSizes, Sleeve
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout
 from camwright.reports.drawing import arrangement
-from camwright.reports.drawing.arrangement import FORCES, DrawnBush, DrawnMechanism, DrawnMotion
+from camwright.reports.drawing.arrangement import (
+    FORCES,
+    DrawnBush,
+    DrawnMechanism,
+    DrawnMotion,
+    DrawnSector,
+)
 from camwright.reports.drawing.drawing_shapes import Drawing
 from camwright.reports.drawing.spring_shapes import Coil, DrawnGasSpring, Spring, Torsion
 from camwright.reports.sheet_turn import SheetTurn
@@ -22,6 +29,7 @@ _COLUMNS = {"contact": "normal_force_N", "spring": "spring_force_N",
 _COIL, _WIRE, _GUIDE, _OVERHANG, _SPACING = 2.6, 0.42, 2.0, 3.0, 7.0
 _PIN_SHARE = 0.5  # of the roller
 _TURNS = 7.0
+_STEEL = 7850.0  # kg/m3
 _STATIONS = 360
 """Most cam angles at which a page draws the arrangement."""
 
@@ -80,12 +88,45 @@ def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
     )  # fmt: skip
 
 
-def _counterweight(turn: SheetTurn) -> float | None:
-    """Angle of the counterweight, against the unbalance of the cam, rad; None without one."""
-    angle = turn.balance["unbalance_angle_deg"]
-    if turn.length("camshaft", "counterweight", "residual", unit="kg m") is None:
+def _counterweight(turn: SheetTurn) -> DrawnSector | None:
+    """Sector of the counterweight by its unbalance, as wide and high as `counterweight_body`."""
+
+    def of(key: str, unit: str = "mm") -> float | None:
+        return turn.length("camshaft", "counterweight", key, unit=unit)
+
+    made, balance = turn.counter_hole, turn.balance
+    drilled = made is not None and made[3]
+    cam = balance["residual_unbalance_g_mm" if drilled else "unbalance_g_mm"]
+    turned, left = balance["unbalance_angle_deg"], of("residual", "g mm")
+    product, angle, place = of("unbalance", "g mm"), of("angle", "rad"), of("position")
+    if left is not None and isinstance(cam, (int, float)) and isinstance(turned, (int, float)):
+        product, angle = float(cam) + left, np.radians(float(turned) + 180.0)
+    middle, width = turn.length("camshaft", "cam_position"), turn.length("cam", "width")
+    inner, radius = turn.length("cam", "bore_radius"), of("radius") or _below_follower(turn)
+    if product is None or angle is None or place is None or middle is None:
         return None
-    return np.radians(float(angle) + 180.0) if isinstance(angle, (int, float)) else None
+    if width is None or inner is None or not radius > inner:
+        return None
+    body = CounterweightBody.of(
+        place - middle, width, (radius, of("width")), inner, _density(turn), product
+    )
+    half = body.half_angle(product)
+    return DrawnSector(angle, half, inner, radius, float(body.width), place - middle)
+
+
+def _below_follower(turn: SheetTurn) -> float:
+    """Outer radius of a counterweight of no stated size, mm."""
+    prime = turn.length("cam", "prime_radius") or 0.0
+    cheeks = turn.length("roller", "fork", "cheek_height") or 0.0
+    reach = max(turn.length("roller", "radius") or 0.0, 0.5 * cheeks) if turn.rolls else 0.0
+    return prime - reach - 2.0 * (turn.length("limits", "assembly_gap") or 0.0)
+
+
+def _density(turn: SheetTurn) -> float:
+    """Density of a counterweight, g/mm3: that of the camshaft, else that of the cam."""
+    parts = (turn.case.get(part, {}).get("material") for part in ("camshaft", "cam"))
+    name = next((each for each in parts if isinstance(each, str)), "")
+    return (turn.length("materials", name, "density", unit="kg/m^3") or _STEEL) * 1e-6
 
 
 def _sizes(
@@ -123,7 +164,7 @@ def _sizes(
 
 
 def _discs(turn: SheetTurn) -> tuple[Disc, ...]:
-    """Bearings and gear along the camshaft, as far as the case states them."""
+    """Bearings, counterweight and gear along the camshaft, as far as the case states them."""
 
     def at(*path: str) -> float | None:
         return turn.length("camshaft", *path)
@@ -136,6 +177,9 @@ def _discs(turn: SheetTurn) -> tuple[Disc, ...]:
     discs = [Disc(place - cam, width, diameter) for place in (0.0, spacing)]
     place, radius, wide = at("gear_position"), at("gear_radius"), at("gear", "width")
     teeth = turn.case["camshaft"].get("gear", {}).get("teeth")
+    held, thick, outer = (at("counterweight", key) for key in ("position", "width", "radius"))
+    if held is not None and thick is not None and outer is not None:
+        discs.append(Disc(held - cam, thick, 2.0 * outer))
     if place is not None and radius is not None and wide is not None and teeth:
         discs.append(Disc(place - cam, wide, 2.0 * radius * (1.0 + 2.0 / int(teeth))))
     return tuple(discs)
@@ -210,14 +254,15 @@ def _spring(
         raised = turn.length("spring", "torsion", "arm_angle", unit="rad") or 0.0
         diameter = turn.length("spring", "torsion", "mean_diameter") or 0.4 * arm
         wire = turn.length("spring", "torsion", "wire_diameter") or 0.15 * diameter
-        between = _top(guides[0]) + seat + 0.3 * stem
+        stated = turn.length("spring", "seat_height")
+        between = _top(guides[0]) + seat + 0.3 * stem if stated is None else lowest + stated
         return Torsion(arm, raised, diameter, wire, between)
     diameter = turn.length("spring", "design", "mean_diameter") or _COIL * stem
     active = turn.case.get("spring", {}).get("design", {}).get("coils")
     turns = float(active) + 2.0 if isinstance(active, (int, float)) else _TURNS
     room = _bottom(guides[1]) - _top(guides[0]) - seat
-    stated = _installed(turn)
-    length = stated or (room if room > 1.3 * stroke else 1.8 * stroke + 2.0 * stem)
+    installed = _installed(turn)
+    length = installed or (room if room > 1.3 * stroke else 1.8 * stroke + 2.0 * stem)
     thickest = min(_WIRE * stem, 0.75 * (length - stroke) / (turns + 1.0))
     wire = turn.length("spring", "design", "wire_diameter") or thickest
     layout = StemLayout(
@@ -231,6 +276,8 @@ def _spring(
         stem_length=end,
         spring_length=length,
         spring_bore=diameter - wire,
+        outer_a=np.nan,
+        outer_b=np.nan,
     )
     clearance = turn.bound("spring_gap") or 0.0
     place = layout.seated(seat, clearance, turn.length("spring", "seat_height"))

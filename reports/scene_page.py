@@ -30,6 +30,7 @@ from camwright.reports.scene_solids import (
     pin,
     ring,
     rod,
+    sector,
     tube,
     unit_circle,
 )
@@ -45,6 +46,7 @@ _DIGITS = 5
 # Over half the greatest width of contact: width and depth of the blocks shown, half their distance.
 _BESIDE, _APART = 2.5, 0.5
 _STRETCHED = 0.3  # width and depth over the length, as drawn
+_ARC, _PROUD = 29, 0.01  # points of the arc of a counterweight; mm of a mouth before its face
 _HERE = Path(__file__).parent
 _SCRIPTS = (_HERE / "vendor" / "plotly-gl3d.min.js", _HERE / "templates" / "scene.js")
 _READOUT = (
@@ -148,9 +150,11 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
     width = turn.length("cam", "width") or 5.0
     lab = view.lab_origin()
     rows = material.run.final.cycle.of_load_case(view.load_case)
-    bodies = {"flank": _flank(material, view, width), "cam": _cam(view, width).as_record(_DIGITS)}
-    bodies["bore"] = ring(view.bore, width).as_record(_DIGITS)
     mechanism = mechanism_of(turn)
+    carried = [_cam(view, width), *_counterweight(mechanism)]
+    bodies = {"flank": _flank(material, view, width), "cam": joined(carried).as_record(_DIGITS)}
+    holes = [ring(view.bore, width), *_drilled(mechanism, width)]
+    bodies["bore"] = joined(holes).as_record(_DIGITS)
     end = mechanism.stem_end - mechanism.lowest
     bodies["follower"] = _follower(view, width, mechanism.stem, end).as_record(_DIGITS)
     bodies["guide"] = _frame(mechanism).as_record(_DIGITS)
@@ -210,6 +214,26 @@ def _greatest(material: ReportMaterial, view: TurnView, stations: int) -> Array 
 def _cam(view: TurnView, width: float) -> Solid:
     """Both end faces of the cam."""
     return joined([tube(view.contour, view.bore, side * width / 2) for side in (-1, 1)])
+
+
+def _counterweight(mechanism: DrawnMechanism) -> list[Solid]:
+    """Sector of the counterweight, which turns with the cam."""
+    weight = mechanism.counterweight
+    if weight is None:
+        return []
+    angles = weight.angle + weight.half * np.linspace(-1.0, 1.0, _ARC)
+    return [sector(angles, (weight.inner, weight.outer), weight.width).deeper(weight.place)]
+
+
+def _drilled(mechanism: DrawnMechanism, width: float) -> list[Solid]:
+    """Hole that balances the cam: its wall, and its mouth on both faces."""
+    if mechanism.counter_hole is None:
+        return []
+    x, y, radius = mechanism.counter_hole
+    outline = radius * unit_circle() + np.array([[x], [y]])
+    middle = np.broadcast_to(np.array([[x], [y]]), outline.shape)
+    mouths = [tube(outline, middle, side * (0.5 * width + _PROUD)) for side in (-1, 1)]
+    return [ring(outline, width), *mouths]
 
 
 def _roller(view: TurnView, width: float) -> Json:

@@ -62,6 +62,23 @@ def tube(outer: Array, inner: Array, height: float) -> Solid:
     return Solid(points, np.hstack([first, second]))
 
 
+def sector(angles: Array, radii: tuple[float, float], width: float) -> Solid:
+    """Sector of a ring between two radii at angles (n,), rad, centred at z = 0, with end faces."""
+    count, (inner, outer) = angles.size, radii
+    arc = np.stack([np.cos(angles), np.sin(angles)])
+    outline = np.hstack([outer * arc, inner * arc[:, ::-1]])
+    points = np.hstack([outer * arc, inner * arc])
+    here = np.arange(count - 1)
+    first = np.stack([here, here + 1, here + 1 + count])
+    second = np.stack([here, here + 1 + count, here + count])
+    ends = [
+        Solid(np.vstack([points, np.full(2 * count, 0.5 * side * width)]),
+              np.hstack([first, second]))
+        for side in (-1, 1)
+    ]  # fmt: skip
+    return joined([ring(outline, width), *ends])
+
+
 def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> Solid:
     """Rectangular box between its least and greatest corner, mm."""
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1])

@@ -15,6 +15,7 @@ In the order of use:
 | `cooling`          | heat that the mechanism gives to its surroundings        | G, W/K; T, K     |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
 | `stem_layout`      | guides, seats and spring along the stem                  | z, m             |
+| `counterweight_body` | width, room and unbalance of a counterweight           | m; U, kg m       |
 | `envelope`         | box that holds the mechanism over the turn               | m                |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
 | `owned_folder`     | folder of one command, locked, without foreign files     |                  |

@@ -45,6 +45,11 @@ def _overlap(room: Value) -> Array:
     return np.where(np.asarray(room) < 0.0, room, np.inf)
 
 
+def _around(room: Value, radial: Value) -> Array:
+    """As `_overlap`, of coils that pass around a guide with a radial clearance; NaN: not known."""
+    return np.where(np.asarray(room) < 0.0, np.fmax(room, radial), np.inf)
+
+
 def _least(*gaps: Value) -> Array:
     return np.asarray(reduce(np.minimum, gaps))  # NaN of one is NaN of all
 
@@ -62,6 +67,7 @@ class StemLayout:
     stem_diameter, stem_length   from the reference point to the end; None: not known
     spring_length            between its seats at zero lift
     spring_bore              inner diameter of the coils
+    outer_a, outer_b         outer diameters of the guides; NaN: not known
     """
 
     overhang: Value
@@ -74,6 +80,8 @@ class StemLayout:
     stem_length: Value | None
     spring_length: Value
     spring_bore: Value
+    outer_a: Value
+    outer_b: Value
 
     @property
     def guide_a(self) -> tuple[Value, Value]:
@@ -111,18 +119,26 @@ class StemLayout:
         return SeatPlace(np.where(stays, between, above), np.where(stays, gap, free))
 
     def _at(self, height: Value, thickness: Value) -> SeatPlace:
-        """At a height: below guide A, between the guides, or above guide B."""
+        """At a height: below guide A, between the guides, or above guide B.
+
+        Coils that reach a guide pass around it.
+        """
         low, fixed = height - self.lift - thickness, height - self.lift + self.spring_length
         stem = np.nan if self.stem_length is None else self.stem_length
         on_stem = np.nan if self.stem_length is None else _overlap(stem - height)
         # a spring on the end of the stem, or beyond it, has no stem inside
         inside = np.where(np.asarray(height) >= stem, np.inf, self.beside_stem)
+        around_a, around_b = (
+            _around(guide[0] - fixed, 0.5 * (self.spring_bore - outer))
+            for guide, outer in ((self.guide_a, self.outer_a), (self.guide_b, self.outer_b))
+        )
         below = _least(
             _overlap(height - thickness - self.extent),
-            _overlap(self.guide_a[0] - fixed),
+            around_a,
+            around_b,
             self.guide_a[0] - height,
         )
-        between = _least(low - self.guide_a[1], _overlap(self.guide_b[0] - fixed))
+        between = _least(low - self.guide_a[1], around_b)
         above = _least(low - self.guide_b[1], on_stem)
         axial = np.where(
             np.asarray(height) <= self.guide_a[0],

@@ -1,7 +1,4 @@
-"""Checks of the assembly: no part within another over the whole turn.
-
-A spring around a guide, and a torsion spring, which stands beside the stem, are not judged.
-"""
+"""Checks of the assembly: no part within another over the whole turn."""
 
 from __future__ import annotations
 
@@ -15,6 +12,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import levers
+from camwright.pipeline.base.counterweight_body import CounterweightBody
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout, decided
 from camwright.pipeline.base.units import shown
@@ -25,11 +23,18 @@ from camwright.pipeline.checks.cam_shape import contour_radius, lift
 from camwright.pipeline.checks.camshaft_strength import camshaft_of, gear_of
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cam_balance import balance
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
-from camwright.pipeline.cycle.machine_envelope import stem_layout
+from camwright.pipeline.cycle.machine_envelope import (
+    counterweight_body,
+    density_of_counterweight,
+    guide_outer,
+    lowest_follower,
+    stem_layout,
+)
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.camshaft_loads import Camshaft
+from camwright.pipeline.follower.camshaft_loads import Camshaft, Counterweight
 from camwright.pipeline.follower.roller_parts import Pin
 
 Gaps = Mapping[str, Value]
@@ -402,6 +407,151 @@ machine_shaft_gap = check(
 )(contour_radius)
 
 
+_WEIGHT = "camshaft.counterweight"
+_COUNTERWEIGHT = f"{_WEIGHT}.radius", f"{_WEIGHT}.width"
+
+
+def beside_counterweight(body: CounterweightBody, numbers: Numbers) -> Gaps:
+    """Gaps of a counterweight from bearings, gear, follower and machine shaft, m.
+
+    Bearings are as wide as stated, else at most as their bore. The cam carries it.
+    """
+    case = numbers.known_case
+    shaft, follower = camshaft_of(case), case.facing
+    wide = shaft.bearing_width if shaft.bearing_width is not None else shaft.widest
+    half = np.nan if wide is None else 0.5 * wide
+    gaps: dict[str, Value] = {}
+    for number, place in enumerate((0.0, shaft.bearing_spacing), 1):
+        at = place - shaft.cam_position
+        gaps[f"bearing {number}"] = body.beyond(at - half, at + half)
+    name = follower.word if follower.parts.get("fork") is None else "fork"
+    deep = numbers["follower.half_depth"] + _aside(numbers)
+    gaps[name] = body.under(deep, lowest_follower(numbers))
+    if shaft.gear is None or not case.scope.covers("gear"):
+        return gaps
+    gear, half = _gear(numbers)
+    at = gear - shaft.cam_position
+    gaps["gear"] = body.beyond(at - half, at + half)
+    if diameter := shaft.gear.machine_shaft_diameter:
+        gaps["machine shaft"] = _centre_distance(shaft) - 0.5 * diameter - body.radius
+    return gaps
+
+
+def counterweight_room(body: CounterweightBody, weight: Counterweight, numbers: Numbers) -> Value:
+    """Least gap of a counterweight (...), m; NaN where it is too small and no size is stated."""
+    gap = _least(beside_counterweight(body, numbers))
+    if weight.radius is not None and weight.width is not None:
+        return gap
+    return np.where(np.asarray(gap) >= numbers.limit(ASSEMBLY_GAP), gap, np.nan)
+
+
+def _balancing(solution: Solution) -> tuple[Counterweight, float, CounterweightBody] | None:
+    """Counterweight, its unbalance, kg m, and its body; None without one."""
+    weight = camshaft_of(solution.machine).counterweight
+    if weight is None:
+        return None
+    product = weight.set_against(balance(solution.machine.cam, solution.contour).as_made)[0]
+    return weight, product, counterweight_body(weight, product, solution.numbers)
+
+
+@check(
+    ASSEMBLY_GAP,
+    title="Gap between the counterweight and bearings, gear, {follower} or machine shaft",
+    formula="min(b, f, c, m) >= g; b: axial gap of the counterweight from the nearer bearing, f:"
+    " distance from the follower at its lowest, c: axial gap from gear and pinion, m: distance from"
+    " the machine shaft; of the stated radius and width, else of a half ring that has the unbalance"
+    " and passes below the follower by 2 g, g: limits.assembly_gap",
+    symbols=dict.fromkeys("bfcm", f"{STATED} [mm]"),
+    reason="A counterweight that strikes bearing, gear or follower does not turn; one that has no"
+    " room leaves the unbalance.",
+    method="faces and outer radius of a ring about the camshaft over the whole turn; it may rest on"
+    " the cam",
+    moved_by_tolerance=False,
+    tier=Tier.SCREENING,
+    part="camshaft",
+    load_cases=NONE,
+    values=("cam.material.density", "camshaft.material.density"),
+    levers=(
+        levers.Scaled(
+            ("camshaft.bearing_spacing", "camshaft.cam_position", f"{_WEIGHT}.position"), 1
+        ),
+    ),
+    page="Camshaft",
+)
+def counterweight_gap(solution: Solution) -> Demand | None:
+    """Least gap of the counterweight, m; None without one."""
+    known, limit = _balancing(solution), solution.machine.limits[ASSEMBLY_GAP]
+    if known is None:
+        return None
+    weight, _, body = known
+    gaps = beside_counterweight(body, solution.numbers)
+    room = _one(counterweight_room(body, weight, solution.numbers))
+    sizes = tuple(shown(_one(each), "mm", 3) for each in (body.radius, body.width))
+    taken = weight.radius is None or weight.width is None
+    words = f"half ring of {sizes[0]} outer radius, {sizes[1]} wide" if taken else ""
+    if isnan(room):
+        left = {key: numbers is None for key, numbers in
+                zip(_COUNTERWEIGHT, (weight.radius, weight.width), strict=True)}  # fmt: skip
+        missing = tuple(key for key, lacks in left.items() if lacks)
+        bearing = camshaft_of(solution.machine)
+        if bearing.bearing_width is None and bearing.widest is None:
+            missing = (*missing, "camshaft.bearing_width")
+        narrow = _narrowest(gaps) if body.width > 0.0 else "no room about the shaft"
+        return Demand(None, limit, missing=missing, note=f"{words}: {narrow}")
+    apart = {name: _one(gap) for name, gap in gaps.items()}
+    bearing_gaps = [gap for name, gap in apart.items() if name.startswith("bearing")]
+    fork = next(gap for name, gap in apart.items() if name in ("fork", "roller", "face"))
+    stated = {
+        "b": min(bearing_gaps),
+        "f": fork,
+        "c": apart.get("gear", np.inf),
+        "m": apart.get("machine shaft", np.inf),
+    }
+    note = f"{_narrowest(gaps)}{f'; taken as a {words}' if taken else ''}"
+    return Demand(room, limit, note=note, stated=stated)
+
+
+@check(
+    title="Unbalance of the counterweight vs. that of a half ring of its size",
+    unit="g mm",
+    source=Source("first moment of a half ring", confirmed=True),
+    formula="U <= 2/3 rho (R^3 - a^3) b; U: unbalance that the counterweight has, rho: density of"
+    " the camshaft, R, a: outer radius, and bore of the cam, b: width beside the cam",
+    symbols={
+        "U": f"{STATED} [g mm]",
+        "rho": f"{STATED} [kg/m^3]",
+        **dict.fromkeys("Rab", f"{STATED} [mm]"),
+    },
+    reason="A counterweight of more unbalance than its size can have leaves the rest to shaft,"
+    " bearings and frame.",
+    method="half ring of steel, in which a sector has the unbalance; made where its width is"
+    " stated",
+    moved_by_tolerance=False,
+    tier=Tier.SCREENING,
+    part="camshaft",
+    load_cases=NONE,
+    values=("cam.material.density", "camshaft.material.density"),
+    levers=(levers.one(_COUNTERWEIGHT[1]), levers.one(_COUNTERWEIGHT[0])),
+    page="Camshaft",
+)
+def counterweight_unbalance(solution: Solution) -> Demand | None:
+    """Unbalance of the counterweight, kg m; None without one, or without its width."""
+    known = _balancing(solution)
+    if known is None or known[0].width is None:
+        return None
+    _, product, body = known
+    capacity = _one(body.capacity)
+    stated = {
+        "U": product,
+        "rho": density_of_counterweight(solution.case),
+        "R": _one(body.radius),
+        "a": float(solution.numbers["cam.bore_radius"]),
+        "b": _one(body.beside),
+    }
+    note = "" if capacity > 0.0 else "no room about the shaft"
+    return Demand(product, capacity if capacity > 0.0 else 0.0, note=note, stated=stated)
+
+
 def _shaft_radius(numbers: Numbers) -> Value:
     """Greatest radius of the camshaft beside the cam, m; without a diameter that of the bore."""
     shaft, radius = numbers.known_case.camshaft, numbers["cam.bore_radius"]
@@ -554,8 +704,9 @@ spring_gap = check(
     " seat over roller centre or face at maximum lift, spring.seat_height, else b - L + h, under"
     " guide B, h: maximum lift, t: spring.seat_thickness, else at most d_s/2, a, b: upper end of"
     " guide A, lower end of guide B, L: L_0 - P/k, length of the spring at zero lift, D, d: mean"
-    " and wire diameter, d_s: of the stem; else above guide B, s - h - t - c >= g, c: its upper"
-    " end, s: at most follower.stem_length; g: limits.assembly_gap",
+    " and wire diameter, d_s: of the stem, or outer diameter of a guide that the coils pass around;"
+    " else above guide B, s - h - t - c >= g, c: its upper end, s: at most follower.stem_length; g:"
+    " limits.assembly_gap",
     symbols={
         **dict.fromkeys(("s", "t", "a"), f"{STATED} [mm]"),
         "h": "lift_highest",
@@ -576,6 +727,79 @@ spring_gap = check(
     ),
     page="Spring",
 ).measured("top", value=_seat_gap, remark=_of_seat, deviation=1e-4)(lift)
+
+
+def _beside_coil(lift: Value, numbers: Numbers) -> tuple[Value, Value]:
+    """Gaps of the coil of a torsion spring from the stem and from the guides, m.
+
+    Where `spring.seat_height` does not state the height of its pin, at the worst height.
+    """
+
+    def of(key: str) -> Value:
+        return numbers[f"spring.torsion.{key}"]
+
+    angle, wire = of("arm_angle"), numbers.get("spring.torsion.wire_diameter")
+    mean = numbers.get("spring.torsion.mean_diameter")
+    radius = np.nan if wire is None or mean is None else 0.5 * (mean + wire)
+    away, stem = of("arm") * np.cos(angle), numbers.get("follower.stem_diameter")
+    height = numbers.get("spring.seat_height")
+    middle, gaps = numbers["follower.overhang_at_max_lift"], list[Value]()
+    for side in "ab":
+        half = 0.5 * numbers[f"guides.{side}.length"]
+        beyond: Value = 0.0
+        if height is not None:
+            coil = height - lift - of("arm") * np.sin(angle)
+            beyond = np.maximum(np.abs(coil - middle) - half, 0.0)
+        aside = np.maximum(away - 0.5 * guide_outer(side, numbers), 0.0)
+        gaps.append(np.hypot(aside, beyond) - radius)
+        middle = middle + numbers["guides.spacing"]
+    return away - radius - 0.5 * (np.nan if stem is None else stem), reduce(np.minimum, gaps)
+
+
+def _torsion_gap(lift: Value, numbers: Numbers) -> Value:
+    """Least gap of the coil, m; NaN where its place, which is not stated, decides it."""
+    stem, guides = _beside_coil(lift, numbers)
+    least = np.minimum(stem, guides)
+    if numbers.get("spring.seat_height") is not None:
+        return least
+    return decided(least, stem, numbers.limit(ASSEMBLY_GAP))
+
+
+_OF_COIL = (
+    *("spring.torsion.wire_diameter", "spring.torsion.mean_diameter", "follower.stem_diameter"),
+    *("guides.a.wall", "guides.b.wall"),
+)
+
+
+def _of_coil(demand: Demand, solution: Solution) -> Demand:
+    numbers = solution.numbers
+    if demand.value is None or isnan(demand.value):
+        lacks = tuple(key for key in _OF_COIL if numbers.get(key) is None)
+        return replace(demand, at=None, missing=lacks or (_SEAT[0],))
+    gaps = _beside_coil(solution.contour.lift.highest.value, numbers)
+    stem, guides = _one(gaps[0]), float(np.fmax(_one(gaps[1]), demand.value))
+    note = f"coil to {'stem' if stem <= guides else 'guides'}"
+    return replace(demand, at=None, note=note, stated={"a": stem, "b": guides})
+
+
+torsion_gap = check(
+    ASSEMBLY_GAP,
+    id="torsion_gap",
+    title="Gap between the torsion spring and stem or guides",
+    tier=Tier.SCREENING,
+    formula="min(a, b) >= g; a, b: distance of the coil from stem and guides, its axis l cos(beta)"
+    " beside that of the follower, (D + d)/2 its radius, l, beta, D, d: arm, arm_angle and"
+    " diameters of spring.torsion; of the guides at the height of the coil by spring.seat_height,"
+    " that of its pin at maximum lift, else at the worst height; g: limits.assembly_gap",
+    symbols=dict.fromkeys("ab", f"{STATED} [mm]"),
+    reason="A coil within stem or guide cannot be assembled.",
+    method="circle of the coil from stem and guides in the plane of the cam",
+    moved_by_tolerance=False,
+    part="torsion_spring",
+    load_cases=NONE,
+    levers=(levers.one("spring.torsion.arm", most=2.0),),
+    page="Spring",
+).measured("top", value=_torsion_gap, remark=_of_coil, deviation=1e-4)(lift)
 
 
 gas_gap = check(

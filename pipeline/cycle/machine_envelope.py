@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from math import sqrt
 
+import numpy as np
+
 from camwright.geometry.arrays import Value
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.counterweight_body import CounterweightBody
 from camwright.pipeline.base.envelope import Disc, MechanismSizes, Sleeve
 from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout
 from camwright.pipeline.case.case import Case
@@ -12,6 +16,7 @@ from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import machine
 from camwright.pipeline.cycle.loaded_cam import wire_of
 from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.follower.camshaft_loads import Counterweight
 
 
 def stem_layout(lift: Value, numbers: Numbers, preload: Value) -> StemLayout:
@@ -39,6 +44,56 @@ def stem_layout(lift: Value, numbers: Numbers, preload: Value) -> StemLayout:
         stem_length=numbers.get("follower.stem_length"),
         spring_length=wire.free_length - preload / numbers["spring.rate"],
         spring_bore=wire.mean_diameter - wire.wire_diameter,
+        outer_a=guide_outer("a", numbers),
+        outer_b=guide_outer("b", numbers),
+    )
+
+
+def guide_outer(side: str, numbers: Numbers) -> Value:
+    """Outer diameter of the bush of guide a or b, m; NaN where its wall is not known."""
+    bore, wall = (numbers.get(f"guides.{side}.{name}") for name in ("diameter", "wall"))
+    return np.nan if bore is None or wall is None else bore + 2.0 * wall
+
+
+def lowest_follower(numbers: Numbers) -> Value:
+    """Least distance of the follower, with its fork, from the axis of the cam, m."""
+    lowest: Value = numbers["cam.prime_radius"] - numbers["follower.round"]
+    return lowest
+
+
+def density_of_counterweight(case: Case) -> float:
+    """Density of a counterweight, kg/m3: that of the camshaft, else that of the cam."""
+    shaft = None if case.camshaft is None else case.camshaft.material
+    return (case.cam.material if shaft is None else shaft).density
+
+
+def counterweight_body(
+    weight: Counterweight, product: Value, numbers: Numbers
+) -> CounterweightBody:
+    """Body of the counterweight of a case, m, as stated, else one that passes below the follower.
+
+    Parameters
+    ----------
+    product : float or array   unbalance that it has, kg m
+
+    Raises
+    ------
+    InputError
+        If the case has no camshaft.
+    """
+    case = numbers.known_case
+    if case.camshaft is None:
+        raise InputError("camshaft", "missing", "described for its counterweight")
+    radius: Value | None = weight.radius
+    if radius is None:
+        radius = lowest_follower(numbers) - 2.0 * numbers.limit(ASSEMBLY_GAP)
+    return CounterweightBody.of(
+        weight.position - case.camshaft.cam_position,
+        numbers["cam.width"],
+        (radius, weight.width),
+        numbers["cam.bore_radius"],
+        density_of_counterweight(case),
+        product,
     )
 
 
@@ -88,7 +143,7 @@ def sizes_of(case: Case, cam_radius: float, lift: float) -> MechanismSizes:
 
 
 def _discs(case: Case) -> tuple[Disc, ...]:
-    """Shaft with its bearings, and gear, along the camshaft."""
+    """Shaft with its bearings, counterweight of stated size, and gear, along the camshaft."""
     shaft = case.camshaft
     if shaft is None:
         return ()
@@ -96,6 +151,10 @@ def _discs(case: Case) -> tuple[Disc, ...]:
     width = shaft.bearing_width or shaft.widest or 0.0
     places = [0.0, shaft.bearing_spacing]
     discs = [Disc(position - shaft.cam_position, width, diameter) for position in places]
+    weight = shaft.counterweight
+    if weight is not None and weight.width is not None and weight.radius is not None:
+        from_cam = weight.position - shaft.cam_position
+        discs.append(Disc(from_cam, weight.width, 2.0 * weight.radius))
     if shaft.gear is not None:
         module = 2.0 * shaft.gear_radius / shaft.gear.teeth
         tip = 2.0 * (shaft.gear_radius + module)

@@ -350,6 +350,8 @@ class Counterweight(Part):
         "unbalance": "with residual: that of the cam, more by the residual",
         "angle": "with residual: opposite to the unbalance of the cam",
         "residual": "with unbalance: what it leaves of the cam",
+        "radius": "below the follower by twice limits.assembly_gap",
+        "width": "that of a half ring of its unbalance, beside the cam",
     }
 
     unbalance: Annotated[MassMoment | None, Known("drawing", "50 g mm")] = None
@@ -361,6 +363,10 @@ class Counterweight(Part):
     )
     """unbalance left after balancing on a bench; without unbalance and angle"""
     position: Annotated[FromBearing, Known("drawing", "30 mm")]
+    radius: Annotated[Length | None, Known("drawing", "32 mm")] = None
+    """outer radius"""
+    width: Annotated[Length | None, Known("drawing", "30 mm")] = None
+    """width along the shaft, from face to face where it holds the cam between two halves"""
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:

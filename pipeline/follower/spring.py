@@ -529,8 +529,8 @@ class Spring(Part):
     travel_max: Annotated[Length | None, Known("spring catalogue or drawing", "34 mm")] = None
     """greatest lift that the spring permits"""
     seat_height: Annotated[Length | None, Known("assembly drawing", "120 mm")] = None
-    """height of the moving seat of a coil spring, where the coils rest, over roller centre or
-    face"""
+    """height of the moving seat of a coil spring, where the coils rest, or of the pin of a torsion
+    spring, over roller centre or face"""
     seat_thickness: Annotated[Length | None, Known("drawing of the seat", "4 mm")] = None
     """thickness of the moving seat of a coil spring"""
     rate_tolerance: Annotated[float, In(above=0, below=1), Known("EN 15800, or drawing")] = 0.05

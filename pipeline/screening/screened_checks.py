@@ -14,12 +14,15 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.extrema import sampled_greatest, sampled_least
-from camwright.pipeline.case.limits import TORQUE_REDUCTION
-from camwright.pipeline.checks import demands, roller_bearing
+from camwright.pipeline.base.counterweight_body import CounterweightBody
+from camwright.pipeline.case.limits import ASSEMBLY_GAP, TORQUE_REDUCTION
+from camwright.pipeline.checks import assembly, demands, roller_bearing
 from camwright.pipeline.checks.check import Bounded, Declaration, Measured
 from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.cycle.machine_envelope import counterweight_body
 from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.follower.camshaft_loads import Counterweight
 from camwright.pipeline.screening.design_arrays import Designs, Judged, Screened
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 from camwright.pipeline.screening.screened_cam import ScreenedCam
@@ -175,12 +178,54 @@ def _grease_life(designs: Designs) -> Judged | None:
     return np.broadcast_to(life, shape)[:, 0], np.asarray(limit, dtype=float)[:, 0]
 
 
+def _counterweights(designs: Designs) -> tuple[Counterweight, Array, CounterweightBody] | None:
+    """Counterweight, its unbalance (m, 1) and its bodies; None without one, or with a drilled cam.
+
+    The hole of a drilled cam is sought one cam at a time.
+    """
+    shaft = designs.machine.camshaft
+    weight = None if shaft is None else shaft.counterweight
+    if weight is None or designs.machine.cam.counter_hole is not None:
+        return None
+    product = np.asarray(weight.against(*designs.unbalance)[0])
+    body = counterweight_body(weight, product, designs.numbers)
+    return weight, product, body
+
+
+def _of_each(value: Value, designs: Designs) -> Array:
+    """Values (m,) of a figure (m, 1), or of one that all designs share."""
+    return np.asarray(np.broadcast_to(value, (designs.count, 1)), dtype=float)[:, 0]
+
+
+def _counterweight_gap(designs: Designs) -> Judged | None:
+    known = _counterweights(designs)
+    if known is None:
+        return None
+    weight, _, body = known
+    gap = assembly.counterweight_room(body, weight, designs.numbers)
+    limit = designs.numbers.limit(ASSEMBLY_GAP)
+    return _of_each(gap, designs), _of_each(limit, designs)
+
+
+def _counterweight_unbalance(designs: Designs) -> Judged | None:
+    known = _counterweights(designs)
+    if known is None or known[0].width is None:
+        return None
+    _, product, body = known
+    most = np.nan_to_num(body.capacity)
+    return _of_each(product, designs), _of_each(most, designs)
+
+
 def _screened(declared: Declaration) -> Screened | None:
     """Screening of a check; None where there is none."""
     if declared.id == TORQUE_REDUCTION.id:
         return Screened(declared.id, _torque_reduction, 0.001)
     if declared is roller_bearing.grease_life:
         return Screened(declared.id, _grease_life, 0.001)
+    if declared is assembly.counterweight_gap:
+        return Screened(declared.id, _counterweight_gap, 0.001)
+    if declared is assembly.counterweight_unbalance:
+        return Screened(declared.id, _counterweight_unbalance, 0.001)
     how, measure = declared.measured, declared.measure
     return None if how is None or measure is None else _by_measure(declared, measure, how)
 

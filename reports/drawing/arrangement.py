@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -55,6 +56,20 @@ class DrawnBush:
         return 0.16 * self.bore
 
 
+class DrawnSector(NamedTuple):
+    """Counterweight: direction of its middle in the frame of the cam and half of its angle, rad.
+
+    Inner and outer radius, width along the shaft, place of its middle from that of the cam, mm.
+    """
+
+    angle: float
+    half: float
+    inner: float
+    outer: float
+    width: float
+    place: float
+
+
 @dataclass(frozen=True, eq=False)
 class DrawnMechanism:
     """Sizes of the mechanism for its drawing, mm and rad.
@@ -69,7 +84,7 @@ class DrawnMechanism:
     stem, stem_end           diameter; height of its end at zero lift
     seat                     thickness of the seats of the spring
     sizes                    of all parts, by which the envelope goes
-    counterweight            angle of its place in the frame of the cam, rad; None: none
+    counterweight            in the frame of the cam; None: none
     """
 
     contour: Array
@@ -88,7 +103,7 @@ class DrawnMechanism:
     spring: Spring
     seat: float
     sizes: MechanismSizes
-    counterweight: float | None
+    counterweight: DrawnSector | None
 
     @cached_property
     def envelope(self) -> Box:
@@ -225,14 +240,13 @@ def _gear(m: DrawnMechanism) -> list[Shape]:
 
 
 def _counterweight(m: DrawnMechanism) -> list[Shape]:
-    """Counterweight on the flank of the cam at its angle; its size is not in the case."""
-    if m.counterweight is None:
+    """Sector that has the unbalance of the counterweight, before the cam."""
+    weight = m.counterweight
+    if weight is None:
         return []
-    outer = 0.92 * float(np.hypot(*m.contour).min())
-    inner = 0.5 * (outer + (m.bore or 0.0))
-    angle = m.counterweight + np.radians(np.linspace(-35.0, 35.0, 29))
+    angle = weight.angle + weight.half * np.linspace(-1.0, 1.0, 29)
     arc = np.stack([np.cos(angle), np.sin(angle)])
-    outline = np.concatenate([outer * arc, inner * arc[:, ::-1]], axis=1)
+    outline = np.concatenate([weight.outer * arc, weight.inner * arc[:, ::-1]], axis=1)
     return [DrawnOutline((outline,), Pen("ink", _EDGE * m.scale, "muted"))]
 
 

@@ -33,6 +33,13 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "bearing_gap", "gear_gap", "fork_gap",
     ),
     (_ASSEMBLY, "test_spring_seats_and_guides_by_outlines_over_the_turn"): ("spring_gap",),
+    (_ASSEMBLY, "test_counterweight_by_outlines_in_the_plane_of_the_shaft"): ("counterweight_gap",),
+    ("unit/test_torsion_spring.py", "test_the_coil_clears_stem_and_guides_over_the_turn"): (
+        "torsion_gap",
+    ),
+    (_ASSEMBLY, "test_a_sector_of_the_counterweight_has_its_unbalance"): (
+        "counterweight_unbalance",
+    ),
     (_ASSEMBLY, "test_teeth_of_another_ratio_fail"): ("tooth_ratio",),
     (_ASSEMBLY, "test_a_rack_cuts_no_tooth_of_the_involute_within_the_limit"): ("tooth_count",),
     (_SHAPE, "test_waviness_by_a_follower_on_a_sine"): ("profile_waviness",),

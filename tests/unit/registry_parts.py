@@ -14,6 +14,7 @@ from trial_variants import (
     struck,
     unknown,
     unknown_beside,
+    weighted,
     with_bearing,
     with_contact,
     with_cycle,
@@ -38,6 +39,8 @@ from trial_variants import (
     without_heat,
     without_seat,
 )
+
+from camwright.pipeline.follower.camshaft_loads import Counterweight
 
 # Four times the greatest shear along the surface over p0 at a traction coefficient of 0.03, of the
 # field of McEwen.
@@ -143,6 +146,31 @@ by_limit(
     "cam at 20 mm less half of 20 of pin and cheek, less half of 12 of the bearing",
     base=lambda: with_shaft(bearing_width=0.012),
     missing=lambda: with_shaft(diameter=None),
+)
+by_limit(
+    "counterweight_gap",
+    "assembly_gap",
+    None,
+    6.5,
+    "40 mm and half of 10 up to bearing 2 at 60 mm, half of 17 wide",
+    base=weighted,
+    missing=lambda: with_shaft(
+        diameter=None,
+        counterweight=Counterweight(unbalance=2e-4, angle=0.0, position=0.04),
+    ),
+)
+tried(
+    "counterweight_unbalance",
+    limited(
+        "counterweight_unbalance",
+        lambda most: weighted(width=most / (7850.0 * (0.025**3 - 0.0085**3) / 1.5)),
+        weighted,
+    ),
+    None,  # without a stated width there is no check
+    None,  # of the case alone
+    200.0,
+    "as stated",
+    weighted,
 )
 by_limit("gear_gap", "assembly_gap", None, 20.0, "20 + 15 mm less half of 10 and of 20")
 by_limit(

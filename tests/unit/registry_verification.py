@@ -206,6 +206,15 @@ tried(
     "q 32 (M_h - M_0)/(pi d^3)",
     with_torsion_spring,
 )
+by_limit(
+    "torsion_gap",
+    "assembly_gap",
+    lambda: with_torsion_spring(seat_height=0.07, mean_diameter=np.nan),
+    8.0,
+    "40 mm of arm less half of 48 + 6 of the coil and of 10 of the stem",
+    base=lambda: with_torsion_spring(seat_height=0.07),
+    missing=lambda: with_torsion_spring(wire_diameter=None),
+)
 tried(
     "spring_rate",
     limited("spring_rate", lambda t: with_part("spring", rate_tolerance=t)),

@@ -16,6 +16,7 @@ from camwright.pipeline import run
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.machine_envelope import sizes_of
+from camwright.reports import scene_solids
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of, motion_of
 from camwright.reports.drawing import arrangement
 from camwright.reports.drawing.drawing_shapes import Arrow, Text, bore_outline, hatching
@@ -232,3 +233,31 @@ def test_the_spring_is_drawn_where_it_is_judged(turn):
     below = [edge for edge in top if edge <= mechanism.spring.seat]
     gap = mechanism.spring.seat - mechanism.seat - max(below)
     assert gap == pytest.approx(judged["demand"], abs=1e-6)
+
+
+def test_the_counterweight_is_drawn_by_the_body_that_is_judged(turn, request):
+    """Opposite to the unbalance of the cam, which with its residual it has; its solid, too."""
+    weight = {"residual": "20 g mm", "position": "20 mm"}
+    shaft = turn.case.get("camshaft")
+    if shaft is None:
+        pytest.skip("the case describes no camshaft")
+    case = dict(turn.case) | {"camshaft": dict(shaft) | {"counterweight": weight}}
+    sector = mechanism_of(replace(turn, case=case)).counterweight
+    made = turn.balance
+    assert np.exp(1j * sector.angle) == pytest.approx(
+        -np.exp(1j * np.radians(made["unbalance_angle_deg"])), abs=1e-9
+    )
+    own = read_case(CASES[request.node.callspec.params["turn"]])
+    moment = (sector.outer**3 - sector.inner**3) / 3.0 * 2.0 * np.sin(sector.half)
+    beside = sector.width - 1e3 * own.cam.width
+    density = 1e-6 * own.camshaft.material.density
+    assert density * moment * beside == pytest.approx(made["unbalance_g_mm"] + 20.0, rel=1e-6)
+    angles = sector.angle + sector.half * np.linspace(-1.0, 1.0, 400)
+    solid = scene_solids.sector(angles, (sector.inner, sector.outer), sector.width)
+    corners = solid.points[:, solid.triangles]
+    flat = np.ptp(corners[2], axis=0) == 0.0
+    first, second = (corners[:2, k] - corners[:2, 0] for k in (1, 2))
+    area = 0.5 * np.abs(first[0] * second[1] - first[1] * second[0])[flat].sum()
+    exact = 2.0 * sector.half * (sector.outer**2 - sector.inner**2)  # of both ends
+    assert area == pytest.approx(exact, rel=1e-4)
+    assert np.ptp(solid.points[2]) == pytest.approx(sector.width)

@@ -18,6 +18,11 @@ from scipy.spatial import cKDTree
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.counterweight_body import (
+    CounterweightBody,
+    width_beside,
+    width_for,
+)
 from camwright.pipeline.base.verdict import verdict
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
@@ -28,6 +33,8 @@ from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.assembly import from_follower
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cam_balance import balance
+from camwright.pipeline.cycle.machine_envelope import counterweight_body
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.bearing_life import rating_bound, static_rating_bound
@@ -376,6 +383,15 @@ SEATS = [
     ({"guides.spacing": "95 mm", "spring.design.mean_diameter": "42 mm"}, "above"),
     ({"spring.seat_height": "85 mm"}, "between"),
     ({"spring.seat_height": "40 mm", "follower.overhang_at_max_lift": "125 mm"}, "below"),
+    ({"spring.seat_height": "40 mm", "follower.overhang_at_max_lift": "62 mm"}, "around"),
+    (
+        {
+            "spring.seat_height": "40 mm",
+            "follower.overhang_at_max_lift": "62 mm",
+            "guides.a.wall": "5 mm",
+        },
+        "around",
+    ),
 ]
 
 
@@ -395,7 +411,10 @@ def test_spring_seats_and_guides_by_outlines_over_the_turn(
     guides = machine.guides
     middle = machine.overhang_at_max_lift
     bushes = [
-        box((stem, stem + 0.02), (at - 0.5 * bush.length, at + 0.5 * bush.length))
+        box(
+            (stem, stem + (bush.wall if where == "around" else 0.02)),
+            (at - 0.5 * bush.length, at + 0.5 * bush.length),
+        )
         for at, bush in ((middle, guides.a), (middle + guides.spacing, guides.b))
     ]
     inner, outer = (0.5 * (design.mean_diameter + s * design.wire_diameter) for s in (-1.0, 1.0))
@@ -415,8 +434,90 @@ def test_spring_seats_and_guides_by_outlines_over_the_turn(
             rod = box((0.0, stem), (raised - top + 0.001, raised - top + 0.33))
             coils = box((inner, outer), (face, fixed))
             least.append(apart(coils, rod))
-            assert where == "below" or fixed <= bushes[1][0].min() + 1e-9
+            least += [apart(coils, bush) for bush in bushes if where == "around"]
+            assert where in ("below", "around") or fixed <= bushes[1][0].min() + 1e-9
     assert gap("spring_gap", of) == pytest.approx(min(least), abs=1e-6)
+
+
+WEIGHTS = [
+    ({"position": "35 mm", "radius": "31.5 mm", "width": "29 mm"}, "fork"),
+    ({"position": "35 mm", "radius": "20 mm", "width": "39.6 mm"}, "bearing"),
+    ({"position": "51 mm", "radius": "40 mm", "width": "3.2 mm"}, "corner"),
+    ({"position": "-8.5 mm", "radius": "45 mm", "width": "0.6 mm"}, "gear or bearing"),
+    ({"position": "35 mm"}, "half ring"),
+]
+
+
+@pytest.mark.parametrize(("values", "where"), WEIGHTS)
+def test_counterweight_by_outlines_in_the_plane_of_the_shaft(
+    values: dict[str, str], where: str
+) -> None:
+    """counterweight_gap within 1 um: outlines in the half plane of the shaft, along it and from it.
+
+    The follower passes with its whole depth from its lowest place on; the bearings of 62 mm; the
+    machine shaft lies 60 mm from the camshaft.
+    """
+    key = "camshaft.counterweight"
+    known = {f"{key}.{name}": value for name, value in values.items()}
+    known[f"{key}.residual"] = "20 g mm"
+    of = solved(with_values(sound(), STATED | known))
+    body = counterweight_body(
+        weight := of.case.camshaft.counterweight,
+        weight.set_against(balance(of.machine.cam, of.contour).as_made)[0],
+        of.numbers,
+    )
+    middle, half = 0.035 + float(body.place), 0.5 * float(body.width)
+    ring = box((0.015, float(body.radius)), (middle - half, middle + half), 400)
+    lowest = of.machine.cam.prime_radius - of.machine.roller.radius
+    deep = 0.014 + 0.0003  # of pin and cheeks, at the axial offset of the roller
+    parts = [box((lowest, 0.2), (0.035 - deep, 0.035 + deep), 2000)]
+    parts += [box((0.015, 0.031), (at - 0.008, at + 0.008)) for at in (0.0, 0.07)]
+    parts.append(box((0.015, 0.06), (-0.035, -0.015)))
+    parts.append(box((0.052, 0.068), (-0.1, 0.2)))
+    least = min(apart(ring, each) for each in parts)
+    if where == "half ring":
+        assert least == pytest.approx(0.0004, abs=1e-6)
+    assert gap("counterweight_gap", of) == pytest.approx(least, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("values", "name"),
+    [
+        ({"radius": "45 mm", "width": "29 mm"}, "counterweight_gap"),  # under the roller
+        ({"radius": "31.5 mm", "width": "55 mm"}, "counterweight_gap"),  # into the bearings
+        ({"radius": "31.5 mm", "width": "16 mm"}, "counterweight_unbalance"),  # next to none
+        ({"radius": "16 mm", "width": "29 mm"}, "counterweight_unbalance"),  # no thicker than 1 mm
+        ({"position": "-25 mm", "radius": "40 mm", "width": "9 mm"}, "counterweight_gap"),  # gear
+    ],
+)
+def test_a_counterweight_without_room_fails(values: dict[str, str], name: str) -> None:
+    known = {f"camshaft.counterweight.{key}": value for key, value in values.items()}
+    known |= {"camshaft.counterweight.residual": "20 g mm"}
+    made = BY_ID[name](solved(with_values(sound(), STATED | known)))
+    assert made is not None
+    assert made.status == "fail", made
+
+
+def test_a_sector_of_the_counterweight_has_its_unbalance() -> None:
+    """First moment of a drawn sector beside the cam, summed over its area; width and its inverse.
+
+    counterweight_unbalance fails where no sector has it.
+    """
+    place, cam = np.array([0.0, 3.0, 7.0, 12.0, 40.0]), 15.5
+    for width in np.linspace(0.1, 90.0, 77):
+        cells = np.linspace(-0.5, 0.5, 200_001) * width + place[:, None]
+        counted = (np.abs(cells) > 0.5 * cam).mean(axis=1) * width
+        beside = width_beside(width, place, cam)
+        assert beside == pytest.approx(counted, abs=2e-3)
+        some = beside > 0.0
+        again = width_beside(width_for(beside, place, cam), place, cam)
+        assert again[some] == pytest.approx(beside[some], rel=1e-12)
+    body = CounterweightBody.of(0.0, cam, (31.5, None), 15.0, 7.85e-3, 2094.0)
+    half = body.half_angle(1500.0)
+    r, phi = np.meshgrid(np.linspace(15.0, 31.5, 1501), np.linspace(-half, half, 1501))
+    area = np.trapezoid(np.trapezoid(r**2 * np.cos(phi), r[0], axis=1), phi[:, 0])
+    assert 7.85e-3 * area * float(body.width - cam) == pytest.approx(1500.0, rel=1e-6)
+    assert float(body.capacity) == pytest.approx(2094.0, rel=1e-12)
 
 
 def test_gaps_along_the_camshaft_by_counting_free_micrometres() -> None:

@@ -10,7 +10,8 @@ from small_machine import small_machine
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.case_file import parse_case, with_values
+from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.follower.spring import Spring, spring_energy, stored_lift
 from camwright.pipeline.follower.spring_kinds import TorsionSpring, rise
@@ -119,6 +120,46 @@ def test_stress_of_the_wire():
     assert checks["torsion_fatigue"].demand == pytest.approx(swing, rel=1e-9)
     assert checks["data_torsion_spring"].missing == ("spring.travel_max",)
     assert set(travel_limits(case())) <= {"torsion_stress", "torsion_fatigue"}
+
+
+@pytest.mark.parametrize(
+    ("arm", "height", "status"),
+    [(70.0, None, "pass"), (47.0, None, "fail"), (53.0, None, "not_evaluated"),
+     (53.0, 80.0, "pass"), (53.0, 30.0, "fail"), (70.0, 30.0, "pass")],
+)  # fmt: skip
+def test_the_coil_clears_stem_and_guides_over_the_turn(arm, height, status):
+    """torsion_gap within 1 um: points of the coil's circle from the outlines of stem and guides."""
+    stated = {"spring.torsion.arm": f"{arm} mm", "spring.torsion.moment": f"{0.6 * arm} N m"}
+    stated |= {"guides.a.wall": "4 mm", "guides.b.wall": "4 mm"}
+    stated |= {} if height is None else {"spring.seat_height": f"{height} mm"}
+    of = with_values(case(), stated)
+    checks = {each.id: each for each in preview_case(of, corners=False).checks}
+    judged = checks["torsion_gap"]
+    assert judged.status == status, judged
+    if status == "not_evaluated":
+        assert judged.missing == ("spring.seat_height",)
+        return
+    trial = preview_case(of, corners=False)
+    top, angle = trial.lift.highest.value, of.spring.torsion.arm_angle
+    turn = np.linspace(0.0, 2.0 * np.pi, 40_001)
+    away = 1e-3 * arm * np.cos(angle) + 40.5e-3 * np.cos(turn)
+    stem = float((away - 0.5 * of.follower.stem_diameter).min())
+    middle, least = of.follower.overhang_at_max_lift, stem
+    for guide in (of.guides.a, of.guides.b):
+        half, outer = 0.5 * guide.length, 0.5 * guide.diameter + 4e-3
+        heights = np.full(1, middle) if height is None else np.full(1, 1e-3 * height - top)
+        heights = heights if height is None else heights - 1e-3 * arm * np.sin(angle)
+        up = heights + 40.5e-3 * np.sin(turn)
+        beyond = np.maximum(np.abs(up - middle) - half, 0.0)
+        inside = np.maximum(away - outer, 0.0)
+        apart = np.hypot(inside, beyond)
+        overlap = (away < outer) & (np.abs(up - middle) < half)
+        least = min(least, float(np.where(overlap, away - outer, apart).min()))
+        middle += of.guides.spacing
+    if status == "pass":
+        assert judged.demand == pytest.approx(least, abs=1e-6)
+    else:
+        assert least < of.limits[ASSEMBLY_GAP]
 
 
 def test_falling_force_is_refused():

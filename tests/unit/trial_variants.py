@@ -17,7 +17,7 @@ from camwright.pipeline.contact.shrink_fit import SeatFit
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.camshaft_loads import Reversal
+from camwright.pipeline.follower.camshaft_loads import Counterweight, Reversal
 from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 
 NAN = np.full(made.POSITIONS, np.nan)
@@ -57,7 +57,7 @@ def with_gas_spring(preload_tolerance: float = 0.05, **values: Any) -> Solution:
     )
 
 
-def with_torsion_spring(**values: Any) -> Solution:
+def with_torsion_spring(seat_height: float | None = None, **values: Any) -> Solution:
     """The solution on a torsion spring, its arm square to the follower at zero lift."""
     stated = {
         "wire_diameter": 0.006, "mean_diameter": 0.048, "tensile_strength": 1.7e9,
@@ -69,6 +69,7 @@ def with_torsion_spring(**values: Any) -> Solution:
         kind="torsion",
         design=None,
         torsion=spring,
+        seat_height=seat_height,
         rate=spring.rate,
         preload=spring.preload,
     )
@@ -100,6 +101,12 @@ def with_ring(**values: Any) -> Solution:
 
 def with_shaft(**values: Any) -> Solution:
     return with_part("camshaft", **values)
+
+
+def weighted(**values: Any) -> Solution:
+    """The solution with a counterweight of 10 mm between cam and second bearing; changed values."""
+    weight = Counterweight(unbalance=2e-4, angle=0.0, position=0.04, radius=0.025, width=0.01)
+    return with_shaft(counterweight=made.changed(weight, **values))
 
 
 def with_fit(**changed: Any) -> Solution:
