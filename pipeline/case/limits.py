@@ -252,6 +252,15 @@ CAM_RUN_OUT = Limit(
         confirmed=True,
     ), "at_least",
 )  # fmt: skip
+ROLLER_MISALIGNMENT = Limit(
+    "roller_misalignment", "angle between the rings of the roller's bearing",
+    In("mrad", above=0, at_most=100), 1e-3,
+    Source(
+        "0.001 to 0.003 rad of deep-groove ball bearings, the lower end: Shigley's Mechanical"
+        " Engineering Design, 9th ed., p. 379, table 7-2; 0.0005 to 0.003 by RBC Bearings",
+        confirmed=True,
+    ),
+)  # fmt: skip
 ROLLER_CLEARANCE = Limit(  # at either end of it the contact turns the roller back: nothing holds it
     "roller_clearance", "radial clearance in which the roller tilts on its bearing, over its width",
     In("um", at_least=0, at_most=1000), 0.0,

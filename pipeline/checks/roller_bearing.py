@@ -18,10 +18,13 @@ from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.source import Source
-from camwright.pipeline.base.units import factor
+from camwright.pipeline.base.units import factor, shown
 from camwright.pipeline.case.limits import (
+    AXIS_PARALLELISM,
+    CAM_RUN_OUT,
     ROLLER_LIFE,
     ROLLER_LOAD_SHARE,
+    ROLLER_MISALIGNMENT,
     ROLLER_RELIABILITY,
     ROLLER_SPEED_SHARE,
     ROLLER_STATIC_SAFETY,
@@ -49,12 +52,13 @@ from camwright.pipeline.checks.extremes import (
     duty_parts,
     mean_of,
     over_duty,
+    row_of,
 )
 from camwright.pipeline.checks.missing_keys import lacking, unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
-from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.numbers import Numbers, base_radius
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import bearing_life
 from camwright.pipeline.follower.roller_motion import (
@@ -214,6 +218,17 @@ def _damage_note(
     return [f"damage by duty: {', '.join(shares)}"]
 
 
+def _with_slope(demand: Demand, solution: Solution) -> Demand:
+    """With the part of the camshaft in the angle."""
+    if demand.at is None or not demand.at.load_case:
+        return demand
+    cycle, place = row_of(solution.cycles, demand.at)
+    slope = float(abs(cycle.shaft_tilt[place]))
+    figures = tuple(map(solution.machine.limits.source, (AXIS_PARALLELISM, CAM_RUN_OUT)))
+    note = f"{shown(slope, 'mrad', 3)} of it by the camshaft"
+    return replace(demand, note=note, figures=figures, stated={"phi": slope})
+
+
 roller_static = check(
     ROLLER_STATIC_SAFETY,
     id="roller_static",
@@ -243,6 +258,54 @@ roller_static = check(
     deviation=0.005,
     kept=Kept(group=NORMAL_FORCE, unit="N"),
 )(normal_force)
+
+
+_AXES = f"limits.{AXIS_PARALLELISM.id}", f"limits.{CAM_RUN_OUT.id}"
+
+
+@check(
+    ROLLER_MISALIGNMENT,
+    title="Angle between the rings of the roller's bearing",
+    method="slope of the camshaft at the cam in the plane of the contact, parallelism, run-out and"
+    " tilt of the stem in its guides, of which the contact turns the roller by all; each in its"
+    " worst direction",
+    tier=Tier.SCREENING,
+    needs="roller",
+    part="roller_bearing",
+    formula="phi + p + r/(2 r_b) + (c_A + c_B)/(2 (b + (L_A + L_B)/2)) <="
+    " limits.roller_misalignment; phi: greatest slope of the camshaft at the cam over the turn, 0"
+    " where its diameter or material is not stated, p: limits.axis_parallelism, r:"
+    " limits.cam_run_out, r_b: base radius, c, L, b: clearances, lengths and spacing of the guides",
+    symbols={
+        "phi": f"{STATED} [mrad]",
+        "p": _AXES[0],
+        "r": _AXES[1],
+        "r_b": "cam.prime_radius - roller.radius [mm]",
+        **{f"c_{each}": f"guides.{each.lower()}.clearance" for each in "AB"},
+        **{f"L_{each}": f"guides.{each.lower()}.length" for each in "AB"},
+        "b": "guides.spacing",
+    },
+    reason="beyond it the balls run on the edge of the groove under a moment, and neither rating"
+    " nor life of the bearing holds",
+    values=(
+        *given.LOADS,
+        *_AXES,
+        "camshaft.material.E",
+        "guides.a.clearance",
+        "guides.b.clearance",
+    ),
+    levers=(
+        levers.one("camshaft.diameter", most=2.0),
+        levers.Scaled(("guides.spacing", "follower.stem_length"), 1, 2.0),
+    ),
+    page="Roller",
+).measured("angles", remark=_with_slope, deviation=0.01)
+def roller_misalignment(cam: LoadedCam) -> Array:
+    """Angle between the rings of the roller's bearing, rad; one on a machine roller likewise."""
+    numbers = cam.numbers
+    guides = numbers.known_case.guides.tilt_at(numbers["guides.spacing"])
+    run_out = numbers.limit(CAM_RUN_OUT) / (2.0 * base_radius(numbers))
+    return magnitude(cam.shaft_tilt) + (numbers.limit(AXIS_PARALLELISM) + run_out + guides)
 
 
 roller_load_share = check(

@@ -24,7 +24,9 @@ from camwright.pipeline.case.case_values import wound_spring
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.follower.camshaft_loads import gear_force
 from camwright.pipeline.follower.follower_forces import levers
+from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
 from camwright.pipeline.follower.spring import SpringWork, WoundWire
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise
 
@@ -360,6 +362,26 @@ class LoadedCam:
         """Friction power of the guides at maximum friction, W; None where not known."""
         hot = self.hot
         return None if hot is None else OfGuides(*(magnitude(each * self.velocity) for each in hot))
+
+    @property
+    def thrown(self) -> tuple[Value, Value]:
+        """Centrifugal forces on cam and counterweight, N; here those of a balanced shaft."""
+        return 0.0, 0.0
+
+    @cached_property
+    def shaft_tilt(self) -> Array:
+        """Slope of the camshaft at the cam in the plane of the contact normal, rad.
+
+        As of `Cycle.shaft_tilt`.
+        """
+        shaft = None if self.numbers.case is None else self.numbers.case.camshaft
+        slope = slope_of(shaft)
+        if shaft is None or slope is None:
+            return np.zeros(self.normal.shape)
+        pushed = -np.stack([self.axial, self.axial * self.motion.side])
+        on_cam, held = self.thrown
+        bent = slope.under(pushed + on_cam, gear_force(self.torque, shaft), held)
+        return in_the_normal(bent, self.motion.pressure_angle)
 
     @property
     def pressure_factor(self) -> Value:

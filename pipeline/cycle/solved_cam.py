@@ -182,6 +182,10 @@ class SolvedCam(ForcesCam):
             cycle=cycle,
         )
 
+    @cached_property
+    def shaft_tilt(self) -> Array:
+        return self.cycle.shaft_tilt
+
     @property
     def jam_worst(self) -> Array:
         return self.cycle.parts.friction.greatest.jam_index

@@ -15,6 +15,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.extrema import refined
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base.material import MadeOf, Material
 from camwright.pipeline.base.quantities import (
     Angle,
@@ -551,7 +552,7 @@ def gear_force(torque: Array, shaft: Camshaft) -> Array:
     tooth = (torque + shaft.drag) / shaft.gear_radius
     outward = np.array([np.cos(shaft.mesh_angle), np.sin(shaft.mesh_angle)])
     sideways = np.array([-np.sin(shaft.mesh_angle), np.cos(shaft.mesh_angle)])
-    apart = np.abs(tooth) * np.tan(shaft.pressure_angle)
+    apart = magnitude(tooth) * np.tan(shaft.pressure_angle)
     return np.asarray(np.multiply.outer(sideways, tooth) - np.multiply.outer(outward, apart))
 
 

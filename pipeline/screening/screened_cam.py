@@ -13,10 +13,8 @@ from camwright.geometry.follower_path import Motion
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.cycle.length_history import FactorRange
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
-from camwright.pipeline.follower.camshaft_loads import gear_force
 from camwright.pipeline.follower.follower_forces import REST, LoadEnds, ends_of, share_left
 from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany
-from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
 from camwright.pipeline.screening.design_lengths import DesignValues, factors_of, has_many_shapes
 
 
@@ -173,20 +171,9 @@ class ScreenedCam(LoadedCam):
         radius = self.block.relative_radius
         return factors_of(self.block, self.normal, radius, self.rubbing, self.shaft_tilt)
 
-    @cached_property
-    def shaft_tilt(self) -> Array:
-        """Slope of the camshaft at the cam in the plane of the contact normal, rad.
-
-        As of `Cycle.shaft_tilt`.
-        """
-        shaft = self.block.machine.camshaft
-        slope = slope_of(shaft)
-        if shaft is None or slope is None:
-            return np.zeros(self.normal.shape)
-        pushed = -np.stack([self.axial, self.axial * self.motion.side])
-        thrown, held = self.block.thrown(self.speed)
-        bent = slope.under(pushed + thrown, gear_force(self.torque, shaft), held)
-        return in_the_normal(bent, self.motion.pressure_angle)
+    @property
+    def thrown(self) -> tuple[Array, Array]:
+        return self.block.thrown(self.speed)
 
     @cached_property
     def p0(self) -> Array:

@@ -37,6 +37,9 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     ("unit/test_torsion_spring.py", "test_the_coil_clears_stem_and_guides_over_the_turn"): (
         "torsion_gap",
     ),
+    ("verification/test_tilted_line.py", "test_an_overhung_cam_turns_the_rings_of_its_roller"): (
+        "roller_misalignment",
+    ),
     (_ASSEMBLY, "test_a_sector_of_the_counterweight_has_its_unbalance"): (
         "counterweight_unbalance",
     ),

@@ -253,6 +253,14 @@ tried(
     400.0,
     "300 + 100 sin",
 )
+by_limit(
+    "roller_misalignment",
+    "roller_misalignment",
+    lambda: with_loads(axial_force=NAN),
+    0.1 + 5.0 / 84.0 + 0.5 * 200.0 / 100.0,
+    "parallelism, run-out of 5 um over 84 mm, clearances of 0.1 mm over 100 mm; a rigid shaft",
+    base=lambda: with_shaft(diameter=None),
+)
 tried(
     "roller_static_radial",
     limited("roller_static_radial", lambda f: with_bearing(static_radial_limit=f)),

@@ -66,6 +66,24 @@ def test_an_overhung_cam_loads_its_ends_by_the_slope_of_its_shaft():
     assert "camshaft 1.2," in edge(trial).note
 
 
+def test_an_overhung_cam_turns_the_rings_of_its_roller():
+    """Beam on two supports, 1200 N 60 mm beyond one: F a (2 l + 3 a)/(6 E I), and the guides.
+
+    With a shaft of 60 mm the angle is within the limit.
+    """
+    trial = of(EXACT)
+    judged = next(each for each in trial.checks if each.id == "roller_misalignment")
+    inertia = np.pi * 0.03**4 / 64.0
+    slope = 1200.0 * 0.06 * (2.0 * 0.33 + 3.0 * 0.06) / (6.0 * 210e9 * inertia)
+    guides = trial.case.guides
+    stem = 0.5 * (guides.a.clearance + guides.b.clearance)
+    stem /= guides.spacing + 0.5 * (guides.a.length + guides.b.length)
+    assert judged.demand == pytest.approx(slope + stem, rel=0.05)  # the gear bends it, too
+    assert judged.status == "fail"
+    stiff = of({"camshaft.diameter": "60 mm", "cam.bore_radius": "15 mm"} | EXACT)
+    assert next(e for e in stiff.checks if e.id == "roller_misalignment").status == "pass"
+
+
 @pytest.mark.parametrize(
     ("values", "at_least"),
     [
