@@ -158,10 +158,6 @@ class FollowerSystem:
         """Weight and mean external force, N, positive towards the cam."""
         return self.load.mean
 
-    def guide_factors(self, overhang: ArrayLike) -> tuple[Array, Array]:
-        """|A|/F_t and |B|/F_t, see `levers`."""
-        return levers(np.asarray(overhang, dtype=float), self.guide_spacing)
-
     def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
         """Rubbing load of guides A and B over axial force and side-load factor."""
         if self.rubbing is None:
@@ -316,42 +312,6 @@ def turn_integral(theta: Array, values: Array) -> float:
     if not (steps > 0.0).all():
         raise InputError("theta", float(theta[np.argmin(steps)]), "increasing within one turn")
     return float(np.sum(0.5 * (steps + np.roll(steps, 1)) * values))
-
-
-def jump_speed(
-    pitch: FollowerPath, system: FollowerSystem, theta: ArrayLike
-) -> tuple[float, float]:
-    """Minimum constant cam speed with loss of contact, and its cam angle.
-
-    Minimum of sqrt((P + k s + F_e) / (-m s'')) over the angles with s'' < 0; F_e: weight and
-    external force.
-
-    Parameters
-    ----------
-    pitch : FollowerPath
-    system : FollowerSystem
-    theta : array (n,)   cam angles, rad
-
-    Returns
-    -------
-    speed : float   rad/s; infinite without loss of contact
-    theta : float   rad; NaN in that case
-
-    References
-    ----------
-    Norton, Cam Design and Manufacturing Handbook (2009), ch. 15: follower jump.
-    """
-    theta = finite("theta", theta)
-    lift, _, lift_d2 = pitch.lift.derivatives(theta, 2)
-    hold = system.spring.force(lift) + system.applied_force(theta)
-    throw = -system.mass * lift_d2
-    square = np.divide(
-        np.maximum(hold, 0.0), throw, out=np.full_like(throw, np.inf), where=throw > 0.0
-    )
-    first = int(np.argmin(square))
-    if not np.isfinite(square[first]):
-        return np.inf, np.nan
-    return float(np.sqrt(square[first])), float(theta[first])
 
 
 def share_left(lift_slope: Array, jam_index: Array) -> Array:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rigid_jump import rigid_jump_speed
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
@@ -13,7 +14,6 @@ from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
     FollowerSystem,
     follower_loads,
-    jump_speed,
     torque_on_cam,
     turn_integral,
 )
@@ -114,7 +114,7 @@ def test_round_cam_with_offset_dwells_without_sliding_friction():
 @pytest.mark.parametrize(("share", "separated"), [(0.99, False), (1.01, True)])
 def test_contact_is_lost_just_above_the_jump_speed(share, separated):
     theta = uniform_turn(720)
-    speed, where = jump_speed(harmonic(), SYSTEM, theta)
+    speed, where = rigid_jump_speed(harmonic(), SYSTEM, theta)
     loads = follower_loads(harmonic(), SYSTEM, share * speed, theta)
     assert loads.separated.any() == separated
     if separated:
@@ -131,11 +131,11 @@ def test_jump_speed_of_a_harmonic_lift():
     throw = -0.2 * 0.5 * STROKE * np.cos(theta)
     falling = throw > 1e-12
     expected = np.sqrt(np.min((200.0 + 20e3 * lift[falling]) / throw[falling]))
-    assert jump_speed(harmonic(), SYSTEM, theta)[0] == pytest.approx(expected, rel=1e-8)
+    assert rigid_jump_speed(harmonic(), SYSTEM, theta)[0] == pytest.approx(expected, rel=1e-8)
 
 
 def test_a_massless_follower_never_jumps():
-    speed, where = jump_speed(harmonic(), replace(SYSTEM, mass=0.0), uniform_turn(90))
+    speed, where = rigid_jump_speed(harmonic(), replace(SYSTEM, mass=0.0), uniform_turn(90))
     assert speed == np.inf
     assert np.isnan(where)
 

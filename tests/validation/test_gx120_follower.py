@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from elastic_jump import elastic_jump_speed
+from rigid_jump import rigid_jump_speed
 from scipy.signal import resample
 
 from camwright.geometry.arrays import uniform_turn
@@ -24,7 +25,7 @@ from camwright.pipeline.follower.elastic_follower import ElasticFollower
 from camwright.pipeline.follower.follower_forces import (
     FollowerSystem,
     follower_loads,
-    jump_speed,
+    levers,
     turn_integral,
 )
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair, guide_reactions
@@ -134,7 +135,7 @@ def test_stroke_and_surface_speed(design):
 
 def test_friction_of_the_friction_free_side_force(design):
     _, free, rubbing, expected = design
-    on_a, on_b = SYSTEM.guide_factors(free.overhang)
+    on_a, on_b = levers(free.overhang, SYSTEM.guide_spacing)
     factor = SYSTEM.friction_a * on_a + SYSTEM.friction_b * on_b
     assert (factor * np.abs(free.tangential_force)).max() == pytest.approx(
         expected["friction"], rel=5e-4
@@ -153,7 +154,7 @@ def test_normal_force_with_friction(design):
 def test_jam_index_and_liftoff_speed(design):
     pitch, _, rubbing, expected = design
     assert rubbing.jam_index.max() == pytest.approx(expected["jam"], rel=5e-3)
-    liftoff = 2 * jump_speed(pitch, SYSTEM, THETA)[0] * 60 / (2 * np.pi)
+    liftoff = 2 * rigid_jump_speed(pitch, SYSTEM, THETA)[0] * 60 / (2 * np.pi)
     assert liftoff == pytest.approx(expected["liftoff_rpm"], rel=5e-3)
 
 
@@ -174,7 +175,7 @@ def test_design_scaled_to_the_printed_inertia():
     np.testing.assert_allclose([force.min(), force.max()], [249.0, 502.0], rtol=0.01)
     assert np.abs(free.reaction_a).max() == pytest.approx(185.0, rel=0.02)
     assert rubbing.jam_index.max() == pytest.approx(0.054, rel=0.01)
-    liftoff = 2 * jump_speed(pitch, SYSTEM, THETA)[0] * 60 / (2 * np.pi)
+    liftoff = 2 * rigid_jump_speed(pitch, SYSTEM, THETA)[0] * 60 / (2 * np.pi)
     assert liftoff == pytest.approx(4760.0, rel=0.01)
 
 

@@ -10,7 +10,6 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import periodic_quintic
-from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.elastic_follower import (
     ElasticFollower,
     collocation_response,
@@ -19,8 +18,6 @@ from camwright.pipeline.follower.elastic_follower import (
     quasi_static,
 )
 from camwright.pipeline.follower.follower_flight import bounce
-from camwright.pipeline.follower.follower_forces import FollowerSystem, jump_speed
-from camwright.pipeline.follower.spring import Spring
 
 THETA = uniform_turn(360)
 HIGH = 12e-3
@@ -236,9 +233,10 @@ def test_energy_is_kept_through_impacts_at_varying_speed():
 
 
 def test_jump_speed_tends_to_the_rigid_one():
-    spring = Spring(rate=24.2e3, preload=242.0)
-    system = FollowerSystem(0.175, spring, 0.08, 0.03, 0.0, 0.0)
-    rigid, _ = jump_speed(PitchCurve(LIFT, 0.05), system, THETA)
+    """Norton, Cam Design and Manufacturing Handbook (2009), ch. 15: least sqrt(F/(-m s''))."""
+    lift, _, bend = LIFT.derivatives(THETA, 2)
+    falls = bend < 0.0
+    rigid = float(np.sqrt(np.min((242.0 + 24.2e3 * lift[falls]) / (-0.175 * bend[falls]))))
     stiff = replace(PLAIN, stiffness=1e11)
     assert elastic_jump_speed(S, stiff, 1.5 * rigid) == pytest.approx(rigid, rel=2e-3)
     soft = elastic_jump_speed(S, replace(PLAIN, stiffness=5e5), 1.5 * rigid)
