@@ -77,7 +77,7 @@ def modified_life() -> float:
     kappa = viscosity_ratio()
     assert 1.0 <= kappa <= 4.0
     damage = 0.0
-    for force, speed in zip(made.cycle().surged_force, roller_spin(), strict=True):
+    for force, speed in zip(surged_force(), roller_spin(), strict=True):
         clean = (0.5 * 60.0 / force) ** (1.0 / 3.0)
         left = 1.0 - (2.5671 - 1.9987 * kappa**-0.071739) ** 0.83 * clean
         turns = 1e6 * min(0.1 / left**9.3, 50.0) * (1140.0 / force) ** 3
@@ -157,17 +157,22 @@ def moving_mass() -> float:
     return float(steel * (roller + pin + fork + stem * np.pi * 5.0**2 + 0.2 * wire))
 
 
-def mean_life() -> float:
-    """(C/P)^3 1e6 turns at the speed of a roller that rolls on the pitch curve, hours."""
-    loads = made.cycle().loads
+def surged_force() -> np.ndarray:
+    """300 + 100 sin and the surge at the moving end, raised by friction on the rise, N."""
     slope = 0.5 * made.STROKE * np.sin(made.THETA)
     pitch = made.BASE + S
-    # Surge of a harmonic lift at the moving end, raised by friction on the rise.
     phi = np.pi / SURGE * np.sqrt(RATE / made.RATE)
     surge = -0.5 * made.STROKE * made.RATE * (phi / np.tan(phi) - 1.0) * np.cos(made.THETA)
     rise = np.where(np.abs(slope) > 1e-12, np.sign(slope), 0.0)
     share = 1.0 - rise * (0.2 + 0.1 * made.WAVE)
-    force = loads.normal_force + surge / share * np.hypot(pitch, slope) / pitch
+    force: np.ndarray = 300.0 + 100.0 * made.WAVE
+    return force + surge / share * np.hypot(pitch, slope) / pitch
+
+
+def mean_life() -> float:
+    """(C/P)^3 1e6 turns at the speed of a roller that rolls on the pitch curve, hours."""
+    slope = 0.5 * made.STROKE * np.sin(made.THETA)
+    pitch, force = made.BASE + S, surged_force()
     speed = np.hypot(pitch, slope)
     bend = (pitch**2 + 2.0 * slope**2 - pitch * BEND) / speed**3
     # The contact runs along the pitch curve less the roller's turning with it.
