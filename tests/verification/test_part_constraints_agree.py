@@ -1,4 +1,9 @@
-"""Every constraint of a synthesis sees what its check sees, on a case that describes every part."""
+"""A constraint of a synthesis sees what its check sees, on a case that describes every part.
+
+Those are compared that state the inequality anew, in another form or without a measure, and one of
+each reduction by the measure itself: the others are its value and bound, see `test_measures`, on
+the fields that `test_fields_agree` compares.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -52,24 +57,26 @@ KELVIN = 273.15
 MARGINS = (
     "contact_force_margin", "contact_at_overspeed", "contact_over_speed", "elastic_contact",
 )  # fmt: skip
-NORMAL_FORCE = (
-    "roller_static", "roller_radial", "roller_static_radial", "roller_load_share", "roller_pin",
-    "roller_pin_shear", "roller_pin_pressure", "cheek_pressure", "bore_pressure",
-    "roller_ring_fatigue",
-)  # fmt: skip
-TORQUE = ("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip")
-TOOTH = ("gear_bending", "pinion_bending", "gear_contact")
 HEAT = [f"{name}_{side}" for side in "AB" for name in ("guide_temperature", "guide_expansion")]
 APART = ("contact_pressure", "spring_travel", "concave_radius", "gas_speed")
 """Of several checks or of another spring, with tests of their own."""
+BY_MEASURE = (
+    "undercut", "roller_static", "contact_force_margin", "guide_pv_A", "guide_wear_A",
+    "roller_life", "guide_pressure_A", "guide_pressure_B",
+)  # fmt: skip
+"""One of each reduction; of the pressure of a guide both, whose limit is in its correction."""
+
+
+def states_anew(name):
+    """Whether the synthesis has the inequality of a check in another form than by its measure."""
+    how = DECLARED[name].measured
+    return how is None or how.kept is None or how.kept.use is not None
+
+
 EACH = [
-    *NORMAL_FORCE, *TORQUE, *TOOTH, *HEAT,
-    *(
-        each.check for each in OF_ROLLER
-        if each.check not in {*NORMAL_FORCE, *TORQUE, *TOOTH, *HEAT, *APART}
-    ),
+    name for name in dict.fromkeys((*HEAT, *(each.check for each in OF_ROLLER)))
+    if name not in APART and (name in BY_MEASURE or states_anew(name))
 ]  # fmt: skip
-"""Every check that a constraint keeps."""
 
 
 @pytest.fixture(scope="module")
@@ -145,16 +152,8 @@ def uses(solved, problem, corrections, ratings, theta):
 def own(case, machine, name):
     """Constraint that keeps a check, and ratings with the limit of that check alone."""
     ratings = ratings_of(case)
-    if name in NORMAL_FORCE:
-        return "roller_static", rated(
-            ratings, normal_force=limits_of(case)[demands.NORMAL_FORCE][name]
-        )
-    if name in TORQUE:
-        return "key_pressure", rated(ratings, cam_torque=limits_of(case)[demands.CAM_TORQUE][name])
-    if name in TOOTH:
-        return "gear_bending", rated(
-            ratings, tooth_torque=limits_of(case)[demands.TOOTH_TORQUE][name]
-        )
+    if name == demands.NORMAL_FORCE:
+        return name, rated(ratings, normal_force=limits_of(case)[demands.NORMAL_FORCE][name])
     side = name[-1]
     if name in HEAT:
         limits = limits_of(case)
@@ -177,8 +176,6 @@ def in_check(case, checks, solved, name, use):
         return use, check.utilisation**2  # forces grow with the square of the speed
     if name in ("roller_life", "roller_modified_life"):
         return use**3, check.utilisation
-    if name == "gear_contact":
-        return use**0.5, check.utilisation
     if name == "bearing_lubrication":
         bearing = machine.roller.bearing
         speed = named(ratings_of(case)).roller_spin_least * 30.0 / np.pi / use
@@ -216,12 +213,6 @@ def in_check(case, checks, solved, name, use):
         hot = checks[f"guide_temperature_{side}"].demand + KELVIN
         load = use * edge_load(machine, guide, hot)
         return float(edge_pressure_of(machine, guide)(np.array([load]))[0]), check.demand
-    if name == "roller_ring_fatigue":
-        ring, roller = machine.roller.bearing.ring, machine.roller
-        bending = roller.ring(machine.contact_width, machine.spring.preload).bending
-        force = use * limits_of(case)[demands.NORMAL_FORCE][name]
-        mean = bending.stress_mean * force / ring.tensile_strength
-        return bending.stress_amplitude * force / (1.0 - mean), check.demand
     return use, check.utilisation
 
 
@@ -371,7 +362,7 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
         "machine_shaft_gap": "cam_radius",
         # limits of the contact pressure, of the lift and of the normal force
         **dict.fromkeys(
-            ("shakedown", "contact_pressure_at_life", "edge_pressure", "edge_shakedown",
+            ("contact_pressure_at_life", "edge_pressure", "edge_shakedown",
              "shakedown_traction", "hardened_case", "case_shear"), "contact_pressure"
         ),
         **dict.fromkeys(
@@ -386,7 +377,9 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
             "roller_static",
         ),
     }  # fmt: skip
-    kept = {*EACH, *APART, *(each.check for each in CONSTRAINTS)}
+    groups = {one.id for one in CHECKS if one.measured and one.measured.kept
+              and one.measured.kept.group}  # fmt: skip
+    kept = {*HEAT, *groups, *(each.check for each in CONSTRAINTS)}
     open_ones = {
         each.id for each in CHECKS
         if each.must_have and each.lift_can_help and not each.evidence and each.id not in kept
