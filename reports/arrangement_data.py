@@ -20,7 +20,7 @@ from camwright.reports.drawing.arrangement import (
     DrawnSector,
 )
 from camwright.reports.drawing.drawing_shapes import Drawing
-from camwright.reports.drawing.spring_shapes import Coil, DrawnGasSpring, Spring, Torsion
+from camwright.reports.drawing.spring_shapes import DRAWN, Coil, DrawnSpring, SpringPlaces
 from camwright.reports.sheet_turn import SheetTurn
 
 _COLUMNS = {"contact": "normal_force_N", "spring": "spring_force_N",
@@ -131,7 +131,7 @@ def _density(turn: SheetTurn) -> float:
 
 def _sizes(
     turn: SheetTurn, stem: tuple[float, float, float, float, float],
-    guides: tuple[DrawnBush, DrawnBush], spring: Spring, seat: float,
+    guides: tuple[DrawnBush, DrawnBush], spring: DrawnSpring, seat: float,
 ) -> MechanismSizes:  # fmt: skip
     """Parts of the mechanism; stem: follower axis, height and lift, diameter and end of the stem.
 
@@ -233,30 +233,20 @@ def _guides(turn: SheetTurn, stem: float, highest: float) -> tuple[DrawnBush, Dr
 def _spring(
     turn: SheetTurn, stem: float, places: tuple[float, float],
     guides: tuple[DrawnBush, DrawnBush], seat: float,
-) -> Spring:  # fmt: skip
+) -> DrawnSpring:  # fmt: skip
     """The spring between the guides where it fits there, else above them; see `StemLayout`.
 
     places: height of the reference point of the follower at zero lift, and the lift.
     """
     lowest, stroke = places
     kind = turn.case.get("spring", {}).get("kind", "coil")
-    above = _top(guides[1]) + seat + 0.3 * stem
     end = turn.length("follower", "stem_length")
-    if kind == "gas":
-        above = above if end is None else lowest + end
-        area = turn.length("spring", "gas", "area", unit="mm^2") or stem**2
-        volume = turn.length("spring", "gas", "volume", unit="cm^3")
-        return DrawnGasSpring.of(
-            area, stroke * area if volume is None else 1e3 * volume, above, stroke
-        )
-    if kind == "torsion":
-        arm = turn.length("spring", "torsion", "arm") or 2.0 * stroke
-        raised = turn.length("spring", "torsion", "arm_angle", unit="rad") or 0.0
-        diameter = turn.length("spring", "torsion", "mean_diameter") or 0.4 * arm
-        wire = turn.length("spring", "torsion", "wire_diameter") or 0.15 * diameter
+    if kind in DRAWN:
+        between, above = (_top(guide) + seat + 0.3 * stem for guide in guides)
         stated = turn.length("spring", "seat_height")
-        between = _top(guides[0]) + seat + 0.3 * stem if stated is None else lowest + stated
-        return Torsion(arm, raised, diameter, wire, between)
+        between = between if stated is None else lowest + stated
+        on_end = above if end is None else lowest + end
+        return DRAWN[kind](turn, SpringPlaces(between, on_end, stroke, stem))
     diameter = turn.length("spring", "design", "mean_diameter") or _COIL * stem
     active = turn.case.get("spring", {}).get("design", {}).get("coils")
     turns = float(active) + 2.0 if isinstance(active, (int, float)) else _TURNS
@@ -297,7 +287,11 @@ def _installed(turn: SheetTurn) -> float | None:
 
 
 def _stem_end(
-    turn: SheetTurn, stem: float, lowest: float, guides: tuple[DrawnBush, DrawnBush], spring: Spring
+    turn: SheetTurn,
+    stem: float,
+    lowest: float,
+    guides: tuple[DrawnBush, DrawnBush],
+    spring: DrawnSpring,
 ) -> float:
     """Height of the end of the stem at zero lift, mm."""
     stated = turn.length("follower", "stem_length")

@@ -24,7 +24,7 @@ from camwright.pipeline.case.keys import (
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.requirements_section import Smoothing
 from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.checks.registry import CHECKS, DECLARED, MODULES
+from camwright.pipeline.checks.registry import DECLARED, MODULES, declared_in
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.axial_pressure import AXIAL_ARRAYS
 from camwright.pipeline.cycle.guide_pressure import GUIDE_ARRAYS
@@ -80,7 +80,7 @@ def checks() -> str:
         words = (ast.get_docstring(ast.parse(inspect.getsource(module))) or "").splitlines()[0]
         title = re.sub("^Checks (of the |of |that )", "", words.rstrip("."))
         parts.append(f"### {title[:1].upper()}{title[1:]}")
-        parts += [_check(each) for each in CHECKS if each in vars(module).values()]
+        parts += [_check(each) for each in declared_in(module)]
     return "\n\n".join(parts)
 
 

@@ -29,7 +29,6 @@ In the order of use:
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
 | `worker_processes` | processes with one BLAS thread and a safe import path    |                  |
 | `verdict`          | meaning of status, utilisation, verdict, governing       | utilisation      |
-| `value_groups`     | dotted keys on which checks rest, in groups              |                  |
 | `crossing`         | least value that passes, between one that fails and more |                  |
 | `formula`          | formula texts of checks: read, evaluated, written        | SI               |
 | `levers`           | levers of a check: keys, direction, range                | factor           |

@@ -200,9 +200,7 @@ class Machine(Displayed):
         shaft = self.camshaft
         described: Mapping[str, object] = {
             **self.follower.parts,
-            "spring": self.spring.design,
-            "gas_spring": self.spring.gas,
-            "torsion_spring": self.spring.torsion,
+            **self.spring.parts,
             "guides": self.guides,
             "camshaft": shaft,
             "camshaft_bearings": shaft and (shaft.bearing_rating or shaft.bearing_static_rating),

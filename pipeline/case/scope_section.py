@@ -16,10 +16,11 @@ from camwright.pipeline.base.quantities import Known
 from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.section import Section, Text
 from camwright.pipeline.case.toml_text import Tables, TomlValue
+from camwright.pipeline.follower.spring_kinds import SHAPES, SpringPart
 from camwright.pipeline.records.run_summary import ScopeRecord
 
 PartName = Literal[
-    "roller_bearing", "pin", "fork", "spring", "gas_spring", "torsion_spring", "guides",
+    "roller_bearing", "pin", "fork", "spring", SpringPart, "guides",
     "camshaft", "camshaft_bearings", "key", "gear",
 ]  # fmt: skip
 Subject = Literal["stem", "bore", "line_ends", "friction", "requirements"]
@@ -30,8 +31,7 @@ PART_WORDS: dict[PartName, str] = {
     "pin": "pin of the roller",
     "fork": "fork of the roller",
     "spring": "spring design",
-    "gas_spring": "gas spring",
-    "torsion_spring": "torsion spring",
+    **{each.part: each.part.replace("_", " ") for each in SHAPES.values()},
     "guides": "guides",
     "camshaft": "camshaft",
     "camshaft_bearings": "camshaft bearings",
@@ -56,8 +56,7 @@ _KEYS: dict[ScopeName, tuple[str, ...]] = {
     "pin": ("roller.pin",),
     "fork": ("roller.fork",),
     "spring": ("spring.design", "spring.travel_max"),
-    "gas_spring": ("spring.gas",),
-    "torsion_spring": ("spring.torsion",),
+    **{each.part: (each.table,) for each in SHAPES.values()},
     "guides": ("guides", "follower.overhang_at_max_lift", "follower.anti_rotation"),
     "camshaft": ("camshaft",),
     "key": ("cam.keyway", "cam.key"),

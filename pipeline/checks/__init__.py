@@ -7,6 +7,7 @@ In the order of the calculation:
 | `extremes`              | extremes over load cases and cam angles    | cam angle, rad           |
 | `check`                 | declaration, demand and limit, verdict     | utilisation              |
 | `demands`               | formulas common to checks and synthesis    | SI                       |
+| `value_groups`          | groups of keys on which checks rest        |                          |
 | `missing_keys`          | keys that the case lacks                   |                          |
 | `part_data`             | data that a described part lacks           |                          |
 | `torque_balance`        | ripple reduction, energy balance           | T, N m; E, J             |

@@ -13,7 +13,6 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest, first_least
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
@@ -29,6 +28,7 @@ from camwright.pipeline.case.limits import (
     SHAFT_YIELD_SAFETY,
 )
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import (
     BY_DUTY,
     LASTING,

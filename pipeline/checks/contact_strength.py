@@ -19,7 +19,6 @@ from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_least
 from camwright.pipeline.base import disk_cache, levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Endurance, Material
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
@@ -34,6 +33,7 @@ from camwright.pipeline.case.limits import (
     YIELD_SAFETY,
 )
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import LASTING, NONE, STATED, Allowed, Demand, Kept, check
 from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.extremes import Extreme, cycle_of, greatest, row_of

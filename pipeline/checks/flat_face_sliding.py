@@ -10,10 +10,10 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SURFACE_TEMPERATURE
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import STATED, Demand, Kept, check, of_key
 from camwright.pipeline.checks.contact_strength import line_pressure
 from camwright.pipeline.checks.extremes import cycle_of, worst_case

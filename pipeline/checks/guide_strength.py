@@ -13,12 +13,12 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import (
     NONE,
     STATED,

@@ -8,11 +8,11 @@ import numpy as np
 
 from camwright.geometry.arrays import Value
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import (
     LASTING,
     STATED,

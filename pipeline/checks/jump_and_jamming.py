@@ -11,7 +11,6 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.extrema import first_greatest, first_least, sampled_least
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown, shown_up
 from camwright.pipeline.case.limits import (
@@ -23,6 +22,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import (
     FACTOR_MAX,
     SPEED_RANGE,

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array, Value, Values
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
@@ -24,6 +23,7 @@ from camwright.pipeline.case.limits import (
     KEYWAY_SAFETY,
     SHAFT_RELIABILITY,
 )
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import (
     NONE,
     STATED,

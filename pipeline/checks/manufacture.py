@@ -9,7 +9,6 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
@@ -19,6 +18,7 @@ from camwright.pipeline.case.limits import (
     WAVINESS,
 )
 from camwright.pipeline.checks import demands
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.cam_shape import contour_radius
 from camwright.pipeline.checks.check import FACTOR_MAX, NONE, RIPPLE, STATED, Demand, Kept, check
 from camwright.pipeline.checks.extremes import Extreme, cycle_of

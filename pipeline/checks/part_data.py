@@ -12,6 +12,7 @@ from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.case.scope_section import PART_WORDS, PartName
 from camwright.pipeline.checks.check import NONE, STATED, Declaration, Demand, Page, check
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.follower.spring_kinds import SHAPES
 
 Tables = Mapping[str, Part | Follower | None]
 """Tables of a case that describe a part, by their keys; None: not in the case."""
@@ -22,7 +23,7 @@ def _data(
     tables: Callable[[Case], Tables],
     needs: Literal["", "roller", "face"] = "",
     described_by: tuple[str, ...] = (),
-    spring: Literal["", "coil", "gas", "torsion"] = "",
+    spring: str = "",
     *,
     page: Page,
 ) -> Declaration:
@@ -74,8 +75,9 @@ def _spring(case: Case) -> Tables:
     return {"spring": case.spring, "spring.design": case.spring.design}
 
 
-def _gas_spring(case: Case) -> Tables:
-    return {"spring": case.spring, "spring.gas": case.spring.gas}
+def _shaped_spring(case: Case) -> Tables:
+    shape = case.spring.shape
+    return {"spring": case.spring, **({} if shape is None else {shape.table: shape})}
 
 
 def _guides(case: Case) -> Tables:
@@ -120,20 +122,11 @@ data_spring = _data(
     spring="coil",
     page="Spring",
 )
-data_gas_spring = _data(
-    "gas_spring",
-    _gas_spring,
-    described_by=("spring.gas",),
-    spring="gas",
-    page="Spring",
+data_shaped_springs = tuple(
+    _data(each.part, _shaped_spring, described_by=(each.table,), spring=kind, page="Spring")
+    for kind, each in SHAPES.items()
 )
-data_torsion_spring = _data(
-    "torsion_spring",
-    lambda case: {"spring": case.spring, "spring.torsion": case.spring.torsion},
-    described_by=("spring.torsion",),
-    spring="torsion",
-    page="Spring",
-)
+"""Of the springs that are not linear, by their kinds."""
 data_guides = _data("guides", _guides, page="Guides")
 data_camshaft = _data(
     "camshaft",

@@ -11,7 +11,6 @@ from camwright.geometry.arrays import Array, Value, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
@@ -25,6 +24,7 @@ from camwright.pipeline.case.limits import (
     UNBALANCE,
     Limit,
 )
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check, of_key
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, normal_force
 from camwright.pipeline.checks.extremes import cycle_of, worst_case

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copyreg
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import ModuleType
 
@@ -68,9 +68,15 @@ MODULES: tuple[ModuleType, ...] = (
 )
 """Modules of checks, in the order of the calculation; each check declared in one is listed."""
 
-CHECKS: tuple[Declaration, ...] = tuple(
-    each for module in MODULES for each in vars(module).values() if isinstance(each, Declaration)
-)
+
+def declared_in(module: ModuleType) -> Iterator[Declaration]:
+    """Checks of a module in their order: by a name of their own, or one of a tuple of them."""
+    for value in vars(module).values():
+        several = value if isinstance(value, tuple) else (value,)
+        yield from (each for each in several if isinstance(each, Declaration))
+
+
+CHECKS: tuple[Declaration, ...] = tuple(each for module in MODULES for each in declared_in(module))
 OF_THE_DESIGN = tuple(each.id for each in CHECKS if not each.evidence)
 """Ids of the checks of the design."""
 FORECAST = tuple(

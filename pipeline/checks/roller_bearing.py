@@ -16,7 +16,6 @@ import scipy
 from camwright.geometry.arrays import FULL_TURN, Array, Value, Values
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import factor, shown
 from camwright.pipeline.case.limits import (
@@ -32,6 +31,7 @@ from camwright.pipeline.case.limits import (
     VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import (
     BY_DUTY,
     LASTING,

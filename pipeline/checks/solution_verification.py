@@ -14,7 +14,6 @@ from camwright.meshes.mesh_quality import (
     LEAST_SCALED_JACOBIAN,
     Quality,
 )
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -24,6 +23,7 @@ from camwright.pipeline.case.limits import (
     MESH_UNCERTAINTY,
     Limit,
 )
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, least
 from camwright.pipeline.contact.bore_stress import BoreStress

@@ -16,12 +16,12 @@ from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.cam_shape import lift
 from camwright.pipeline.checks.check import (
     NONE,

@@ -13,7 +13,6 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.hardness_rules import (
     BUCKINGHAM_MAX,
     buckingham,
@@ -32,6 +31,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Demand, Kept, check, of_key
 from camwright.pipeline.checks.contact_strength import endurance_of, of_elements
 from camwright.pipeline.checks.extremes import cycle_of, greatest, least, worst_case

@@ -9,7 +9,6 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import first_least
 from camwright.pipeline.base import levers
-from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.cooling import housing_area
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
@@ -22,6 +21,7 @@ from camwright.pipeline.case.limits import (
     TORQUE_REDUCTION,
 )
 from camwright.pipeline.checks import demands
+from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import FIRED, RIPPLE, STATED, STEADY, Demand, check
 from camwright.pipeline.checks.extremes import (
     Extreme,

@@ -32,8 +32,10 @@ from camwright.pipeline.base.quantities import (
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.spring_kinds import (
+    SHAPES,
     CoilDiameter,
     GasSpring,
+    SpringKind,
     SpringShape,
     TorsionSpring,
     WireDiameter,
@@ -520,7 +522,7 @@ class Spring(Part):
         }
     )
 
-    kind: Annotated[Literal["coil", "gas", "torsion"] | None, Known("own choice", "coil")] = None
+    kind: Annotated[Literal["coil", SpringKind] | None, Known("own choice", "coil")] = None
     """coil; or gas or torsion with the table of its name, from which rate and preload follow"""
     rate: Annotated[Rate, Known("spring catalogue or drawing", "24.2 kN/m")]
     """force per deflection"""
@@ -548,7 +550,7 @@ class Spring(Part):
     def __post_init__(self) -> None:
         super().__post_init__()
         kind = self.kind or "coil"
-        for name, owner in (("gas", "gas"), ("torsion", "torsion"), ("design", "coil")):
+        for name, owner in (*zip(SHAPES, SHAPES, strict=True), ("design", "coil")):
             stated = getattr(self, name) is not None
             if stated and kind != owner:
                 raise InputError(
@@ -560,7 +562,15 @@ class Spring(Part):
     @property
     def shape(self) -> SpringShape | None:
         """Rise of the force over the lift; None: linear."""
-        return self.gas or self.torsion
+        kind = self.kind or "coil"
+        own: SpringShape | None = getattr(self, kind) if kind in SHAPES else None
+        return own
+
+    @property
+    def parts(self) -> dict[str, Part | None]:
+        """Tables of the spring by the names of its parts in `[scope]`."""
+        parts: dict[str, Part | None] = {"spring": self.design}
+        return parts | {each.part: getattr(self, kind) for kind, each in SHAPES.items()}
 
     @property
     def derived(self) -> tuple[str, ...]:
@@ -569,7 +579,7 @@ class Spring(Part):
 
     def with_derived(self) -> Spring:
         """Spring with rate and preload of its gas or torsion spring."""
-        shape = self.gas or self.torsion
+        shape = self.shape
         return self if shape is None else replace(self, rate=shape.rate, preload=shape.preload)
 
     def force(self, lift: Array) -> Array:

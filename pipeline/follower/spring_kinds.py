@@ -8,10 +8,11 @@ rho. All functions take complex numbers: a complex step gives their derivative t
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Annotated, ClassVar, NamedTuple, Protocol
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -53,17 +54,39 @@ class Rise(NamedTuple):
     travel_d2: Array
 
 
-class SpringShape(Protocol):
-    """Interface of a nonlinear spring: rise of its force over the lift."""
+SpringKind = Literal["gas", "torsion"]
+"""Kinds of spring that are not linear, by `spring.kind` and the table of their name."""
+SpringPart = Literal["gas_spring", "torsion_spring"]
+"""What `[scope]` calls them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpringShape(Part, ABC):
+    """Interface of a nonlinear spring: its table in a case, the rise of its force over the lift.
+
+    part: its name in `[scope]`
+    """
+
+    part: ClassVar[SpringPart]
 
     @property
+    @abstractmethod
+    def preload(self) -> float:
+        """Force at zero lift, N."""
+
+    @property
+    @abstractmethod
+    def rate(self) -> float:
+        """Slope of the force at zero lift, N/m."""
+
+    @property
+    @abstractmethod
     def reach(self) -> float:
         """Lift up to which the law holds, m."""
-        ...
 
+    @abstractmethod
     def within(self, lift: Array) -> Rise:
         """Rise at a lift (...) up to the reach, m."""
-        ...
 
 
 def rise(shape: SpringShape, lift: Array) -> Rise:
@@ -139,7 +162,7 @@ CoilDiameter = Annotated[Length, Meaning("mean diameter of the coils")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class GasSpring(Part):
+class GasSpring(SpringShape):
     """Gas spring: a piston of an area on a gas volume.
 
     At the temperature in operation the pressure is higher. Limits are those of the maker, each of a
@@ -152,6 +175,7 @@ class GasSpring(Part):
     """
 
     table: ClassVar[str] = "spring.gas"
+    part: ClassVar[SpringPart] = "gas_spring"
     resolved: ClassVar[Mapping[str, Resolved]] = card_of(
         "card of the gas spring, which fills the keys left out; it states no pressure",
         "gas_springs.toml",
@@ -286,7 +310,7 @@ _ISOTHERMAL = 1e-9  # exponent less 1, below which the compression is isothermal
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorsionSpring(Part):
+class TorsionSpring(SpringShape):
     """Torsion spring whose arm presses on the follower through a pin that slides across its axis.
 
     Wire, mean diameter, strength and range of the bending stress are for the checks.
@@ -302,6 +326,7 @@ class TorsionSpring(Part):
     """
 
     table: ClassVar[str] = "spring.torsion"
+    part: ClassVar[SpringPart] = "torsion_spring"
 
     moment: Annotated[float, In("N m", above=0, at_most=1e6), Known("spring drawing", "12 N m")]
     """moment at zero lift"""
@@ -397,7 +422,7 @@ class TorsionSpring(Part):
         return np.asarray(curved * 32.0 * np.asarray(moment) / (np.pi * self.wire_diameter**3))
 
 
-SHAPES: Mapping[str, type[GasSpring] | type[TorsionSpring]] = MappingProxyType(
+SHAPES: Mapping[str, type[SpringShape]] = MappingProxyType(
     {"gas": GasSpring, "torsion": TorsionSpring}
 )
 """Tables of the kinds of spring that are not linear, by `spring.kind`."""

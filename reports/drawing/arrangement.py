@@ -31,7 +31,7 @@ from camwright.reports.drawing.drawing_shapes import (
     rectangle,
     segment,
 )
-from camwright.reports.drawing.spring_shapes import Coil, Spring
+from camwright.reports.drawing.spring_shapes import Coil, DrawnSpring
 
 _EDGE, _THIN = 0.45, 0.22  # mm, of lines on a mechanism `_WHOLE` high
 _WHOLE = 260.0
@@ -100,7 +100,7 @@ class DrawnMechanism:
     stem: float
     stem_end: float
     guides: tuple[DrawnBush, DrawnBush]
-    spring: Spring
+    spring: DrawnSpring
     seat: float
     sizes: MechanismSizes
     counterweight: DrawnSector | None

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import cycle, pairwise
 from math import asin, cos, pi, sin, sqrt
+from types import MappingProxyType
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -22,6 +25,26 @@ from camwright.reports.drawing.drawing_shapes import (
 _EDGE = 0.35  # mm, of a drawn part
 _WIRE_EDGE = 0.06  # of the wire
 _ROD_SHARE, _WALL_SHARE = 0.45, 0.1  # of the bore of a gas spring
+
+
+class CaseLengths(Protocol):
+    """Lengths that a case states, such as those of a `SheetTurn`."""
+
+    def length(self, *keys: str, unit: str = "mm") -> float | None:
+        """Length at a key in a unit; None where it is not stated."""
+        ...
+
+
+class SpringPlaces(NamedTuple):
+    """Heights at zero lift where a spring can stand, stroke and diameter of the stem, mm.
+
+    between: on the stem above guide A; end: on the end of the stem
+    """
+
+    between: float
+    end: float
+    stroke: float
+    stem: float
 
 
 @dataclass(frozen=True)
@@ -101,6 +124,14 @@ class DrawnGasSpring:
         inside = min(max(volume / area, 1.2 * stroke), 4.0 * stroke)
         return cls(bore, seat, stroke, inside + 4.0 * _WALL_SHARE * bore)
 
+    @classmethod
+    def drawn(cls, case: CaseLengths, at: SpringPlaces) -> DrawnGasSpring:
+        """As the case states it, on the end of the stem."""
+        area = case.length("spring", "gas", "area", unit="mm^2") or at.stem**2
+        volume = case.length("spring", "gas", "volume", unit="cm^3")
+        held = at.stroke * area if volume is None else 1e3 * volume
+        return cls.of(area, held, at.end, at.stroke)
+
     @property
     def reach(self) -> float:
         """Half of the outer diameter, mm."""
@@ -150,6 +181,15 @@ class Torsion:
     wire: float
     seat: float
 
+    @classmethod
+    def drawn(cls, case: CaseLengths, at: SpringPlaces) -> Torsion:
+        """As the case states it, with its pin between the guides."""
+        arm = case.length("spring", "torsion", "arm") or 2.0 * at.stroke
+        raised = case.length("spring", "torsion", "arm_angle", unit="rad") or 0.0
+        diameter = case.length("spring", "torsion", "mean_diameter") or 0.4 * arm
+        wire = case.length("spring", "torsion", "wire_diameter") or 0.15 * diameter
+        return cls(arm, raised, diameter, wire, at.between)
+
     @property
     def reach(self) -> float:
         """Distance of the far side of the coil from the follower axis, mm."""
@@ -192,4 +232,21 @@ class Torsion:
         )
 
 
-Spring = Coil | DrawnGasSpring | Torsion
+class DrawnSpring(Protocol):
+    """A spring of any kind; `seat`, `top` and `reach` in mm."""
+
+    @property
+    def seat(self) -> float: ...
+    @property
+    def top(self) -> float: ...
+    @property
+    def reach(self) -> float: ...
+    def groups(
+        self, axis: float, lift: float
+    ) -> tuple[tuple[ShapeGroup, ...], tuple[ShapeGroup, ...]]: ...
+
+
+DRAWN: Mapping[str, Callable[[CaseLengths, SpringPlaces], DrawnSpring]] = MappingProxyType(
+    {"gas": DrawnGasSpring.drawn, "torsion": Torsion.drawn}
+)
+"""Springs that are no coils, by `spring.kind`."""

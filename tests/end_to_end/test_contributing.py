@@ -1,4 +1,7 @@
-"""docs/contributing.md: its example of a check is added to a copy of the program and works."""
+"""docs/contributing.md: its examples are added to a copy of the program and work.
+
+A check in two files, a motion law in one, a kind of spring in five.
+"""
 
 from __future__ import annotations
 
@@ -26,6 +29,13 @@ from camwright.pipeline.preview import preview_case
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
 LIMITS, SHAPE = ROOT / "pipeline" / "case" / "limits.py", ROOT / "pipeline/checks/cam_shape.py"
+LAWS = ROOT / "geometry/motion_laws.py"
+KINDS, SPRING = (ROOT / f"pipeline/follower/{name}.py" for name in ("spring_kinds", "spring"))
+STRENGTH, DRAWN, MISSING = (
+    ROOT / f"{name}.py"
+    for name in ("pipeline/checks/spring_strength", "reports/drawing/spring_shapes",
+                 "pipeline/base/missing_kinds")
+)  # fmt: skip
 LIMIT = 120.0  # mm/rad^3; the cam of the small machine has 190 without it
 
 
@@ -48,25 +58,99 @@ def mirror(source: Path, copy: Path, changed: set[Path]) -> None:
             (copy / each.name).symlink_to(each)
 
 
+def edited(file: Path, *changes: tuple[str, str], added: str = "") -> tuple[Path, str]:
+    """A file with places of it replaced, each once, and more at its end."""
+    text = file.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return file, f"{text}\n\n{added}" if added else text
+
+
+def before(place: str, added: str) -> tuple[str, str]:
+    return place, f"{added}{place}"
+
+
+def with_check() -> dict[Path, str]:
+    """Files of the example of a check."""
+    row, declared, _ = fragments("A check with a limit")
+    names = "from camwright.pipeline.case.limits import ("
+    return dict((
+        edited(LIMITS, before("\nLIMITS: Mapping", f"\n{row}")),
+        edited(SHAPE, (names, f"{names}LIFT_JERK, "), added=declared),
+    ))  # fmt: skip
+
+
+def with_law() -> dict[Path, str]:
+    """File of the example of a motion law."""
+    law, _ = fragments("A motion law")
+    place = '    Law("harmonic"'
+    return dict((edited(LAWS, before(place, f"{textwrap.indent(law.rstrip(), '    ')},\n")),))
+
+
+def with_spring() -> dict[Path, str]:
+    """Files of the example of a kind of spring."""
+    kind, table, declared, read, picture = fragments("A kind of spring")
+    one = re.search(r"    MissingKind\(\n        \"a disc .*?\n    \),\n",
+                    MISSING.read_text(encoding="utf-8"), re.DOTALL)  # fmt: skip
+    assert one is not None
+    return dict((
+        edited(
+            KINDS,
+            ('SpringKind = Literal["gas"', 'SpringKind = Literal["disc", "gas"'),
+            ('SpringPart = Literal["gas', 'SpringPart = Literal["disc_spring", "gas'),
+            ('{"gas": GasSpring', '{"disc": DiscSpring, "gas": GasSpring'),
+            before("SHAPES: Mapping", f"{kind}\n\n"),
+        ),
+        edited(
+            SPRING,
+            before("    SpringKind,\n", "    DiscSpring,\n"),
+            before("    torsion: Annotated[", textwrap.indent(table, "    ")),
+        ),
+        edited(
+            STRENGTH,
+            before("    GasSpring,\n", "    DiscSpring,\n"),
+            added=f"{read}\n\n{declared}",
+        ),
+        edited(
+            DRAWN,
+            ('{"gas": Drawn', '{"disc": DrawnDiscs.drawn, "gas": Drawn'),
+            before("class DrawnSpring", f"{picture}\n\n"),
+        ),
+        (MISSING, MISSING.read_text(encoding="utf-8").replace(one.group(), "")),
+    ))  # fmt: skip
+
+
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with a copy of the program to which the example of a check is added, in two files."""
+    """Folder with a copy of the program to which the examples are added."""
     folder = tmp_path_factory.mktemp("program")
     package = folder / "camwright"
-    mirror(ROOT / "pipeline", package / "pipeline", {LIMITS, SHAPE})
-    for name in ("geometry", "meshes", "reports"):
-        (package / name).symlink_to(ROOT / name)
+    changed = with_check() | with_law() | with_spring()
+    for name in ("geometry", "meshes", "pipeline", "reports"):
+        mirror(ROOT / name, package / name, set(changed))
     for name in ("__init__.py", "__main__.py"):
         (package / name).symlink_to(ROOT / "src" / "camwright" / name)
-    row, declared, _ = fragments("A check with a limit")
-    text, rows = LIMITS.read_text(encoding="utf-8"), "\nLIMITS: Mapping"
-    assert text.count(rows) == 1
-    (package / "pipeline/case/limits.py").write_text(text.replace(rows, f"\n{row}{rows}"))
-    text, names = SHAPE.read_text(encoding="utf-8"), "from camwright.pipeline.case.limits import ("
-    assert text.count(names) == 1
-    text = f"{text.replace(names, f'{names}LIFT_JERK, ')}\n\n{declared}"
-    (package / "pipeline/checks/cam_shape.py").write_text(text)
+    for file, text in changed.items():
+        (package / file.relative_to(ROOT)).write_text(text, encoding="utf-8")
     return folder
+
+
+def test_the_files_of_the_page_are_few() -> None:
+    assert [len(each()) for each in (with_check, with_law, with_spring)] == [2, 1, 5]
+
+
+def ran(program: Path, folder: Path, script: str) -> str:
+    """What a script prints that uses the copy of the program in a folder."""
+    ended = subprocess.run(
+        [sys.executable, "-P", "-c", f"import sys; sys.path.insert(0, {str(program)!r})\n{script}"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
 
 
 USED = """
@@ -120,16 +204,9 @@ def used(program: Path, tmp_path_factory: pytest.TempPathFactory) -> SimpleNames
     text = text.replace("positions = 72 ", "positions = 36 ")
     text = text.replace("[limits]\n", limits)
     (folder / "case.toml").write_text(text, encoding="utf-8")
-    ended = subprocess.run(
-        [sys.executable, "-P", "-c", f"import sys; sys.path.insert(0, {str(program)!r})\n{USED}"],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert ended.returncode == 0, ended.stderr
+    said = ran(program, folder, USED)
     page = (folder / "run" / "8_report.html").read_text(encoding="utf-8")
-    return SimpleNamespace(page=page, **json.loads(ended.stdout))
+    return SimpleNamespace(page=page, **json.loads(said))
 
 
 def test_the_check_of_the_page_is_judged_and_kept_by_the_synthesis(used: Any) -> None:
@@ -155,6 +232,93 @@ def test_the_check_of_the_page_is_shown_and_explained(used: Any) -> None:
 
 def test_the_entry_of_the_page_is_python() -> None:
     assert ast.parse(fragments("A check with a limit")[2])
+
+
+KIND = """kind = "disc"
+
+[spring.disc]
+discs = 60
+outer_diameter = "31.5 mm"
+inner_diameter = "16.3 mm"
+thickness = "1 mm"
+cone_height = "0.9 mm"
+deflection = "0.2 mm"
+stress_limit = "1000 MPa"
+source = { text = "recalled", confirmed = false }
+"""
+USED_KINDS = """
+import json
+import numpy as np
+from pathlib import Path
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.screening.design_screening import screen_designs
+from camwright.pipeline.smoothing.allowables import travel_limits
+
+case = read_case(Path("discs.toml"))
+trial = preview_case(case, corners=False)
+checks = {each.id: each for each in trial.checks}
+spring, top = case.spring, float(trial.contour.lift.highest.value)
+screened = screen_designs(case, {"cam.prime_radius": [case.cam.prime_radius]})
+lawful = preview_case(read_case(Path("law.toml")), corners=False)
+print(json.dumps({
+    "stress": in_unit(checks["disc_stress"].demand, "MPa"),
+    "lift": top,
+    "data": checks["data_disc_spring"].missing,
+    "confirm": checks["jump"].unconfirmed,
+    "rises": [float(spring.force(np.array(each))) for each in (0.0, 0.5 * top, top)],
+    "energy": spring.energy(top),
+    "screened": list(screened["disc_stress.demand"]),
+    "allowed": travel_limits(case)["disc_stress"],
+    "highest": float(lawful.contour.lift.highest.value),
+}))
+"""
+
+
+@pytest.fixture(scope="module")
+def kinds(program: Path, tmp_path_factory: pytest.TempPathFactory) -> SimpleNamespace:
+    """What the copy says of a machine on disc springs, and of a cam by the law of the page."""
+    folder = tmp_path_factory.mktemp("kinds")
+    text = small_machine("discs").replace('rate = "24.2 kN/m"\n', "")
+    preload = 'preload = "400 N"                    # at the smallest cam radius\n'
+    assert preload in text
+    (folder / "discs.toml").write_text(text.replace(preload, KIND), encoding="utf-8")
+    drawn = (ROOT / "cases/papers/petrescu_b1.toml").read_text(encoding="utf-8")
+    assert 'law = "harmonic"' in drawn
+    lawful = drawn.replace('law = "harmonic"', 'law = "polynomial_56789"')
+    (folder / "law.toml").write_text(lawful, encoding="utf-8")
+    return SimpleNamespace(**json.loads(ran(program, folder, USED_KINDS)))
+
+
+def test_the_spring_of_the_page_is_judged_screened_and_kept(kinds: Any) -> None:
+    """By the formula of Almen and Laszlo in its usual form."""
+    ratio = 31.5 / 16.3
+    own = ((ratio - 1.0) / ratio) ** 2 / (ratio + 1.0) * (ratio - 1.0)
+    own /= np.pi * (1.0 - 2.0 * (ratio - 1.0) / (ratio + 1.0) / np.log(ratio))
+    unit = 4.0 * 206e9 / 0.91 / (own * 0.0315**2)  # t = 1 mm
+
+    def force(lift: float) -> float:
+        x, h = 0.2e-3 + lift / 60.0, 0.9e-3
+        return float(unit * 1e-3 * x * ((h - x) * (h - 0.5 * x) + 1e-6))
+
+    rises = [force(each) for each in (0.0, 0.5 * kinds.lift, kinds.lift)]
+    np.testing.assert_allclose(kinds.rises, rises, rtol=1e-9)
+    assert kinds.energy == pytest.approx(
+        kinds.lift * (rises[0] + 4.0 * rises[1] + rises[2]) / 6.0, rel=1e-9
+    )  # a cubic: Simpson's rule is exact
+    stress = 3.0 / np.pi * unit * 1e-3 * (0.2e-3 + kinds.lift / 60.0) * 1e-6
+    assert kinds.stress == pytest.approx(stress, rel=1e-9)
+    assert kinds.screened[0] == pytest.approx(stress, rel=1e-4)
+    assert kinds.allowed == pytest.approx(60.0 * (1000e9 / (3.0 / np.pi * unit) - 0.2e-3), rel=1e-9)
+    assert kinds.data == ["spring.travel_max"]
+    assert "spring.disc.thickness" in kinds.confirm
+
+
+def test_the_law_of_the_page_lifts_a_cam(kinds: Any) -> None:
+    drawn = (ROOT / "cases/papers/petrescu_b1.toml").read_text(encoding="utf-8")
+    (stroke,) = re.findall(r'stroke = "([\d.]+) mm"', drawn)[:1]
+    assert kinds.highest == pytest.approx(1e-3 * float(stroke), rel=1e-6)
 
 
 def test_the_laws_of_the_page_are_laws() -> None:

@@ -343,10 +343,9 @@ NAME_CHECKS = {
 def test_the_facts_of_a_check_stand_in_its_declaration() -> None:
     """No other module gains a table by the ids of checks; one that loses it leaves the list."""
     from camwright.pipeline.checks import registry
-    from camwright.pipeline.checks.check import Declaration
 
     home = {each.id: _own(module.__name__) for module in (registry, *registry.MODULES)
-            for each in vars(module).values() if isinstance(each, Declaration)}  # fmt: skip
+            for each in registry.declared_in(module)}  # fmt: skip
     naming = {
         name
         for name, path in modules().items()
@@ -420,9 +419,7 @@ ASK_FOR_A_KIND = {
         "reports.drawing.arrangement": _DRAWS,
     },
     SPRINGS: {
-        "pipeline.follower.spring": "has a table for each kind",
         "pipeline.checks.spring_strength": "narrows the spring to the kind that a measure needs",
-        "reports.arrangement_data": _DRAWS,
         "reports.drawing.arrangement": _DRAWS,
         "reports.part_figures": _DRAWS,
     },

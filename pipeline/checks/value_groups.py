@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-SPRING = ("spring.rate", "spring.preload", "spring.gas.*", "spring.torsion.*")
+from camwright.pipeline.follower.spring_kinds import SHAPES
+
+SPRING = ("spring.rate", "spring.preload", *(f"{each.table}.*" for each in SHAPES.values()))
 MOTION = (*SPRING, "follower.mass", "limits.overspeed")
 LOADS = (
     *MOTION,
