@@ -22,7 +22,7 @@ from camwright.reports.figures import (
     circle,
 )
 from camwright.reports.machine_words import MachineWords
-from camwright.reports.part_figures import PART_FIGURES
+from camwright.reports.part_figures import PART_FIGURES, endurance
 from camwright.reports.report_tables import isolated, number, quantity, words
 from camwright.reports.sheet_turn import SheetTurn, angle_figure, both_ways, curves_of
 
@@ -297,8 +297,7 @@ def _radius_span(curves: Sequence[Curve]) -> tuple[float, float]:
 
 
 def _pressure(turn: SheetTurn) -> Figure | None:
-    limits = turn.limit("endurance", "MPa", "contact_pressure")
-    limits += turn.limit("shakedown", "MPa", "shakedown")
+    limits = (*endurance(turn), *turn.limit("shakedown", "MPa", "shakedown"))
     curves = curves_of(
         turn, ("p0_fe_MPa", "finite elements"), ("p0_hertz_MPa", "Hertz"), dashed=(1,)
     )  # fmt: skip

@@ -20,6 +20,11 @@ _PROMINENCE = 0.1
 _LOST = LimitLine(0.0, "contact lost at")
 
 
+def endurance(turn: SheetTurn) -> tuple[LimitLine, ...]:
+    """Limit of the contact pressure."""
+    return turn.limit("endurance", "MPa", "contact_pressure")
+
+
 def _forces(turn: SheetTurn) -> Figure | None:
     curves = curves_of(
         turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
@@ -115,9 +120,7 @@ def _load_cases(turn: SheetTurn) -> Figure | None:
     ended = " Loads of a case in which the follower leaves the cam or locks do not occur."
     panels = (
         bars("normal force", "N", ("normal_force_N", ""), limits=_force_limits(turn), notes=names),
-        bars(
-            "p0", "MPa", (pressure, ""), limits=turn.limit("endurance", "MPa", "contact_pressure")
-        ),
+        bars("p0", "MPa", (pressure, ""), limits=endurance(turn)),
         bars("guides", "N", ("guide_reaction_A_N", "guide A"), ("guide_reaction_B_N", "guide B")),
         bars("cam torque", "N m", ("cam_torque_Nm", "")),
     )

@@ -588,7 +588,7 @@ def _tooth_bending(
 
 
 gear_bending = _tooth_bending(
-    "gear_bending",
+    TOOTH_TORQUE,
     "Tooth root bending stress of the driving gear",
     "F K_A/(b m pi y) <= 0.7 s_F / S; F = |T + drag|/r, y = 0.154 - 0.912/z: Lewis, s_F:"
     " camshaft.gear.bending_limit, 0.7: reversed torque, S: limits.gear_bending_safety",

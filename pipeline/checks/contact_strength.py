@@ -385,7 +385,7 @@ def shakedown_factors(friction: float, poisson: float) -> tuple[Array, Array]:
 
 contact_pressure = check(
     CONTACT_SAFETY,
-    id="contact_pressure",
+    id=PRESSURE,
     title="Peak contact pressure vs. endurance limit",
     unit="MPa",
     sense="at_most",

@@ -20,7 +20,7 @@ CONTACT_FLOOR = 0.01
 """Least normal force over the least spring force in the quotients by the normal force."""
 NORMAL_FORCE, CAM_TORQUE, TOOTH_TORQUE = "roller_static", "key_pressure", "gear_bending"
 PRESSURE = "contact_pressure"
-"""Groups of checks of one measure, which are one constraint of the synthesis; see `Kept`."""
+"""Groups of checks of one measure, which are one constraint of the synthesis, by its check."""
 _DEFAULT_FORCE_MARGIN = 0.2
 """Contact over least spring force below which quotients rise linearly, if no margin is stated."""
 

@@ -202,7 +202,7 @@ def _shaft_beside(case: Case) -> _Mate | None:
 
 _DEPTH = {"t1": "cam.key_data.shaft_depth [mm]", "s": "cam.key_data.chamfer [mm]"}
 key_pressure = _key_check(
-    "key_pressure",
+    CAM_TORQUE,
     "Key flank pressure on the cam",
     "p = 2 K_A T/(d l_tr (h - t1 - s)) <= f S R_e; T: greatest cam torque, d: bore"
     " diameter, l_tr: bearing length, h, t1, s: height, shaft depth and chamfer of the key, "

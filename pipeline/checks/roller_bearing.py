@@ -231,7 +231,7 @@ def _with_slope(demand: Demand, solution: Solution) -> Demand:
 
 roller_static = check(
     ROLLER_STATIC_SAFETY,
-    id="roller_static",
+    id=NORMAL_FORCE,
     title="Static safety factor of the roller bearing",
     method="static rating over the greatest normal force",
     lift_can_help=True,

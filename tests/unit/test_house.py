@@ -304,6 +304,7 @@ def test_units_are_converted_at_the_rim() -> None:
 
 
 _FREE, _COLUMN = "free variable of the synthesis", "column of the cycle"
+_GROUP = "group of checks, by the id of the one that is its constraint"
 _DRAWN = "limits in the figures of a run on disk, by the ids of its records"
 NAME_CHECKS = {
     "geometry.cam_size": "limit of a pitch curve",
@@ -311,7 +312,7 @@ NAME_CHECKS = {
     "pipeline.case.cards.substitution": _FREE,
     "pipeline.case.limits": "row of the table of limits",
     "pipeline.case.requirements_section": _FREE,
-    "pipeline.checks.demands": "group of checks, by the id of the one that is its constraint",
+    "pipeline.checks.demands": _GROUP,
     "pipeline.cycle.cycle": _COLUMN,
     "pipeline.cycle.guide_pressure": "array of the guides",
     "pipeline.cycle.part_loads": _COLUMN,
@@ -331,7 +332,7 @@ NAME_CHECKS = {
     "pipeline.studies.papers.figures_2015_valve": "word of a title",
     "pipeline.studies.papers.petrescu_2015": "figure of the record of a paper",
     "reports.analysis_sheet": _DRAWN,
-    "reports.arrangement_data": "limit by which the drawn spring is placed",
+    "reports.arrangement_data": _DRAWN,
     "reports.comparisons.redesign_page": "figure of the record of a point",
     "reports.part_figures": _DRAWN,
     "reports.picture_list": _DRAWN,
@@ -340,19 +341,36 @@ NAME_CHECKS = {
 """Modules in which the id of a check is a string besides its declaration, and what it names."""
 
 
-def test_the_facts_of_a_check_stand_in_its_declaration() -> None:
-    """No other module gains a table by the ids of checks; one that loses it leaves the list."""
+@cache
+def naming_checks() -> tuple[dict[str, str], dict[str, set[str]]]:
+    """Module that declares each check, by its id; modules in which the id is a string."""
     from camwright.pipeline.checks import registry
 
     home = {each.id: _own(module.__name__) for module in (registry, *registry.MODULES)
             for each in registry.declared_in(module)}  # fmt: skip
-    naming = {
-        name
-        for name, path in modules().items()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Constant) and home.get(node.value, name) != name
-    }
+    named: dict[str, set[str]] = {name: set() for name in home}
+    for module, path in modules().items():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant) and node.value in home:
+                named[node.value].add(module)
+    return home, named
+
+
+def test_the_facts_of_a_check_stand_in_its_declaration() -> None:
+    """No other module gains a table by the ids of checks; one that loses it leaves the list."""
+    home, named = naming_checks()
+    naming = {module for name, of in named.items() for module in of - {home[name]}}
     assert naming == set(NAME_CHECKS)
+
+
+def test_the_id_of_a_check_is_a_string_in_one_module_and_one_that_draws_it() -> None:
+    """Where the word names something else, it is no id."""
+    home, named = naming_checks()
+    of_ids = {module for module, what in NAME_CHECKS.items() if what in (_DRAWN, _GROUP)}
+    reports = {module for module, what in NAME_CHECKS.items() if what == _DRAWN}
+    several = {name: of & (of_ids | {home[name]}) for name, of in named.items()}
+    assert {name: of for name, of in several.items() if len(of - reports) > 1} == {}
+    assert {name: of for name, of in several.items() if len(of & reports) > 1} == {}
 
 
 class Kinds(NamedTuple):
