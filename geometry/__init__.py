@@ -5,8 +5,9 @@ In the order of the calculation:
 | module              | responsibility                              | symbol, unit                 |
 | ------------------- | ------------------------------------------- | ---------------------------- |
 | `errors`            | exceptions of the project                   |                              |
-| `display`           | a result in one line, as a table, a figure  |                              |
+| `display`           | a result in one line and as a table         |                              |
 | `arrays`            | read-only arrays, checks of input values    | theta, rad                   |
+| `figures`           | contents of a figure; drawn in a notebook   |                              |
 | `extrema`           | extremes of a periodic function             |                              |
 | `periodic_spline`   | periodic quintic (C4), cubic, and integral  |                              |
 | `monotone_cubic`    | cubic without extremes between its samples  |                              |

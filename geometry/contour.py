@@ -5,23 +5,21 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, positive, readonly, uniform_turn
-from camwright.geometry.display import Displayed, panels_of
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
+from camwright.geometry.figures import Curve, DrawnAxes, Figure, outline, outline_panel, plotted
 from camwright.geometry.follower_height import roller_height
 from camwright.geometry.follower_path import FollowerPath, Motion, cam_axes, reciprocal
 from camwright.geometry.interference import SecondContact, crossings, second_contact
 from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import PitchCurve, RollerMotion
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _OFFSET_TOLERANCE = 1e-14
 """Over the path's radius at zero lift: round-off in the coordinates of a contour point."""
@@ -307,24 +305,23 @@ class Contour(Displayed, ABC):
         """Length (n,) along the contour from angle 0, m."""
         return np.asarray(np.interp(theta, *self._lengths))
 
-    def plot(self) -> tuple[Axes, ...]:
+    def plot(self) -> DrawnAxes:
         """Contour in the cam frame: under a roller with pitch curve and prime circle, under a flat
         face with the base circle; see `Table.plot`."""
+        return plotted(self.figure())
+
+    def figure(self, *more: Curve) -> Figure:
+        """The figure of `plot` with further outlines, mm."""
         theta = np.linspace(0.0, FULL_TURN, _DRAWN)
-        x, y = 1e3 * self.points(theta)
-        (axes,) = panels_of(1, (5.0, 4.4))
-        axes.plot(x, y, label="contour")
+        curves = [outline(1e3 * self.points(theta), "contour")]
         if self.rolls:
-            x, y = 1e3 * self.pitch.points(theta)
-            axes.plot(x, y, "--", linewidth=0.8, label="pitch curve")
-        x, y = 1e3 * cam_axes(theta, np.asarray(self.pitch.radius_base), 0.0)
+            path = 1e3 * self.pitch.points(theta)
+            curves.append(outline(path, "pitch curve", "vermillion", "dashed"))
+        circle = 1e3 * cam_axes(theta, np.asarray(self.pitch.radius_base), 0.0)
         name = "prime circle" if self.rolls else "base circle"
-        axes.plot(x, y, ":", color="grey", linewidth=0.8, label=name)
-        axes.set_aspect("equal")
-        axes.set_xlabel("x, mm: cam angle zero")
-        axes.set_ylabel("y, mm")
-        axes.legend(fontsize="small")
-        return (axes,)
+        curves.append(outline(circle, name, "muted", "dotted"))
+        panel = outline_panel((*curves, *more), names=("x (along cam angle zero)", "y"))
+        return Figure("contour", "Contour", "", (panel,))
 
     @cached_property
     def _radius_max(self) -> Extremum:

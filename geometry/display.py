@@ -1,4 +1,4 @@
-"""Display of a result in an interpreter and a notebook: one line, table in HTML, figure."""
+"""Display of a result in an interpreter and a notebook: one line, table in HTML."""
 
 from __future__ import annotations
 
@@ -6,16 +6,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from html import escape
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 _LINE, _TEXT = 400, 120
 """Most characters of a line, and of a text in it."""
-_PANEL = (7.0, 2.4)  # inches
 
 
 class Displayed:
@@ -67,21 +62,6 @@ def html_table(caption: str, header: Sequence[str], rows: Iterable[Sequence[str]
         lines.append(_html_row("th", header))
     lines += (_html_row("td", row) for row in rows)
     return "\n".join([*lines, "</table>"])
-
-
-def panels_of(count: int, size: tuple[float, float] = _PANEL) -> tuple[Axes, ...]:
-    """Axes of a new pyplot figure with the panels stacked vertically.
-
-    Parameters
-    ----------
-    count : int    number of panels
-    size : tuple   width and height of a panel, inches
-    """
-    import matplotlib.pyplot as plt
-
-    shape = (size[0], count * size[1] + 0.6)
-    _, axes = plt.subplots(count, sharex=True, squeeze=False, figsize=shape, layout="constrained")
-    return tuple(axes[:, 0])
 
 
 def _html_row(kind: str, cells: Sequence[str]) -> str:

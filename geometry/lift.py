@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.acceleration_jump import Jump, acceleration_jump
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, uniform_turn
-from camwright.geometry.display import Displayed, panels_of
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, greatest, least
+from camwright.geometry.figures import Curve, DrawnAxes, Panel, over, plotted
 from camwright.geometry.periodic_spline import (
     DEGREE,
     LEAST_SAMPLES,
@@ -22,9 +23,6 @@ from camwright.geometry.periodic_spline import (
     interpolant,
     periodic_quintic,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 ANGLE_TOLERANCE = 1e-9
 """rad: angles closer than this are equal, the round-off of a table in degrees."""
@@ -207,17 +205,15 @@ class Lift(Displayed):
         """Maximum less minimum lift, m."""
         return self.highest.value - self.lowest.value
 
-    def plot(self) -> tuple[Axes, ...]:
+    def plot(self) -> DrawnAxes:
         """Lift s, s' and s'' over the cam angle, a panel each; see `Table.plot`."""
         theta = np.linspace(0.0, FULL_TURN, _DRAWN)
-        labels = ("s, mm", "s′, mm/rad", "s″, mm/rad²")
-        panels = panels_of(len(labels))
-        for axes, values, label in zip(panels, self.derivatives(theta, 2), labels, strict=True):
-            axes.plot(np.degrees(theta), 1e3 * values)
-            axes.set_ylabel(label)
-            axes.grid(alpha=0.3)
-        panels[-1].set_xlabel("cam angle, deg")
-        return panels
+        names = (("s", "mm"), ("s′", "mm/rad"), ("s″", "mm/rad²"))
+        panels = [
+            Panel(*name, (Curve(np.degrees(theta), 1e3 * values),))
+            for name, values in zip(names, self.derivatives(theta, 2), strict=True)
+        ]
+        return plotted(over("lift", "Lift", "", "cam angle", "deg", panels))
 
 
 def require_uniform_turn(field: str, theta: Array) -> None:

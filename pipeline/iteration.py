@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
+from camwright.geometry.figures import Curve, DrawnAxes, plotted
 from camwright.geometry.follower_path import cam_axes
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.progress import SILENT, Progress
@@ -57,9 +58,6 @@ from camwright.pipeline.smoothing.synthesis_rounds import rounds
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 FORECAST_POSITIONS = 360
 _RESULT: Mapping[Verdict, str] = {
     "pass": "passes every must-have check",
@@ -100,16 +98,13 @@ class Synthesis(Tabled):
         lift = lift_columns(self.case, self.contour.lift)
         return table(lift | contour_columns(self.case, self.contour))
 
-    def plot(self, *headers: str) -> tuple[Axes, ...]:
+    def plot(self, *headers: str) -> DrawnAxes:
         """Figure of the contour with its bore; with headers, curves as of `Table.plot`."""
         if headers:
             return super().plot(*headers)
-        (axes,) = self.contour.plot()
         radius = in_unit(self.case.cam.bore_radius, "mm")
         x, y = cam_axes(np.linspace(0.0, FULL_TURN, 181), np.asarray(radius), 0.0)
-        axes.plot(x, y, color="black", label="bore")
-        axes.legend(fontsize="small")
-        return (axes,)
+        return plotted(self.contour.figure(Curve(x, y, "bore", "ink")))
 
 
 class Iteration(NamedTuple):

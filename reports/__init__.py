@@ -8,7 +8,8 @@ report_tables          digits, units and text of a value; rows of checks, key fi
 machine_words          names of the machine's shaft, of the parts of its cycle
 verification_tables    certificate, benchmarks, tolerance corners, shadow prices, consistency
 verdict_text           verdict in sentences
-figures                contents of a figure: curves, limits, units, title, caption
+figure_layout          vertical axis of a panel, places of the labels of its limits
+outline_figures        outlines of a cam in the direction of its shaft
 sheet_turn             one load case over a cam turn (`Turn`); curves from its columns
 arrangement_data       sizes and motion of the mechanism, its drawing at a cam angle
 part_figures           figures of forces, guides, roller, oil film, spring, pin, ring, key, shaft

@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.base.tables import Table
-from camwright.pipeline.results.run_reader import TrialRecord
-from camwright.reports.figures import (
+from camwright.geometry.figures import (
     SERIES,
-    AngleFigure,
-    ContoursFigure,
     Curve,
     Figure,
     LimitLine,
-    LineFigure,
-    OutlineFigure,
+    Look,
     Panel,
+    over,
+    over_turn,
+)
+from camwright.pipeline.base.tables import Table
+from camwright.pipeline.results.run_reader import TrialRecord
+from camwright.reports.machine_words import MachineWords
+from camwright.reports.outline_figures import (
+    ContoursFigure,
+    OutlineFigure,
+    SheetFigure,
     circle,
 )
-from camwright.reports.machine_words import MachineWords
 from camwright.reports.part_figures import PART_FIGURES, endurance
 from camwright.reports.report_tables import isolated, number, quantity, words
 from camwright.reports.sheet_turn import SheetTurn, angle_figure, both_ways, curves_of
@@ -59,9 +64,9 @@ _ORDERS = 24  # harmonics of a cam turn
 _SHOWN, _MOST = 0.5, 6  # utilisation from which a limit is shown, and the number of limits
 
 
-def groups(turn: SheetTurn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
+def groups(turn: SheetTurn) -> tuple[tuple[str, tuple[SheetFigure, ...]], ...]:
     """Figures by group for which the run has columns."""
-    makers: tuple[Callable[[SheetTurn], Figure | None], ...] = (
+    makers: tuple[Callable[[SheetTurn], SheetFigure | None], ...] = (
         _torque, _spectrum, _components, _crank_speed, _lift, _outline, _pressure_angle, _face,
         _radii, _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
         _ripple_map, _trial_points, _trial_contours, _trial_torque,
@@ -80,7 +85,7 @@ def _torque(turn: SheetTurn) -> Figure | None:
     if not curves:
         return None
     cam = turn.columns["cam_torque_Nm"] / turn.gear_ratio
-    curves += (Curve(f"cam torque at the {turn.words.shaft}", cam, "muted", dashed=True),)
+    curves += (Curve(turn.crank, cam, f"cam torque at the {turn.words.shaft}", "muted", "dashed"),)
     return angle_figure(
         turn, "torque", f"{turn.words.title} torque",
         f"Deviation of the {turn.words.shaft} torque from its mean, without and with the cam; "
@@ -94,20 +99,21 @@ def _spectrum(turn: SheetTurn) -> Figure | None:
     turn = turn.balanced
     names = (("torque_before_Nm", turn.words.alone), ("torque_after_Nm", "with the cam"))
     count = min(_ORDERS, turn.crank.size // 2 - 1)
+    order = np.arange(1, count + 1) / turn.gear_ratio
     curves = []
     for (name, label), colour in zip(names, SERIES, strict=False):
         values = turn.columns.get(name)
         if values is not None and np.isfinite(values).all() and count > 0:
             amplitude = 2.0 * np.abs(np.fft.rfft(values))[1 : count + 1] / values.size
-            curves.append(Curve(label, amplitude, colour))
+            curves.append(Curve(order, amplitude, label, colour, "bar"))
     if not curves:
         return None
-    return LineFigure(
+    return over(
         "torque-spectrum", "Torque spectrum",
         f"Amplitude of each harmonic of the {turn.words.shaft} torque, by its order: periods in a "
         f"turn of the {turn.words.shaft}. Load case {isolated(turn.load_case)}.",
-        "harmonic order", "", np.arange(1, count + 1) / turn.gear_ratio,
-        (Panel("amplitude", "N m", tuple(curves), height=1.1, from_zero=True),), bars=True,
+        "harmonic order", "",
+        (Panel("amplitude", "N m", tuple(curves), height=1.1, from_zero=True),),
     )  # fmt: skip
 
 
@@ -115,21 +121,20 @@ def _crank_speed(turn: SheetTurn) -> Figure | None:
     speed = turn.speed
     if speed is None:
         return None
-    wanted = (
-        ("speed_before_rad_per_s", turn.words.alone, "blue", False),
-        ("speed_inertia_alone_rad_per_s", "added inertia, no cam force", "muted", True),
-        ("speed_after_rad_per_s", "with the cam", "vermillion", False),
+    wanted: tuple[tuple[str, str, str, Look], ...] = (
+        ("speed_before_rad_per_s", turn.words.alone, "blue", "line"),
+        ("speed_inertia_alone_rad_per_s", "added inertia, no cam force", "muted", "dashed"),
+        ("speed_after_rad_per_s", "with the cam", "vermillion", "line"),
     )
     curves = tuple(
-        Curve(label, speed[name], colour, dashed)
-        for name, label, colour, dashed in wanted
+        Curve(speed["crank_angle_deg"], speed[name], label, colour, look)
+        for name, label, colour, look in wanted
     )  # fmt: skip
     return angle_figure(
         turn, "crank-speed", f"{turn.words.title} speed",
         f"{turn.words.title} speed over a cam turn in the first load case: {turn.words.alone}, "
         "with the rotating parts of the mechanism but without cam force, and with the cam.",
         Panel(f"{turn.words.shaft} speed", "rad/s", curves, height=1.25), mark=False,
-        crank=speed["crank_angle_deg"],
     )  # fmt: skip
 
 
@@ -137,20 +142,22 @@ def _components(turn: SheetTurn) -> Figure | None:
     if turn.torque is None:
         return None
     whole = ("crank_angle_deg", "total_Nm", "error_bar_Nm")
-    total, bar = turn.torque["total_Nm"], turn.torque.numbers.get("error_bar_Nm")
-    band = None if bar is None else (total - bar, total + bar)
+    crank, total = turn.torque["crank_angle_deg"], turn.torque["total_Nm"]
+    bar = turn.torque.numbers.get("error_bar_Nm")
     parts = [name for name in turn.torque.numbers if name not in whole][: len(SERIES)]
     curves = [
-        Curve(words(name.removesuffix("_Nm"))[:24], turn.torque[name], colour)
+        Curve(crank, turn.torque[name], words(name.removesuffix("_Nm"))[:24], colour)
         for name, colour in zip(parts, SERIES, strict=False)
     ]
-    curves.append(Curve("total", total, "ink", dashed=bool(parts), band=band))
+    sum_curve = Curve(crank, total, "total", "ink", "dashed" if parts else "line")
+    if bar is not None:
+        sum_curve = replace(sum_curve, lower=total - bar, upper=total + bar)
+    curves.append(sum_curve)
     return angle_figure(
         turn, "torque-components", "Components of the torque",
         f"Positive torque drives the {turn.words.shaft}. {turn.words.origin}".rstrip()
-        + ("" if band is None else " The band holds the measured torque with 95 % probability."),
+        + ("" if bar is None else " The band holds the measured torque with 95 % probability."),
         Panel("torque", "N m", tuple(curves), height=1.25), mark=False,
-        crank=turn.torque["crank_angle_deg"],
     )  # fmt: skip
 
 
@@ -162,17 +169,17 @@ def _lift(turn: SheetTurn) -> Figure | None:
         ("lift_d2_mm_per_rad2", "s″", "mm/rad²", ()), ("lift_d3_mm_per_rad3", "s‴", "mm/rad³", ()),
     )  # fmt: skip
     panels = [
-        Panel(label, unit, (Curve("", columns[name], "blue"),), limits, height=0.62)
+        Panel(label, unit, (Curve(columns["crank_angle_deg"], columns[name]),), limits, height=0.62)
         for name, label, unit, limits in rows
     ]
     return angle_figure(
         turn, "lift", "Lift and its derivatives",
         "Lift s of the follower above its lowest position and its derivatives by cam angle.",
-        *panels, mark=False, crank=columns["crank_angle_deg"],
+        *panels, mark=False,
     )  # fmt: skip
 
 
-def _outline(turn: SheetTurn) -> Figure | None:
+def _outline(turn: SheetTurn) -> SheetFigure | None:
     c = turn.contour
     theta = turn.columns["cam_angle_deg"][turn.worst]
     distance = np.abs((c["cam_angle_deg"] - theta + 180.0) % 360.0 - 180.0)
@@ -277,7 +284,8 @@ def _radii(turn: SheetTurn) -> Figure | None:
     ]
     for (column, label), colour in zip(wanted, SERIES, strict=False):
         if turn.rolls or column != "pitch_radius_of_curvature_mm":
-            curves.append(Curve(label, broken(turn.columns[column], LARGEST_RADIUS_MM), colour))
+            radii = broken(turn.columns[column], LARGEST_RADIUS_MM)
+            curves.append(Curve(turn.crank, radii, label, colour))
     return angle_figure(
         turn, "radii", "Radii of curvature",
         f"Signed radius of curvature, positive where convex. Radii above {LARGEST_RADIUS_MM:g} mm, "
@@ -292,7 +300,7 @@ def broken(values: Array, largest: float) -> Array:
 
 
 def _radius_span(curves: Sequence[Curve]) -> tuple[float, float]:
-    lows = [float(np.nanmin(c.values)) for c in curves if np.isfinite(c.values).any()]
+    lows = [float(np.nanmin(c.y)) for c in curves if np.isfinite(c.y).any()]
     return min([0.0, *lows]) * 1.05, LARGEST_RADIUS_MM * 1.12
 
 
@@ -339,20 +347,20 @@ def _ripple_map(turn: SheetTurn) -> Figure | None:
     record = turn.ripple_map
     if record is None or "refused" in record:
         return None
-    pressures = record["intake_pressure_kPa"]
+    pressures, speed = record["intake_pressure_kPa"], np.array(record["crank_speed_rpm"])
     labels = [""] if pressures is None else [f"{value:.4g} kPa" for value in pressures]
     curves = tuple(
-        Curve(label, np.array(values), colour)
+        Curve(speed, np.array(values), label, colour)
         for label, values, colour in zip(labels, record["ratio"], SERIES, strict=False)
     )
     loads = "" if pressures is None else " Engine load by intake pressure."
-    return LineFigure(
+    return over(
         "ripple-map", "Torque ripple by speed and load",
         f"Standard deviation of the {turn.words.shaft} torque with the cam over that of the "
         f"{turn.words.alone}; above 1 the cam adds ripple. Quasi-static cam torque with inertia "
         f"and friction.{loads} "
         f"{record['engine']}",
-        f"{turn.words.shaft} speed", "rpm", np.array(record["crank_speed_rpm"]),
+        f"{turn.words.shaft} speed", "rpm",
         (Panel("ripple ratio", "", curves, (LimitLine(1.0, turn.words.alone),), height=1.1),),
     )  # fmt: skip
 
@@ -365,21 +373,22 @@ def _trial_points(turn: SheetTurn) -> Figure | None:
     def column(name: str) -> Array:
         return np.array([np.nan if p[name] is None else p[name] for p in turn.points], dtype=float)
 
-    notes = tuple(words(str(point["limit"])) for point in turn.points)
+    number, notes = column("trial"), tuple(words(str(point["limit"])) for point in turn.points)
     panels = (
-        Panel("ripple", "N m", (Curve("", column("ripple_Nm"), "blue"),), height=0.7),
-        Panel("utilisation", "", (Curve("", column("utilisation"), "vermillion", notes=notes),),
+        Panel("ripple", "N m", (Curve(number, column("ripple_Nm")),), height=0.7),
+        Panel("utilisation", "",
+              (Curve(number, column("utilisation"), colour="vermillion", notes=notes),),
               (LimitLine(1.0, "limit"),), height=0.9),
     )  # fmt: skip
-    return LineFigure(
+    return over(
         "trial-points", "Trials",
         f"Standard deviation of the {turn.words.shaft} torque with the cam, and the greatest "
         "utilisation of the required checks that depend on the lift, by trial.",
-        "trial", "", column("trial"), panels, whole=True,
+        "trial", "", panels, whole=True,
     )  # fmt: skip
 
 
-def _trial_contours(turn: SheetTurn) -> Figure | None:
+def _trial_contours(turn: SheetTurn) -> SheetFigure | None:
     """Contours of the trials over each other; None of a single trial."""
     if len(turn.trials) < 2:
         return None
@@ -403,9 +412,12 @@ def _trial_torque(turn: SheetTurn) -> Figure | None:
     if len(after) < 2 or len(shown) < len(after):
         return None
     curves = tuple(
-        Curve(_of_trial(trial), values, colour, dashed=trial is not turn.trials[-1])
+        Curve(
+            turn.crank, values, _of_trial(trial), colour,
+            "line" if trial is turn.trials[-1] else "dashed",
+        )
         for trial, values, colour in zip(turn.trials, shown, SERIES, strict=False)
-    )
+    )  # fmt: skip
     return angle_figure(
         turn, "trial-torque", "Torque of the trials",
         f"Deviation of the {turn.words.shaft} torque from its mean with the cam of each trial; "
@@ -437,20 +449,21 @@ def limits_strip(limits: Table | None, gear_ratio: float, machine: MachineWords)
         return None
     uses = {name: use for name, use in limits.numbers.items() if name != "cam_angle_deg"}
     shown = [name for name, use in uses.items() if use.size and float(np.max(use)) >= _SHOWN]
-    panels = tuple(_strip(name, uses[name]) for name in shown[:_MOST])
+    crank = gear_ratio * limits["cam_angle_deg"]
+    panels = tuple(_strip(name, crank, uses[name]) for name in shown[:_MOST])
     if not panels:
         return None
-    return AngleFigure(
+    return over_turn(
         "limits", "Active limits",
         "Utilisation of each limit in the synthesis, highest first; orange where the limit is "
         "active and increases the ripple. A limit on a mean value is constant over the turn.",
-        gear_ratio * limits["cam_angle_deg"], panels, gear_ratio, machine.marks, machine.shaft,
+        panels, ratio=gear_ratio, shaft=machine.shaft, marks=machine.marks,
     )  # fmt: skip
 
 
-def _strip(name: str, use: Array) -> Panel:
+def _strip(name: str, crank: Array, use: Array) -> Panel:
     """Utilisation, and again where the limit is active."""
     active = np.where(use >= BINDS, use, np.nan)
-    curves = (Curve("utilisation", np.clip(use, 0.0, None), "blue"),
-              Curve("active", active, "vermillion"))  # fmt: skip
+    curves = (Curve(crank, np.clip(use, 0.0, None), "utilisation"),
+              Curve(crank, active, "active", "vermillion"))  # fmt: skip
     return Panel(words(name), "", curves, (LimitLine(1.0, ""),), height=0.62, span=(0.0, 1.3))

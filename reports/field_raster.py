@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
+from camwright.geometry.figures import SERIES
 from camwright.pipeline.base.files import read_npz
 from camwright.pipeline.base.tables import Table
 from camwright.reports.figure_svg import COLOURS, png, shipped, style
-from camwright.reports.figures import SERIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,38 +14,44 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike
 
+from camwright.geometry.figures import (
+    AxisMark,
+    Curve,
+    Figure,
+    HorizontalAxis,
+    Kind,
+    Look,
+    Panel,
+    SecondAxis,
+    bar_width,
+)
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.base.worker_processes import Crew, PendingCall
 from camwright.reports.analysis_sheet import groups
-from camwright.reports.figures import (
-    CAM_AXIS,
-    CAM_STEP,
+from camwright.reports.figure_layout import placed_limits, vertical_span
+from camwright.reports.outline_figures import (
     X_AXIS,
     Y_AXIS,
-    AngleFigure,
     ContoursFigure,
-    Figure,
-    LineFigure,
     OutlineFigure,
-    Panel,
-    closed,
-    placed_limits,
-    vertical_span,
+    SheetFigure,
 )
 from camwright.reports.painting.matplotlib_import import TEMPLATES, import_matplotlib
 from camwright.reports.report_data import FIGURES, ReportMaterial
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.container import BarContainer, Container
     from matplotlib.figure import Figure as Canvas
     from matplotlib.typing import RcKeyType
 
@@ -81,11 +87,28 @@ STYLE: dict[RcKeyType, str | float] = {
 }
 BACKING = {"facecolor": COLOURS["card"], "alpha": 0.75, "linewidth": 0, "pad": 0.6}
 FIGURE_WIDTH = 5.6
-LEFT, RIGHT, TOP, BOTTOM, GAP = 0.68, 0.16, 0.66, 0.42, 0.14
+LEFT, RIGHT, TOP, BOTTOM, GAP = 0.68, 0.16, 0.46, 0.42, 0.14
+"""Widths and heights about the axes, inches; TOP: with an axis above them, else GAP."""
+PANEL, BAR, OUTLINE_MAX, LINE = 1.62, 0.27, 3.5, 0.2
+"""Heights, inches: axes, horizontal bar, outline at most, line of a legend or title."""
 LEGEND_ROW = 5
 LETTER, HANDLE = 0.058, 0.39  # in, of a legend: mean letter, line with its gaps
 Dash: TypeAlias = str | tuple[float, tuple[float, ...]]
 DASHES: dict[str, Dash] = {"solid": "-", "dashed": "--", "dashdot": (0, (6, 2, 1, 2))}
+DOTTED: Dash = (0, (1, 2))
+LIMIT: Dash = (0, (6, 2))
+LOOKS: dict[Look, dict[str, Any]] = {
+    "line": {"linewidth": 1.5, "zorder": 3},
+    "dashed": {"linewidth": 1.1, "linestyle": (0, (4, 3.4)), "zorder": 3.2},
+    "dotted": {"linewidth": 1.4, "linestyle": (0, (1, 1.6)), "zorder": 3.2},
+    "thin": {"linewidth": 0.5, "zorder": 2.8},
+    "marked": {"linewidth": 1.5, "marker": "o", "markersize": 2.6, "zorder": 3},
+    "spot": {"linewidth": 1.5, "marker": "o", "markersize": 5.0, "zorder": 3},
+    "points": {"linestyle": "none", "marker": "o", "markersize": 1.5, "zorder": 3},
+    "given": {"linestyle": "none", "marker": "D", "markersize": 3.6, "zorder": 4},
+}
+"""Settings of the lines by look."""
+_GRID: dict[Kind, Literal["x", "y", "both"]] = {"lines": "y", "bars": "x", "outline": "both"}
 MARKERS = {"dot": "o", "cross": "+"}
 
 
@@ -93,7 +116,7 @@ MARKERS = {"dot": "o", "cross": "+"}
 class Drawn:
     """A figure with its drawing."""
 
-    figure: Figure
+    figure: SheetFigure
     svg: str
 
     @property
@@ -106,7 +129,7 @@ class Drawn:
 def drawn_groups(material: ReportMaterial) -> Sequence[tuple[str, Sequence[Drawn]]]:
     """Drawings of the sheet, by group; cached."""
 
-    def drawn(figure: Figure) -> Drawn:
+    def drawn(figure: SheetFigure) -> Drawn:
         task = material.ahead.get(content_key(figure)) if material.ahead else None
         return Drawn(figure, svg_of(figure) if task is None else task.result())
 
@@ -119,7 +142,7 @@ def begun(material: ReportMaterial, workers: Crew) -> dict[str, PendingCall]:
     return {content_key(figure): workers.submit(svg_of, figure) for figure in figures}
 
 
-def content_key(figure: Figure) -> str:
+def content_key(figure: SheetFigure) -> str:
     """SHA-256 of a figure; a figure with other data, limits or words has another key."""
     return hashlib.sha256(pickle.dumps(figure)).hexdigest()
 
@@ -156,25 +179,32 @@ def style(salt: str) -> Iterator[None]:
         yield
 
 
-def draw(figure: Figure) -> Canvas:
-    """The matplotlib figure of a figure."""
+def draw(figure: SheetFigure, width: float = FIGURE_WIDTH) -> Canvas:
+    """The matplotlib figure of a figure; `width` in inches."""
     if isinstance(figure, (OutlineFigure, ContoursFigure)):
         return _outline(figure)
-    return _angles(figure) if isinstance(figure, AngleFigure) else _lines(figure)
+    return _panels(figure, width)
 
 
-def svg_of(figure: Figure) -> str:
+def svg_of(figure: SheetFigure, facecolor: str = "none") -> str:
     """SVG text of a figure, in the colours of the light theme."""
     with style(figure.id):
         canvas, svg = draw(figure), io.StringIO()
-        canvas.savefig(svg, format="svg", metadata={"Date": None})
+        canvas.savefig(svg, format="svg", facecolor=facecolor, metadata={"Date": None})
         return svg.getvalue()
 
 
-def png_of(figure: Figure) -> bytes:
-    """PNG file of a figure, in the colours of the light theme."""
+def png_of(figure: SheetFigure, width: float = FIGURE_WIDTH) -> bytes:
+    """PNG file of a figure, in the colours of the light theme; `width` in inches."""
     with style(figure.id):
-        return png(draw(figure))
+        return png(draw(figure, width))
+
+
+def write_figure(figure: SheetFigure, out: Path) -> Path:
+    """Write a figure on white as PNG, or as SVG by the end of the name."""
+    if out.suffix == ".svg":
+        return write_atomic(out, svg_of(figure, COLOURS["card"]))
+    return write_atomic(out, png_of(figure))
 
 
 def png(canvas: Canvas, dpi: int = 150) -> bytes:
@@ -228,175 +258,250 @@ def _compact(path: str) -> str:
     return "".join(parts)
 
 
-def _angles(figure: AngleFigure) -> Canvas:
-    """Panels with a common crank axis below and the cam axis above."""
-    canvas, axes = _stacked(figure)
-    for ax, panel in zip(axes, figure.panels, strict=True):
-        _panel(ax, figure, panel)
-    _legends(figure, axes)
-    for mark in figure.marks:
-        axes[0].annotate(
-            mark.name, (0.5 * (mark.start + mark.end), 1.0),
-            xycoords=("data", "axes fraction"), xytext=(0, -3),
-            textcoords="offset points", ha="center", va="top", fontsize=7.0,
-            color=COLOURS["muted"],
-        )  # fmt: skip
-    axes[-1].set_xlabel(figure.shaft_axis, labelpad=2)
-    _cam_axis(axes[0], figure.gear_ratio)
+def _canvas(width: float, height: float) -> Canvas:
+    """Empty canvas; sizes in inches."""
+    from matplotlib.figure import Figure as Canvas
+
+    return Canvas(figsize=(width, height))
+
+
+def _panels(figure: Figure, width: float) -> Canvas:
+    """Panels in rows; an axis that the row below has as well has no labels."""
+    columns, panels = figure.columns, figure.panels
+    names = [len(name) for panel in panels for name in panel.rows]
+    left = max([LEFT, *(0.15 + LETTER * count for count in names)])
+    share = 1 / columns - (left + RIGHT) / width
+    inner = share * width
+    rows = [range(k, min(k + columns, len(panels))) for k in range(0, len(panels), columns)]
+    tops = [max(_top(figure, k, inner) for k in row) for row in rows]
+    heights = [max(_height(figure, panels[k], inner) for k in row) for row in rows]
+    shared = [*map(partial(_same_axes, figure), rows, rows[1:]), False]
+    gaps = [top + BOTTOM * (not above) for top, above in zip(tops[1:], shared, strict=False)]
+    total = tops[0] + sum(heights) + sum(gaps) + BOTTOM
+    canvas, edge = _canvas(width, total), total - tops[0]
+    for row, gap, height, hidden in zip(rows, [0.0, *gaps], heights, shared, strict=True):
+        edge -= height + gap
+        for column, k in enumerate(row):
+            start = column / columns + left / width
+            ax = canvas.add_axes((start, edge / total, share, height / total))
+            ax.tick_params(labelbottom=not hidden)
+            _panel(ax, figure, k, (inner, height))
+            if not hidden:
+                ax.set_xlabel(figure.axis_of(panels[k]).words, labelpad=2)
     return canvas
 
 
-def _lines(figure: LineFigure) -> Canvas:
-    """Panels with a common axis of another quantity, points marked."""
-    from matplotlib.ticker import MaxNLocator
-
-    canvas, axes = _stacked(figure)
-    for ax, panel in zip(axes, figure.panels, strict=True):
-        for number, curve in enumerate(panel.curves):
-            _points(ax, figure, panel, number)
-            for note, x, y in zip(curve.notes, figure.x, curve.values, strict=False):
-                if not np.isfinite(y):
-                    continue
-                ax.annotate(
-                    note, (x, y), xytext=(0, 4), textcoords="offset points", ha="center",
-                    va="bottom", fontsize=7.0, color=COLOURS["muted"], zorder=4,
-                )  # fmt: skip
-        for at, _ in figure.marks:
-            ax.axvline(at, color=COLOURS["muted"], linewidth=0.8, linestyle=(0, (1, 2)), zorder=2)
-        _vertical(ax, figure, panel)
-        ax.set_xlim(*figure.span)
-        ax.xaxis.set_major_locator(MaxNLocator(nbins=8, integer=figure.whole))
-    _legends(figure, axes)
-    for at, name in figure.marks:
-        axes[0].annotate(
-            name, (at, 1.0), xycoords=("data", "axes fraction"), xytext=(-2, -3),
-            textcoords="offset points", ha="right", va="top", fontsize=7.0, rotation=90,
-            color=COLOURS["muted"], bbox=BACKING, zorder=4,
-        )  # fmt: skip
-    axes[-1].set_xlabel(figure.axis, labelpad=2)
-    return canvas
+def _same_axes(figure: Figure, row: range, below: range) -> bool:
+    """Whether the panels of two rows have the same horizontal axes."""
+    return len(row) == len(below) and all(
+        figure.panels[k].kind == figure.panels[m].kind == "lines"
+        and figure.axis_of(figure.panels[k]) == figure.axis_of(figure.panels[m])
+        for k, m in zip(row, below, strict=True)
+    )
 
 
-def _points(ax: Axes, figure: LineFigure, panel: Panel, number: int) -> None:
-    """One curve of a panel as a line or as bars."""
-    curve = panel.curves[number]
-    colour = COLOURS[curve.colour]
-    if figure.bars:
-        width = figure.bar_width / len(panel.curves)
-        shift = (number - 0.5 * (len(panel.curves) - 1)) * width
-        ax.bar(figure.x + shift, curve.values, width, color=colour, label=curve.label, zorder=3)
-        return
-    ax.plot(
-        figure.x, curve.values, "o-" if figure.dotted(curve) else "-", color=colour,
-        label=curve.label, linewidth=1.5, markersize=2.6 if figure.dots else 5.0, zorder=3,
+def _second(figure: Figure, k: int) -> SecondAxis | None:
+    """Axis above a panel of the first row."""
+    return figure.axis_of(figure.panels[k]).second if k < figure.columns else None
+
+
+def _top(figure: Figure, k: int, inner: float) -> float:
+    """Height above a panel for axis, legend and title, inches."""
+    lines = _legend_rows(figure.panels[k], inner) if figure.legends[k] else 0
+    lines += bool(figure.panels[k].title) + bool(figure.panels[k].note)
+    return (TOP if _second(figure, k) else GAP) + LINE * lines
+
+
+def _height(figure: Figure, panel: Panel, inner: float) -> float:
+    """Height of the axes of a panel, inches."""
+    if panel.kind == "bars":
+        return BAR * len(panel.rows) + 0.1
+    if panel.kind == "outline":
+        (left, right), (low, high) = figure.axis_of(panel).span, vertical_span(panel, False)
+        return min(inner * (high - low) / (right - left), OUTLINE_MAX)
+    return PANEL * panel.height
+
+
+def _panel(ax: Axes, figure: Figure, k: int, size: tuple[float, float]) -> None:
+    """Marks, curves, axes, limits and heading of panel `k`; `size` of the axes in inches."""
+    panel = figure.panels[k]
+    axis, above = figure.axis_of(panel), k < figure.columns
+    for mark in axis.marks:
+        _mark(ax, mark)
+    signs = [_curve(ax, panel, curve, axis.span[1]) for curve in panel.curves]
+    for mark in axis.marks if above else ():
+        _mark_name(ax, mark)
+    if panel.kind == "bars":
+        _rows(ax, panel, axis)
+    else:
+        _vertical(ax, panel, named=axis.named, below_names=axis.named and above)
+    if panel.kind == "outline":
+        ax.set_aspect("equal")
+    ax.set_ylabel(panel.words)
+    ax.yaxis.set_label_coords(-0.52 / size[0], 0.5)
+    ax.grid(True, axis=_GRID[panel.kind], zorder=0)
+    ax.set_axisbelow(True)
+    for side in ("top", "right"):
+        ax.spines[side].set_visible(False)
+    _horizontal(ax, axis, figure.columns)
+    second, height = _second(figure, k), 0.02
+    if second is not None:
+        _second_axis(ax, second)
+        height = 0.42
+    if panel.note:
+        _above(ax, panel.note, height, fontsize=7.2, color=COLOURS["muted"])
+        height += LINE
+    if figure.legends[k]:
+        drawn = [sign for sign, curve in zip(signs, panel.curves, strict=True) if curve.label]
+        _legend(ax, panel, drawn, (size[0], height / size[1]))
+        height += LINE * _legend_rows(panel, size[0])
+    if panel.title:
+        _above(ax, panel.title, height, fontweight="bold")
+
+
+def _above(ax: Axes, words: str, height: float, **look: Any) -> None:
+    """Words above the axes, at a height in inches."""
+    ax.annotate(
+        words, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 72 * height + 3),
+        textcoords="offset points", **look,
     )  # fmt: skip
 
 
-def _canvas(height: float) -> Canvas:
-    """Empty canvas of the width of all figures; height in inches."""
-    from matplotlib.figure import Figure as Canvas
-
-    return Canvas(figsize=(FIGURE_WIDTH, height))
-
-
-def _stacked(figure: AngleFigure | LineFigure) -> tuple[Canvas, list[Axes]]:
-    """Axes of the panels, one below the other."""
-    rows = max(-(-panel.legend_entries // _legend_columns(panel)) for panel in figure.panels)
-    heights = [panel.height * 1.62 for panel in figure.panels]
-    gaps = [GAP + (0.2 if legend else 0.0) for legend in figure.legends]
-    named_above = isinstance(figure, AngleFigure)
-    top = (TOP - 0.2 if named_above else GAP) + 0.2 * (rows if figure.legends[0] else 0)
-    total = top + sum(heights) + sum(gaps[1:]) + BOTTOM
-    canvas = _canvas(total)
-    edge = total - top
-    axes: list[Axes] = []
-    for number, height in enumerate(heights):
-        edge -= height + (gaps[number] if number else 0.0)
-        box = (LEFT / FIGURE_WIDTH, edge / total,
-               1 - (LEFT + RIGHT) / FIGURE_WIDTH, height / total)  # fmt: skip
-        ax = canvas.add_axes(box)
-        axes.append(ax)
-        ax.tick_params(labelbottom=number == len(heights) - 1)
-    return canvas, axes
+def _mark(ax: Axes, mark: AxisMark) -> None:
+    """Shade of a part of the horizontal axis, or line at a place."""
+    if mark.end is None:
+        colour, width = ("muted", 0.8) if mark.name else ("ink", 0.7)
+        ax.axvline(mark.start, color=COLOURS[colour], linewidth=width, linestyle=DOTTED, zorder=2)
+    elif mark.shaded:
+        ax.axvspan(mark.start, mark.end, color=COLOURS["shade"], linewidth=0, zorder=0)
 
 
-def _legends(figure: AngleFigure | LineFigure, axes: Sequence[Axes]) -> None:
-    for number, (ax, panel) in enumerate(zip(axes, figure.panels, strict=True)):
-        if figure.legends[number]:
-            second = number == 0 and isinstance(figure, AngleFigure)  # above the cam axis
-            above = (0.42 if second else 0.02) / (panel.height * 1.62)
-            _legend(ax, panel, 1 + above)
+def _mark_name(ax: Axes, mark: AxisMark) -> None:
+    """Name of a mark at the top of the axes: in the middle of a part, along a line."""
+    middle = mark.start if mark.end is None else 0.5 * (mark.start + mark.end)
+    place: dict[str, Any] = {"xytext": (0, -3), "ha": "center"}
+    if mark.end is None:
+        place = {"xytext": (-2, -3), "ha": "right", "rotation": 90, "bbox": BACKING, "zorder": 4}
+    if mark.name:
+        ax.annotate(
+            mark.name, (middle, 1.0), xycoords=("data", "axes fraction"), va="top", fontsize=7.0,
+            textcoords="offset points", color=COLOURS["muted"], **place,
+        )  # fmt: skip
 
 
-def _legend_columns(panel: Panel) -> int:
-    """Most columns of a legend, up to `LEGEND_ROW`, that the figure is wide enough for."""
-    labels = [curve.label for curve in panel.curves if curve.label]
+def _curve(ax: Axes, panel: Panel, curve: Curve, right: float) -> Artist | Container:
+    """Draw a curve with its ribbon and notes, bars up to `right`; its sign in a legend."""
+    colour = COLOURS[curve.colour]
+    if curve.look == "bar":
+        return _bars(ax, panel, curve, right)
+    if curve.look == "fill":
+        (outline,) = ax.fill(curve.x, curve.y, facecolor=COLOURS["steel"], edgecolor=colour,
+                             linewidth=1.3, zorder=1.6, label=curve.label)  # fmt: skip
+        return outline
+    if curve.upper is not None:
+        lower = curve.y if curve.lower is None else curve.lower
+        ribbon = ax.fill_between(curve.x, lower, curve.upper, color=colour, alpha=0.16,
+                                 linewidth=0, zorder=1)  # fmt: skip
+        if curve.look == "band":
+            return ribbon
+    (line,) = ax.plot(curve.x, curve.y, color=colour, label=curve.label, **LOOKS[curve.look])
+    if panel.kind != "bars":
+        _notes(ax, curve)
+    return line
+
+
+def _notes(ax: Axes, curve: Curve) -> None:
+    for note, x, y in zip(curve.notes, curve.x, curve.y, strict=False):
+        if np.isfinite(y):
+            ax.annotate(
+                note, (x, y), xytext=(0, 4), textcoords="offset points", ha="center", va="bottom",
+                fontsize=7.0, color=COLOURS["muted"], zorder=4,
+            )  # fmt: skip
+
+
+def _bars(ax: Axes, panel: Panel, curve: Curve, right: float) -> BarContainer:
+    """Bars of a curve: in the rows of the panel, or side by side with those of other curves."""
+    look: dict[str, Any] = {"color": COLOURS[curve.colour], "label": curve.label, "zorder": 3}
+    if panel.kind == "bars":
+        start, length = curve.bars(right)
+        return ax.barh(curve.y, length, 0.62, left=start, **look)
+    beside = [each for each in panel.curves if each.look == "bar"]
+    width = bar_width(curve.x) / len(beside)
+    shift = (beside.index(curve) - 0.5 * (len(beside) - 1)) * width
+    _notes(ax, curve)
+    return ax.bar(curve.x + shift, curve.y, width, **look)
+
+
+def _rows(ax: Axes, panel: Panel, axis: HorizontalAxis) -> None:
+    """Names, ends and limits of horizontal bars."""
+    for row, end in enumerate(panel.ends):
+        if not np.isnan(end):
+            ax.annotate(f"{end:.4g}", (min(end, axis.span[1]), row), xytext=(8, 0),
+                        textcoords="offset points", va="center", fontsize=7.8)  # fmt: skip
+    for line in panel.limits:
+        ax.axvline(line.value, color=COLOURS["fail"], linewidth=0.9, linestyle=LIMIT, zorder=2.5)
+        ax.annotate(line.words(axis.unit), (line.value, 1.0), xycoords=("data", "axes fraction"),
+                    ha="center", va="bottom", color=COLOURS["fail"], fontsize=7.2)  # fmt: skip
+    ax.set_yticks(range(len(panel.rows)), panel.rows)
+    ax.set_ylim(len(panel.rows) - 0.45, -0.55)
+
+
+def _vertical(ax: Axes, panel: Panel, *, named: bool, below_names: bool) -> None:
+    """Vertical axis of a panel with its limits."""
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = vertical_span(panel, named)
+    ax.set_ylim(low, high)
+    if low < 0 < high and panel.kind == "lines":
+        ax.axhline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=1)
+    _limits(ax, panel, low, high, below_names=below_names)
+    ax.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
+
+
+def _horizontal(ax: Axes, axis: HorizontalAxis, columns: int) -> None:
+    """Limits and ticks of the horizontal axis."""
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = axis.span
+    ax.set_xlim(low, high)
+    if axis.step is None:
+        ax.xaxis.set_major_locator(MaxNLocator(nbins=8 // columns, integer=axis.whole))
+    else:
+        first = axis.step * np.ceil(low / axis.step)
+        ax.set_xticks(np.arange(first, high + 0.01 * axis.step, axis.step))
+
+
+def _legend_columns(panel: Panel, inner: float) -> int:
+    """Most columns of a legend, up to `LEGEND_ROW`, that the axes are wide enough for."""
+    labels = [curve.label for curve in panel.labelled]
     for columns in range(min(len(labels), LEGEND_ROW), 1, -1):
         longest = sum(max(map(len, part)) for part in np.array_split(labels, columns))
-        if longest * LETTER + columns * HANDLE <= FIGURE_WIDTH - LEFT:
+        if longest * LETTER + columns * HANDLE <= inner + RIGHT:
             return columns
     return 1
 
 
-def _legend(ax: Axes, panel: Panel, height: float) -> None:
+def _legend_rows(panel: Panel, inner: float) -> int:
+    return -(-len(panel.labelled) // _legend_columns(panel, inner))
+
+
+def _legend(
+    ax: Axes, panel: Panel, signs: Sequence[Artist | Container], size: tuple[float, float]
+) -> None:
+    """Legend above the axes; `size`: their width, inches, and its height above as a share."""
     ax.legend(
-        loc="lower left", bbox_to_anchor=(-0.012, height), ncols=_legend_columns(panel),
+        signs, [curve.label for curve in panel.labelled], loc="lower left",
+        bbox_to_anchor=(-0.012, 1 + size[1]), ncols=_legend_columns(panel, size[0]),
         frameon=False, borderaxespad=0.0, borderpad=0.0, handlelength=1.7, handletextpad=0.5,
         columnspacing=1.3, labelspacing=0.25,
     )  # fmt: skip
-
-
-def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
-    """Curves, limits, grid and the line of the worst angle on one pair of axes."""
-    crank = figure.closed_crank
-    for mark in figure.marks:
-        if mark.shaded:
-            ax.axvspan(mark.start, mark.end, color=COLOURS["shade"], linewidth=0, zorder=0)
-    for curve in panel.curves:
-        colour = COLOURS[curve.colour]
-        if curve.band is not None:
-            below, above = map(closed, curve.band)
-            ax.fill_between(crank, below, above, color=colour, alpha=0.16, linewidth=0, zorder=1)
-        ax.plot(
-            crank, closed(curve.values), color=colour, label=curve.label,
-            linestyle=(0, (4, 3.4)) if curve.dashed else "solid",
-            zorder=3.2 if curve.dashed else 3, linewidth=1.1 if curve.dashed else 1.5,
-        )  # fmt: skip
-    if figure.mark is not None:
-        ax.axvline(
-            figure.mark, color=COLOURS["ink"], linewidth=0.7, linestyle=(0, (1, 2)), zorder=2
-        )
-    _vertical(ax, figure, panel)
-    ax.set_xlim(0.0, figure.period)
-    ax.set_xticks(np.arange(0.0, figure.period + 1.0, figure.shaft_step))
-
-
-def _vertical(ax: Axes, figure: AngleFigure | LineFigure, panel: Panel) -> None:
-    """Vertical axis of a panel with its limits; frame and grid."""
-    from matplotlib.ticker import MaxNLocator
-
-    named = bool(figure.marks)
-    low, high = vertical_span(panel, named)
-    ax.set_ylim(low, high)
-    if low < 0 < high:
-        ax.axhline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=1)
-    _limits(ax, panel, low, high, below_names=named and panel is figure.panels[0])
-    ax.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
-    ax.grid(True, axis="y", zorder=0)
-    ax.set_axisbelow(True)
-    ax.set_ylabel(panel.title)
-    ax.yaxis.set_label_coords(-0.52 / (FIGURE_WIDTH - LEFT - RIGHT), 0.5)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
 
 
 def _limits(ax: Axes, panel: Panel, low: float, high: float, *, below_names: bool) -> None:
     """Limit lines; limits outside the axes are written at their edge, below names of marks."""
     placed = placed_limits(panel, low, high)
     for line, above in placed.inside:
-        ax.axhline(
-            line.value, color=COLOURS["fail"], linewidth=0.9, linestyle=(0, (6, 2)), zorder=2.5
-        )
+        ax.axhline(line.value, color=COLOURS["fail"], linewidth=0.9, linestyle=LIMIT, zorder=2.5)
         ax.annotate(
             line.words(panel.unit), (1.0, line.value), xycoords=("axes fraction", "data"),
             xytext=(-2, 2 if above else -2), textcoords="offset points", ha="right",
@@ -414,23 +519,23 @@ def _limits(ax: Axes, panel: Panel, low: float, high: float, *, below_names: boo
         )  # fmt: skip
 
 
-def _cam_axis(ax: Axes, gear_ratio: float) -> None:
-    def to_cam(crank: ArrayLike) -> ArrayLike:
-        return np.asarray(crank) / gear_ratio
+def _second_axis(ax: Axes, second: SecondAxis) -> None:
+    def to_second(first: ArrayLike) -> ArrayLike:
+        return np.asarray(first) / second.ratio
 
-    def to_crank(cam: ArrayLike) -> ArrayLike:
-        return np.asarray(cam) * gear_ratio
+    def to_first(value: ArrayLike) -> ArrayLike:
+        return np.asarray(value) * second.ratio
 
-    cam = ax.secondary_xaxis("top", functions=(to_cam, to_crank))
-    cam.set_xticks(np.arange(0.0, 361.0, CAM_STEP))
-    cam.spines["top"].set_color(COLOURS["muted"])
-    cam.set_xlabel(CAM_AXIS, labelpad=3)
-    cam.xaxis.label.set_color(COLOURS["ink"])
+    above = ax.secondary_xaxis("top", functions=(to_second, to_first))
+    above.set_xticks(np.arange(0.0, ax.get_xlim()[1] / second.ratio + 1.0, second.step))
+    above.spines["top"].set_color(COLOURS["muted"])
+    above.set_xlabel(second.words, labelpad=3)
+    above.xaxis.label.set_color(COLOURS["ink"])
 
 
 def _outline(figure: OutlineFigure | ContoursFigure) -> Canvas:
     """Curves and text of the outline on equal axes."""
-    canvas = _canvas(FIGURE_WIDTH - 0.1)
+    canvas = _canvas(FIGURE_WIDTH, FIGURE_WIDTH - 0.1)
     ax = canvas.add_axes((LEFT / FIGURE_WIDTH, 0.42 / 5.5, 4.84 / FIGURE_WIDTH, 4.84 / 5.5))
     for order, curve in enumerate(figure.curves, start=1):
         if curve.fill:

@@ -13,28 +13,22 @@ import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from markupsafe import Markup
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.figures import AxisMark, Curve, Figure, HorizontalAxis, Look, Panel
 from camwright.pipeline.base.files import Json
-from camwright.reports.figures import (
-    CAM_AXIS,
-    CAM_STEP,
+from camwright.reports.figure_layout import placed_limits, vertical_span
+from camwright.reports.outline_figures import (
     X_AXIS,
     Y_AXIS,
-    AngleFigure,
     ContoursFigure,
-    Curve,
-    Figure,
-    LineFigure,
     OutlineCurve,
     OutlineFigure,
-    Panel,
-    closed,
-    placed_limits,
-    vertical_span,
+    SheetFigure,
 )
 
 Spec = dict[str, Json]
@@ -47,6 +41,22 @@ _SCRIPTS = (
 _PANEL_PIXELS, _TOP_PIXELS, _LEGEND_PIXELS, _BOTTOM_PIXELS, _GAP_PIXELS = 165, 54, 24, 46, 14
 _DIGITS, _BAND_DIGITS, _STROKE_PIXELS = 6, 3, 14
 _DASHES = {"solid": "solid", "dashed": "dash", "dashdot": "dashdot"}
+_LIMIT: Spec = {"color": "fail", "width": 1.2, "dash": "dash"}
+_OWN_AXES = 10
+"""Number of the first horizontal axis that a panel has for itself."""
+_LOOKS: dict[Look, tuple[str, float, str, float, str]] = {
+    "line": ("lines", 1.8, "solid", 5, "circle"),
+    "dashed": ("lines", 1.8, "dash", 5, "circle"),
+    "dotted": ("lines", 1.8, "dot", 5, "circle"),
+    "thin": ("lines", 0.7, "solid", 5, "circle"),
+    "fill": ("lines", 1.5, "solid", 5, "circle"),
+    "band": ("lines", 0.0, "solid", 5, "circle"),
+    "marked": ("lines+markers", 1.8, "solid", 5, "circle"),
+    "spot": ("lines+markers", 1.8, "solid", 9, "circle"),
+    "points": ("markers", 0.0, "solid", 3, "circle"),
+    "given": ("markers", 0.0, "solid", 7, "diamond"),
+}
+"""Mode, width and dash of the line, size and symbol of the points by look."""
 _MARKERS = {"dot": "circle", "cross": "cross-thin-open"}
 _HOVER_ANGLE, _HOVER_CAM = " %{x:.1f}°", " · cam %{customdata:.1f}°"
 
@@ -60,7 +70,7 @@ class Bundle:
     data: Markup
 
 
-def bundle(figures: Iterable[Figure]) -> Bundle:
+def bundle(figures: Iterable[SheetFigure]) -> Bundle:
     """Scripts and data of figures."""
     specs = {figure.id: specification(figure) for figure in figures}
     return Bundle(
@@ -80,7 +90,7 @@ def scripts(sources: Iterable[Path]) -> tuple[tuple[Markup, ...], tuple[str, ...
     return tuple(Markup(source) for source in safe), tuple(map(_hash, safe))  # noqa: S704
 
 
-def specification(figure: Figure) -> Spec:
+def specification(figure: SheetFigure) -> Spec:
     """Traces and layout of a figure for Plotly, colours by name.
 
     A figure over the turn has one `x`, the angle of the machine's shaft, and one `cam` for all its
@@ -88,7 +98,7 @@ def specification(figure: Figure) -> Spec:
     """
     if isinstance(figure, (OutlineFigure, ContoursFigure)):
         return _outline(figure)
-    return _angles(figure) if isinstance(figure, AngleFigure) else _sweep(figure)
+    return _panels(figure)
 
 
 def script_safe_json(value: Json) -> str:
@@ -102,117 +112,116 @@ def _hash(source: str) -> str:
     return f"'sha256-{base64.b64encode(digest).decode()}'"
 
 
-def _angles(figure: AngleFigure) -> Spec:
-    lines = _Lines.of(figure)
-    crank, cam = _numbers(figure.closed_crank), _numbers(figure.closed_crank / figure.gear_ratio)
-    shapes, notes = _shades(figure), _mark_names(figure)
-    traces: list[Spec] = []
-    axes: dict[str, Spec] = {}
-    for number, panel in enumerate(figure.panels):
-        end = "" if number == 0 else str(number + 1)
-        axis, (bottom, top) = f"y{end}", lines.domains[number]
-        low, high = vertical_span(panel, bool(figure.marks))
-        axes[f"yaxis{end}"] = {
-            "domain": [bottom, top], "fixedrange": True, "range": [low, high],
-            "title": {"text": html.escape(panel.title), "standoff": 8},
+class _Drawn(NamedTuple):
+    """Traces, axes, shapes and annotations of the panels."""
+
+    traces: list[Spec]
+    axes: dict[str, Spec]
+    shapes: list[Spec]
+    notes: list[Spec]
+
+
+def _panels(figure: Figure) -> Spec:
+    """Panels one below the other; those without an axis of their own have one in common."""
+    lines, axis, last = _Lines.of(figure), figure.axis, len(figure.panels)
+    drawn = _Drawn([], {}, [], [])
+    for number, domain in enumerate(lines.domains):
+        _panel(figure, number, domain, drawn)
+    for mark in axis.marks:
+        _mark(mark, drawn)
+    horizontal = _horizontal(axis, "y" if last == 1 else f"y{last}")
+    drawn.axes["xaxis"] = horizontal
+    spec: Spec = {"at": {"name": axis.quantity, "unit": axis.unit}}
+    if axis.second is not None:
+        shared = figure.panels[0].curves[0].x
+        spec = {"x": _numbers(shared), "cam": _numbers(shared / axis.second.ratio)}
+        name = axis.quantity.removesuffix(" angle")
+        horizontal["unifiedhovertitle"] = {"text": name + _HOVER_ANGLE}
+        drawn.axes["xaxis2"] = {
+            "range": [0, axis.span[1] / axis.second.ratio], "dtick": axis.second.step,
+            "title": {"text": axis.second.words}, "fixedrange": True, "overlaying": "x",
+            "side": "top", "anchor": "y",
         }  # fmt: skip
-        if figure.legends[number] and number:
-            axes[f"legend{end}"] = {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom",
-                                    "traceorder": "normal"}  # fmt: skip
-        legend = {"legend": f"legend{end}"} if figure.legends[number] else {}
-        for curve in panel.curves:
-            common = {"type": "scatter", "mode": "lines", "xaxis": "x", "yaxis": axis}
-            traces += [common | band for band in _band(curve)]
-            # one curve of the figure shows the cam angle
-            hover = _HOVER_CAM if not any("hovertemplate" in trace for trace in traces) else ""
-            traces.append(
-                common | _curve(curve, panel, hover) | legend
-                | {"showlegend": figure.legends[number]}
-            )  # fmt: skip
-        below_names = bool(figure.marks) and number == 0
-        lines_of, notes_of = _limits(panel, axis, low, high, below_names=below_names)
-        shapes, notes = shapes + lines_of, notes + notes_of
-    traces.append({"x": [0], "y": [None], "xaxis": "x2", "yaxis": "y", "type": "scatter",
-                   "showlegend": False, "hoverinfo": "skip"})  # fmt: skip
-    last = len(figure.panels)
-    return {"data": traces, "x": crank, "cam": cam, "layout": {
-        "height": lines.height, "shapes": shapes, "annotations": notes, **axes,
+        drawn.traces.append({"x": [0], "y": [None], "xaxis": "x2", "yaxis": "y", "type": "scatter",
+                             "showlegend": False, "hoverinfo": "skip"})  # fmt: skip
+    return spec | {"data": drawn.traces, "layout": {
+        "height": lines.height, "shapes": drawn.shapes, "annotations": drawn.notes, **drawn.axes,
         "margin": {"l": 68, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS},
-        "xaxis": {"range": [0, figure.period], "dtick": figure.shaft_step, "fixedrange": True,
-                  "title": {"text": figure.shaft_axis},
-                  "unifiedhovertitle": {"text": figure.shaft + _HOVER_ANGLE},
-                  "anchor": "y" if last == 1 else f"y{last}"},
-        "xaxis2": {"range": [0, 360], "dtick": CAM_STEP, "title": {"text": CAM_AXIS},
-                   "fixedrange": True, "overlaying": "x", "side": "top", "anchor": "y"},
-    }}  # fmt: skip
-
-
-def _sweep(figure: LineFigure) -> Spec:
-    lines, x = _Lines.of(figure), _numbers(figure.x)
-    shapes: list[Spec] = []
-    notes: list[Spec] = []
-    traces: list[Spec] = []
-    axes: dict[str, Spec] = {}
-    for number, panel in enumerate(figure.panels):
-        end = "" if number == 0 else str(number + 1)
-        axis, (bottom, top) = f"y{end}", lines.domains[number]
-        low, high = vertical_span(panel, bool(figure.marks))
-        axes[f"yaxis{end}"] = {
-            "domain": [bottom, top], "fixedrange": True, "range": [low, high],
-            "title": {"text": html.escape(panel.title), "standoff": 8},
-        }  # fmt: skip
-        if figure.legends[number] and number:
-            axes[f"legend{end}"] = {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom",
-                                    "traceorder": "normal"}  # fmt: skip
-        legend = {"legend": f"legend{end}"} if figure.legends[number] else {}
-        for curve in panel.curves:
-            kind = (
-                {"type": "bar"}
-                if figure.bars
-                else {
-                    "type": "scatter",
-                    "mode": "lines+markers" if figure.dotted(curve) else "lines",
-                }
-            )
-            trace: Spec = kind | legend | {"x": x, "xaxis": "x", "yaxis": axis, "customdata": x,
-                     "marker": {"size": 5 if figure.dots else 9, "color": curve.colour},
-                     "showlegend": figure.legends[number]}  # fmt: skip
-            drawn = _curve(curve, panel, "") | {"y": _numbers(curve.values)}
-            traces.append(
-                trace | {k: v for k, v in drawn.items() if k != "line" or not figure.bars}
-            )
-            notes += [
-                {"xref": "x", "x": at, "yref": axis, "y": value, "yshift": 4, "yanchor": "bottom",
-                 "showarrow": False, "text": html.escape(note),
-                 "font": {"color": "muted", "size": 10}}
-                for note, at, value in zip(curve.notes, x, _numbers(curve.values), strict=False)
-                if value is not None
-            ]  # fmt: skip
-        below_names = bool(figure.marks) and number == 0
-        lines_of, notes_of = _limits(panel, axis, low, high, below_names=below_names)
-        shapes, notes = shapes + lines_of, notes + notes_of
-    shapes += [
-        {"xref": "x", "yref": "paper", "y0": 0, "y1": 1, "type": "line", "x0": at, "x1": at,
-         "line": {"color": "muted", "width": 1, "dash": "dot"}}
-        for at, _ in figure.marks
-    ]  # fmt: skip
-    notes += [
-        {"xref": "x", "x": at, "yref": "paper", "y": 1, "xanchor": "right", "yanchor": "top",
-         "textangle": -90, "showarrow": False, "text": html.escape(name),
-         "font": {"color": "muted", "size": 10}, "bgcolor": "card"}
-        for at, name in figure.marks
-    ]  # fmt: skip
-    last = len(figure.panels)
-    horizontal: Spec = {"range": list(figure.span), "fixedrange": True,
-                        "title": {"text": html.escape(figure.axis)},
-                        "anchor": "y" if last == 1 else f"y{last}"}  # fmt: skip
-    if figure.whole:
-        horizontal["dtick"] = 1
-    return {"data": traces, "at": {"name": figure.quantity, "unit": figure.unit}, "layout": {
-        "height": lines.height, "shapes": shapes, "annotations": notes, **axes,
-        "margin": {"l": 68, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS}, "xaxis": horizontal,
         "barmode": "group", "bargap": 0.2,
     }}  # fmt: skip
+
+
+def _panel(figure: Figure, number: int, domain: tuple[float, float], drawn: _Drawn) -> None:
+    panel, end = figure.panels[number], "" if number == 0 else str(number + 1)
+    axis, legend, top = figure.axis_of(panel), figure.legends[number], domain[1]
+    across, up = "x" if panel.axis is None else f"x{number + _OWN_AXES}", f"y{end}"
+    vertical: Spec = {"domain": list(domain), "fixedrange": True,
+                      "title": {"text": html.escape(panel.words), "standoff": 8}}  # fmt: skip
+    if panel.axis is not None:
+        drawn.axes[f"xaxis{across[1:]}"] = _horizontal(axis, up)
+        vertical["anchor"] = across
+    if panel.kind == "bars":
+        rows = len(panel.rows)
+        vertical |= {"range": [rows - 0.45, -0.55], "tickvals": list(range(rows)),
+                     "ticktext": list(map(html.escape, panel.rows))}  # fmt: skip
+        for line in panel.limits:
+            drawn.shapes.append({
+                "type": "line", "xref": across, "x0": line.value, "x1": line.value, "y0": domain[0],
+                "yref": "paper", "y1": top, "line": _LIMIT,
+            })  # fmt: skip
+            drawn.notes.append(_words(line.words(axis.unit), "fail", across, line.value)
+                               | {"yref": "paper", "y": top, "yanchor": "bottom"})  # fmt: skip
+    else:
+        low, high = vertical_span(panel, axis.named)
+        vertical["range"] = [low, high]
+        below_names = axis.named and number == 0
+        shapes, notes = _limits(panel, up, low, high, below_names=below_names)
+        drawn.shapes.extend(shapes)
+        drawn.notes.extend(notes)
+    if panel.kind == "outline":
+        vertical["scaleanchor"] = across
+    drawn.axes[f"yaxis{end}"] = vertical
+    if panel.title or panel.note:
+        drawn.notes.append({
+            "text": f"<b>{html.escape(panel.title)}</b> {html.escape(panel.note)}".strip(),
+            "showarrow": False, "xref": "paper", "x": 0, "xanchor": "left", "yref": "paper",
+            "y": top, "yanchor": "bottom",
+        })  # fmt: skip
+    common: Spec = {"xaxis": across, "yaxis": up}
+    entry: Spec = {"showlegend": legend} | ({"legend": f"legend{end}"} if legend else {})
+    if legend and number:
+        drawn.axes[f"legend{end}"] = {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom",
+                                      "traceorder": "normal"}  # fmt: skip
+    for curve in panel.curves:
+        x = _numbers(curve.x)
+        if axis.second is None:
+            common |= {"x": x, "customdata": x}
+        drawn.traces.extend(common | edge for edge in _ribbon(curve))
+        # one curve of the figure shows the second axis
+        first = axis.second and not any("hovertemplate" in trace for trace in drawn.traces)
+        trace = _curve(curve, panel, axis, _HOVER_CAM if first else "")
+        drawn.traces.append(common | trace | entry)
+        if panel.kind != "bars":
+            drawn.notes.extend(
+                _words(note, "muted", across, at)
+                | {"yref": up, "y": value, "yshift": 4, "yanchor": "bottom"}
+                for note, at, value in zip(curve.notes, x, _numbers(curve.y), strict=False)
+                if value is not None
+            )
+
+
+def _words(text: str, colour: str, axis: str, x: Json) -> Spec:
+    """A text at a place of a horizontal axis."""
+    return {"text": html.escape(text), "showarrow": False, "xref": axis, "x": x,
+            "font": {"color": colour, "size": 10}}  # fmt: skip
+
+
+def _horizontal(axis: HorizontalAxis, anchor: str) -> Spec:
+    """A horizontal axis below the panel of a vertical one."""
+    spec: Spec = {"range": list(axis.span), "fixedrange": True, "anchor": anchor,
+                  "title": {"text": html.escape(axis.words)}}  # fmt: skip
+    step = 1 if axis.whole else axis.step
+    return spec if step is None else spec | {"dtick": step}
 
 
 @dataclass(frozen=True)
@@ -224,16 +233,20 @@ class _Lines:
     domains: tuple[tuple[float, float], ...]
 
     @classmethod
-    def of(cls, figure: AngleFigure | LineFigure) -> _Lines:
-        gaps = [_GAP_PIXELS + _LEGEND_PIXELS * legend for legend in figure.legends[1:]]
+    def of(cls, figure: Figure) -> _Lines:
+        headings = [
+            _LEGEND_PIXELS * (legend + bool(panel.title or panel.note))
+            for legend, panel in zip(figure.legends, figure.panels, strict=True)
+        ]
+        feet = [_GAP_PIXELS if p.axis is None else _BOTTOM_PIXELS for p in figure.panels]
+        gaps = [foot + heading for foot, heading in zip(feet, headings[1:], strict=False)]
         heights = [_PANEL_PIXELS * panel.height for panel in figure.panels]
         whole = sum(heights) + sum(gaps)
         edge, domains = whole, []
         for height, gap in zip(heights, [*gaps, 0], strict=True):
             domains.append((max(edge - height, 0.0) / whole, edge / whole))
             edge -= height + gap
-        axis = _TOP_PIXELS if isinstance(figure, AngleFigure) else _GAP_PIXELS
-        top = axis + (_LEGEND_PIXELS if figure.legends[0] else 0)
+        top = (_TOP_PIXELS if figure.axis.second else _GAP_PIXELS) + headings[0]
         return cls(round(whole) + top + _BOTTOM_PIXELS, top, tuple(domains))
 
 
@@ -244,7 +257,7 @@ def _limits(
     placed = placed_limits(panel, low, high)
     shapes: list[Spec] = [
         {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "yref": axis, "y0": line.value,
-         "y1": line.value, "line": {"color": "fail", "width": 1.2, "dash": "dash"}}
+         "y1": line.value, "line": _LIMIT}
         for line, _ in placed.inside
     ]  # fmt: skip
     # a limit outside the axes is written at the edge; the upper one may have names of marks
@@ -261,47 +274,58 @@ def _limits(
     return shapes, notes
 
 
-def _mark_names(figure: AngleFigure) -> list[Spec]:
-    """Names of the marks at the top of the first panel."""
-    return [
-        {"xref": "x", "x": 0.5 * (mark.start + mark.end), "yref": "paper", "y": 1, "yanchor": "top",
-         "showarrow": False, "text": html.escape(mark.name), "font": {"color": "muted", "size": 10}}
-        for mark in figure.marks
-    ]  # fmt: skip
+def _mark(mark: AxisMark, drawn: _Drawn) -> None:
+    """A mark over all panels, with its name at the top."""
+    common: Spec = {"xref": "x", "x0": mark.start, "yref": "paper", "y0": 0, "y1": 1}
+    name: Spec = {"yref": "paper", "y": 1, "yanchor": "top"}
+    if mark.end is not None:
+        if mark.shaded:
+            drawn.shapes.append(common | {"type": "rect", "x1": mark.end, "fillcolor": "shade",
+                                          "line": {"width": 0}, "layer": "below"})  # fmt: skip
+        middle = 0.5 * (mark.start + mark.end)
+        drawn.notes.append(_words(mark.name, "muted", "x", middle) | name)
+        return
+    dotted: Spec = {"color": "muted" if mark.name else "ink", "width": 1, "dash": "dot"}
+    drawn.shapes.append(common | {"type": "line", "x1": mark.start, "line": dotted})
+    if mark.name:
+        aside: Spec = {"xanchor": "right", "textangle": -90, "bgcolor": "card"}
+        drawn.notes.append(_words(mark.name, "muted", "x", mark.start) | name | aside)
 
 
-def _curve(curve: Curve, panel: Panel, hover: str) -> Spec:
-    name, unit = html.escape(curve.label or panel.quantity), html.escape(panel.unit)
-    return {
-        "name": name, "y": _numbers(closed(curve.values)), "meta": unit,
-        "line": {"color": curve.colour, "width": 1.8, "dash": "dash" if curve.dashed else "solid"},
-        "hovertemplate": f"%{{y:.5g}} {unit}{hover}<extra>{name}</extra>",
+def _curve(curve: Curve, panel: Panel, axis: HorizontalAxis, hover: str) -> Spec:
+    flat = panel.kind == "bars"
+    along, quantity, unit = (
+        ("x", axis.quantity, axis.unit) if flat else ("y", panel.quantity, panel.unit)
+    )
+    name, unit = html.escape(curve.label or quantity), html.escape(unit)
+    spec: Spec = {
+        "name": name, "y": _numbers(curve.y), "meta": unit,
+        "hovertemplate": f"%{{{along}:.5g}} {unit}{hover}<extra>{name}</extra>",
+    }  # fmt: skip
+    if curve.look == "bar":
+        bar: Spec = {"type": "bar", "marker": {"color": curve.colour}}
+        if not flat:
+            return spec | bar
+        start, length = map(_numbers, curve.bars(axis.span[1]))
+        return spec | bar | {"orientation": "h", "base": start, "x": length}
+    mode, width, dash, size, symbol = _LOOKS[curve.look]
+    fill: Spec = {"fill": "toself", "fillcolor": "steel"} if curve.look == "fill" else {}
+    return spec | fill | {
+        "type": "scatter", "mode": mode,
+        "line": {"color": curve.colour, "width": width, "dash": dash},
+        "marker": {"color": curve.colour, "size": size, "symbol": symbol},
     }  # fmt: skip
 
 
-def _band(curve: Curve) -> list[Spec]:
+def _ribbon(curve: Curve) -> list[Spec]:
     """Lower and upper edge of the ribbon of a curve."""
-    if curve.band is None:
+    if curve.upper is None or curve.look == "bar":
         return []
-    edge: Spec = {"showlegend": False, "hoverinfo": "skip",
+    edge: Spec = {"type": "scatter", "mode": "lines", "showlegend": False, "hoverinfo": "skip",
                   "line": {"width": 0, "color": curve.colour}}  # fmt: skip
-    below, above = (edge | {"y": _numbers(closed(values), _BAND_DIGITS)} for values in curve.band)
+    lower = curve.y if curve.lower is None else curve.lower
+    below, above = (edge | {"y": _numbers(each, _BAND_DIGITS)} for each in (lower, curve.upper))
     return [below, above | {"fill": "tonexty", "fillcolor": curve.colour}]
-
-
-def _shades(figure: AngleFigure) -> list[Spec]:
-    """Shaded marks and the dotted line of the worst angle."""
-    common: Spec = {"xref": "x", "yref": "paper", "y0": 0, "y1": 1}
-    shapes = [
-        common | {"type": "rect", "x0": mark.start, "x1": mark.end, "fillcolor": "shade",
-                  "line": {"width": 0}, "layer": "below"}
-        for mark in figure.marks if mark.shaded
-    ]  # fmt: skip
-    if figure.mark is not None:
-        dotted: Spec = {"color": "ink", "width": 1, "dash": "dot"}
-        shapes.append(common | {"type": "line", "x0": figure.mark, "x1": figure.mark,
-                                "line": dotted})  # fmt: skip
-    return shapes
 
 
 def _outline(figure: OutlineFigure | ContoursFigure) -> Spec:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from camwright.geometry.errors import InputError
+from camwright.geometry.figures import AxisMark
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import Json
 from camwright.reports.report_tables import Record
@@ -17,16 +18,6 @@ _WHOLE = 1e-6  # of the cycles in a cam turn
 
 
 @dataclass(frozen=True)
-class NamedStroke:
-    """Named part of the cycle, deg of the shaft; every second one is shaded."""
-
-    start: float
-    end: float
-    name: str
-    shaded: bool
-
-
-@dataclass(frozen=True)
 class MachineWords:
     """Names of shaft, cycle and strokes of a machine.
 
@@ -35,13 +26,13 @@ class MachineWords:
     shaft : str    "crank" of an engine; else "shaft"
     alone : str    the machine without the cam, in pictures
     origin : str   one sentence on the shaft angle 0; "" where the case has none
-    marks : tuple  named parts of all cycles of a cam turn
+    marks : tuple  named parts of all cycles of a cam turn, deg of the shaft; every second is shaded
     """
 
     shaft: str
     alone: str
     origin: str
-    marks: tuple[NamedStroke, ...] = ()
+    marks: tuple[AxisMark, ...] = ()
 
     @property
     def title(self) -> str:
@@ -71,7 +62,7 @@ def words_of(case: Record, gear_ratio: float, *, balances: bool = True) -> Machi
     return MachineWords("crank", "engine alone", origin, marks)
 
 
-def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[NamedStroke, ...]:
+def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[AxisMark, ...]:
     """Marks that a torque carries, in every cycle of a cam turn."""
     stated = torque.get("marks")
     rows = [row for row in stated if isinstance(row, Mapping)] if isinstance(stated, list) else []
@@ -85,13 +76,13 @@ def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[NamedStroke, ...
 
 def _repeated(
     starts: list[float], names: list[str] | tuple[str, ...], cycle: float, turn: float
-) -> tuple[NamedStroke, ...]:
+) -> tuple[AxisMark, ...]:
     count = round(turn / cycle)
     if not starts or count < 1 or abs(turn / cycle - count) > _WHOLE * count:
         return ()
     ends = [*starts[1:], cycle]
     return tuple(
-        NamedStroke(k * cycle + start, k * cycle + end, name, place % 2 == 1)
+        AxisMark(k * cycle + start, name, k * cycle + end, place % 2 == 1)
         for k in range(count)
         for place, (start, end, name) in enumerate(zip(starts, ends, names, strict=True))
     )

@@ -10,7 +10,7 @@ from itertools import cycle
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.reports.figures import SERIES, Curve, Figure, LimitLine, LineFigure, Panel
+from camwright.geometry.figures import SERIES, AxisMark, Curve, Figure, LimitLine, Panel, over
 from camwright.reports.report_tables import Record, number
 from camwright.reports.sheet_turn import SheetTurn, angle_figure, both_ways, curves_of, lowest
 
@@ -58,11 +58,10 @@ def _spring_force(turn: SheetTurn) -> Figure | None:
     if free and wire and isinstance(coils, (int, float)) and spring.get("kind", "coil") == "coil":
         solid = wire * (coils + _DEAD_COILS)
         limits = (LimitLine(float(rate * (free - solid)), "all coils closed"),)
-    return LineFigure(
+    return over(
         "spring-force", "Spring force over the travel",
         "Force of the spring at the lifts of the turn, without friction and surge.",
-        "lift", "mm", at, (Panel("force", "N", (Curve("", used, "blue"),), limits,
-                                 from_zero=True),),
+        "lift", "mm", (Panel("force", "N", (Curve(at, used),), limits, from_zero=True),),
     )  # fmt: skip
 
 
@@ -79,16 +78,18 @@ def _energy(turn: SheetTurn) -> Figure | None:
     rubbing = _summed(np.abs(friction * speed) / c["cam_speed_rad_per_s"], theta)
     drag = _summed(np.abs(c["viscous_force_N"] * speed) / c["cam_speed_rad_per_s"], theta)
     rest = turn.case.get("follower", {}).get("face") is not None
-    curves = [Curve("spring, above zero lift", spring - spring[np.argmin(lift)], "blue"),
-              Curve("kinetic, of the follower", 0.5 * mass * speed**2, "green")]  # fmt: skip
-    work = [Curve("work of the cam", _summed(c["cam_torque_Nm"], theta), "vermillion"),
-            Curve("guide friction", rubbing + drag, "muted")]  # fmt: skip
+    stored, moving = spring - spring[np.argmin(lift)], 0.5 * mass * speed**2
+    given = _summed(c["cam_torque_Nm"], theta)
+    curves = (Curve(turn.crank, stored, "spring, above zero lift"),
+              Curve(turn.crank, moving, "kinetic, of the follower", "green"))  # fmt: skip
+    work = (Curve(turn.crank, given, "work of the cam", "vermillion"),
+            Curve(turn.crank, rubbing + drag, "guide friction", "muted"))  # fmt: skip
     note = " The face rubs on the cam as well." if rest else ""
     return angle_figure(
         turn, "energy", "Energy flow over the cycle",
         "Energy stored in the spring and in the motion of the follower; work that the cam has put "
         f"into the follower and heat of the guides since cam angle 0.{note}",
-        Panel("energy", "J", tuple(curves)), Panel("since angle 0", "J", tuple(work)), mark=False,
+        Panel("energy", "J", curves), Panel("since angle 0", "J", work), mark=False,
     )  # fmt: skip
 
 
@@ -111,7 +112,7 @@ def _load_cases(turn: SheetTurn) -> Figure | None:
     def bars(title: str, unit: str, *rows: tuple[str, str], limits: tuple[LimitLine, ...] = (),
              notes: tuple[str, ...] = ()) -> Panel:  # fmt: skip
         curves = tuple(
-            Curve(label, largest(column), colour, notes=notes if not k else ())
+            Curve(x, largest(column), label, colour, "bar", notes=notes if not k else ())
             for k, ((column, label), colour) in enumerate(zip(rows, SERIES, strict=False))
         )
         return Panel(title, unit, curves, limits, height=0.75, from_zero=True)
@@ -124,10 +125,10 @@ def _load_cases(turn: SheetTurn) -> Figure | None:
         bars("guides", "N", ("guide_reaction_A_N", "guide A"), ("guide_reaction_B_N", "guide B")),
         bars("cam torque", "N m", ("cam_torque_Nm", "")),
     )
-    return LineFigure(
+    return over(
         "load-cases", "Load cases side by side",
         f"Greatest values over the turn in each load case: {', '.join(names)}.{ended}",
-        "load case", "", x, panels, whole=True, bars=True,
+        "load case", "", panels, whole=True,
     )  # fmt: skip
 
 
@@ -143,18 +144,18 @@ def _speed_sweep(turn: SheetTurn) -> Figure | None:
         return None
     columns = (("contact_force_max_N", "greatest"), ("contact_force_min_N", "least"),
                ("elastic_force_min_N", "least, elastic stem"))  # fmt: skip
-    forces = tuple(Curve(label, sweep[name][rows][first], colour)
+    forces = tuple(Curve(speed, sweep[name][rows][first], label, colour)
                    for (name, label), colour in zip(columns, SERIES, strict=False))  # fmt: skip
     surge = surge[first]
-    marks = tuple((float(speed[k]), f"resonance {speed[k]:.0f} rpm") for k in _peaks(surge))
+    marks = tuple(AxisMark(float(speed[k]), f"resonance {speed[k]:.0f} rpm") for k in _peaks(surge))
     panels = [Panel("contact force", "N", forces, (_LOST,))]
     if np.any(surge):
-        panels.append(Panel("spring surge", "N", (Curve("", surge, "blue"),), height=0.8))
-    return LineFigure(
+        panels.append(Panel("spring surge", "N", (Curve(speed, surge),), height=0.8))
+    return over(
         "speed-sweep", "Speed sweep",
         f"Extremes over a turn at constant speeds of the {turn.words.shaft}, surge of the spring "
         "included; resonances of the spring with the harmonics of the lift.",
-        f"{turn.words.shaft} speed", "rpm", speed, tuple(panels), marks=marks,
+        f"{turn.words.shaft} speed", "rpm", panels, marks=marks,
     )  # fmt: skip
 
 
@@ -252,8 +253,8 @@ def _speed(turn: SheetTurn) -> Figure | None:
         load = turn.columns[f"guide_normal_load_{name}_N"]
         if length and diameter:
             pv = np.abs(load * velocity) / (length * diameter)
-            curves.append(Curve(f"guide {name}", pv, colour))
-            means.append(Curve(f"guide {name}", np.full_like(pv, pv.mean()), colour))
+            curves.append(Curve(turn.crank, pv, f"guide {name}", colour))
+            means.append(replace(curves[-1], y=np.full_like(pv, pv.mean())))
             limits += turn.limit(f"limit {name}", "MPa m/s", f"guide_pv_{name}")
     return angle_figure(
         turn, "speed", "Follower velocity and guide PV",
@@ -271,8 +272,9 @@ def _roller(turn: SheetTurn) -> Figure | None:
     creepage = [
         replace(
             each,
-            values=1e6 * each.values,
-            band=None if each.band is None else (1e6 * each.band[0], 1e6 * each.band[1]),
+            y=1e6 * each.y,
+            lower=None if each.lower is None else 1e6 * each.lower,
+            upper=None if each.upper is None else 1e6 * each.upper,
         )
         for each in curves_of(turn, ("creepage", ""))
     ]
@@ -379,19 +381,19 @@ def _goodman(turn: SheetTurn, part: str) -> Figure | None:
     required, points = float(record["required_safety"]), list(map(_relative, record["points"]))
     x = np.array(sorted({0.0, 1.0, 1.0 / required} | {mean for _, mean, _ in points}))
     curves = [
-        Curve("Goodman line", 1.0 - x, "fail"),
-        Curve(f"safety {required:.3g}", np.clip(1.0 / required - x, 0.0, None), "muted"),
+        Curve(x, 1.0 - x, "Goodman line", "fail"),
+        Curve(x, np.clip(1.0 / required - x, 0.0, None), f"safety {required:.3g}", "muted"),
     ]
     for (label, mean, amplitude), colour in zip(points, cycle(SERIES), strict=False):
-        curves.append(Curve(label, np.where(x == mean, amplitude, np.nan), colour))
+        curves.append(Curve(x, np.where(x == mean, amplitude, np.nan), label, colour, "spot"))
     first = record["points"][0]
-    return LineFigure(
+    return over(
         f"goodman-{part}", f"Goodman diagram of the {part}",
         "Amplitude of the stress over the endurance strength, by mean stress over the static "
         "strength, where it is used most; safe below the grey line. Endurance of the "
         f"{first['name']} {number(first['endurance_MPa'])} MPa, strength "
         f"{number(first['strength_MPa'])} MPa.",
-        "mean stress / strength", "", x,
+        "mean stress / strength", "",
         (Panel("amplitude / endurance", "", tuple(curves), height=1.3, from_zero=True),),
         dots=False,
     )  # fmt: skip

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from camwright.geometry.errors import ResultError
+from camwright.geometry.figures import SERIES
 from camwright.pipeline.base.files import parse_toml
 from camwright.pipeline.base.worker_processes import PendingCall
 from camwright.pipeline.results.run_reader import Run, TrialRecord, read_run
-from camwright.reports.figures import SERIES
 from camwright.reports.report_tables import Record, shortened
 from camwright.reports.sheet_turn import SheetTurn
 from camwright.reports.verdict_text import governing_load_case

@@ -9,10 +9,10 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.figures import SERIES, Curve, Figure, LimitLine, Panel, over_turn
 from camwright.pipeline.base import units
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.results.run_reader import TrialRecord
-from camwright.reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, Panel
 from camwright.reports.machine_words import MachineWords, words_of
 from camwright.reports.report_tables import Record, in_unit
 
@@ -183,19 +183,20 @@ def curves_of(
         values = turn.columns.get(column)
         if values is None or not np.isfinite(values).any():
             continue
-        band = None
-        if len(turn.others) > 1 and number not in dashed:
+        curve = Curve(turn.crank, values, label, SERIES[number % len(SERIES)])
+        if number in dashed:
+            curve = replace(curve, look="dashed")
+        elif len(turn.others) > 1:
             stack = [other[column] for other in turn.others if other[column].size == values.size]
-            band = (np.min(stack, axis=0), np.max(stack, axis=0))
-        made.append(Curve(label, values, SERIES[number % len(SERIES)], number in dashed, band))
+            curve = replace(curve, lower=np.min(stack, axis=0), upper=np.max(stack, axis=0))
+        made.append(curve)
     return tuple(made)
 
 
 def angle_figure(
-    turn: SheetTurn, figure_id: str, title: str, caption: str, *panels: Panel, mark: bool = True,
-    crank: Array | None = None,
-) -> Figure | None:  # fmt: skip
-    """Figure of the panels that have curves; None without any."""
+    turn: SheetTurn, figure_id: str, title: str, caption: str, *panels: Panel, mark: bool = True
+) -> Figure | None:
+    """Figure over the turn of the panels that have curves; None without any."""
     drawn = tuple(panel for panel in panels if panel.curves)
     if not drawn:
         return None
@@ -204,19 +205,21 @@ def angle_figure(
             for panel in drawn for curve in panel.curves if _is_zero(curve)]  # fmt: skip
     named = ", ".join(zero) if full else ""
     full = full or drawn
-    return AngleFigure(
-        figure_id, title, f"{caption} Zero at all angles: {named}." if named else caption,
-        turn.crank if crank is None else crank, full, turn.gear_ratio,
-        marks=turn.words.marks,
-        shaft=turn.words.shaft,
+    return over_turn(
+        figure_id, title, f"{caption} Zero at all angles: {named}." if named else caption, full,
+        ratio=turn.gear_ratio, shaft=turn.words.shaft, marks=turn.words.marks,
         worst=float(turn.crank[turn.worst]) if mark else None,
     )  # fmt: skip
 
 
 def _is_zero(curve: Curve) -> bool:
     """Whether a curve is zero at all angles, up to underflow, in its ribbon too."""
-    shown = (curve.values, *(curve.band or ()))
-    return all(np.max(np.abs(np.nan_to_num(part)), initial=0.0) < _UNDERFLOW for part in shown)
+    return _size(curve) < _UNDERFLOW
+
+
+def _size(curve: Curve) -> float:
+    """Greatest magnitude of a curve and its ribbon."""
+    return float(np.max(np.abs(np.nan_to_num(curve.reached)), initial=0.0))
 
 
 def _apart(panel: Panel) -> tuple[Panel, ...]:
@@ -227,8 +230,7 @@ def _apart(panel: Panel) -> tuple[Panel, ...]:
     curves = tuple(curve for curve in panel.curves if not _is_zero(curve))
     if not curves:
         return ()
-    sizes = [max(float(np.max(np.abs(np.nan_to_num(part))))
-                 for part in (curve.values, *(curve.band or ()))) for curve in curves]  # fmt: skip
+    sizes = list(map(_size, curves))
     flat = [size < _FLAT * max(sizes) for size in sizes]
     large = tuple(curve for curve, small in zip(curves, flat, strict=True) if not small)
     little = tuple(curve for curve, small in zip(curves, flat, strict=True) if small)

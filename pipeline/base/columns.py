@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.display import panels_of
 from camwright.geometry.errors import InputError
+from camwright.geometry.figures import SERIES, Curve, DrawnAxes, Panel, over, plotted
 from camwright.pipeline.base.extras import require_extra
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 Cells = NDArray[np.float64] | NDArray[np.str_]
 
@@ -27,7 +27,7 @@ def data_frame(columns: Mapping[str, object]) -> pd.DataFrame:
     return pd.DataFrame(dict(columns))
 
 
-def curves(columns: Mapping[str, NDArray[Any]], headers: Sequence[str]) -> tuple[Axes, ...]:
+def curves(columns: Mapping[str, NDArray[Any]], headers: Sequence[str]) -> DrawnAxes:
     """Curves of columns over the first column of numbers; see `Table.plot`."""
     numbers = [header for header, cells in columns.items() if cells.dtype.kind == "f"]
     angles = [header for header in numbers if header.endswith("angle_deg")]
@@ -40,14 +40,12 @@ def curves(columns: Mapping[str, NDArray[Any]], headers: Sequence[str]) -> tuple
             raise InputError("header", header, f"one of {', '.join(numbers)}")
     owners = next((cells for cells in columns.values() if cells.dtype.kind == "U"), None)
     names = [""] if owners is None else list(dict.fromkeys(owners.tolist()))
-    panels = panels_of(len(chosen))
-    for axes, header in zip(panels, chosen, strict=True):
-        for name in names:
-            rows = slice(None) if owners is None else owners == name
-            axes.plot(columns[numbers[0]][rows], columns[header][rows], label=name)
-        axes.set_ylabel(header)
-        axes.grid(alpha=0.3)
-    if len(names) > 1:
-        panels[0].legend(fontsize="small")
-    panels[-1].set_xlabel(numbers[0])
-    return panels
+    rows = [slice(None) if owners is None else owners == name for name in names]
+    panels = [
+        Panel(header, "", tuple(
+            Curve(columns[numbers[0]][row], columns[header][row], name, colour)
+            for name, row, colour in zip(names, rows, cycle(SERIES), strict=False)
+        ))
+        for header in chosen
+    ]  # fmt: skip
+    return plotted(over("columns", "", "", numbers[0], "", panels, dots=False))

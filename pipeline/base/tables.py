@@ -18,13 +18,13 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.display import Displayed, html_table
 from camwright.geometry.errors import ResultError
+from camwright.geometry.figures import DrawnAxes
 from camwright.pipeline.base import units
 from camwright.pipeline.base.columns import Cells, curves, data_frame
 from camwright.pipeline.base.files import read_text
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 Texts = NDArray[np.str_]
 RANGE = ("column", "least", "greatest")
@@ -136,7 +136,7 @@ class Table(Displayed):
         """
         return data_frame(self.columns)
 
-    def plot(self, *headers: str) -> tuple[Axes, ...]:
+    def plot(self, *headers: str) -> DrawnAxes:
         """Curves of columns over the first column of numbers, one panel each, by load case.
 
         Parameters
@@ -192,7 +192,7 @@ class Tabled(Displayed, ABC):
         """The columns as a data frame of pandas; see `Table.to_pandas`."""
         return self.table.to_pandas()
 
-    def plot(self, *headers: str) -> tuple[Axes, ...]:
+    def plot(self, *headers: str) -> DrawnAxes:
         """Curves of columns, one panel each; see `Table.plot`."""
         return self.table.plot(*headers)
 

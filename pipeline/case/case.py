@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
@@ -11,8 +12,9 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.contour import Contour
-from camwright.geometry.display import Displayed, panels_of
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
+from camwright.geometry.figures import SERIES, Curve, DrawnAxes, Panel, closed, over, plotted
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.columns import data_frame
 from camwright.pipeline.base.cooling import Cooling
@@ -52,7 +54,6 @@ from camwright.pipeline.torque.period import FOUR_STROKE, Period
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 INPUTS = "inputs"
 Materials = Annotated[
@@ -185,7 +186,7 @@ class Case(Displayed, Section):
         values = dict(_keyed("", self.tables()))
         return data_frame({"key": list(values), "value": list(values.values())})
 
-    def plot(self) -> tuple[Axes, ...]:
+    def plot(self) -> DrawnAxes:
         """Torque that the cam balances, a curve a load case, over the shaft angle of a cam turn;
         of a case that states its lift the lift, see `Lift.plot`.
 
@@ -199,15 +200,16 @@ class Case(Displayed, Section):
 
         if not self.balances:
             return given_lift(self).plot()
-        (axes,) = panels_of(1)
-        for name, torque in engine_torques(self).items():
-            angle = np.degrees(np.append(torque.theta, torque.span))
-            axes.plot(angle, np.append(torque.total, torque.total[0]), label=name)
-        axes.set_xlabel("shaft angle, deg")
-        axes.set_ylabel("torque, N m")
-        axes.grid(alpha=0.3)
-        axes.legend(fontsize="small")
-        return (axes,)
+        curves = [
+            Curve(
+                np.degrees(np.append(torque.theta, torque.span)), closed(torque.total), name, colour
+            )
+            for (name, torque), colour in zip(
+                engine_torques(self).items(), cycle(SERIES), strict=False
+            )
+        ]
+        panels = [Panel("torque", "N m", tuple(curves))]
+        return plotted(over("torque", "Torque", "", "shaft angle", "deg", panels))
 
     def to_toml(self) -> str:
         """The case with every default written out; reads back bit for bit.

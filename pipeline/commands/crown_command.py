@@ -57,7 +57,7 @@ def crown(
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.search.crown import crown_design
     from camwright.pipeline.search.crown.crown_record import crown_lines, crown_record
-    from camwright.reports.comparisons.crown_picture import draw
+    from camwright.reports.figure_svg import png_of
 
     if out is not None and out.exists() and any(out.iterdir()):
         raise ResultError(f"{out}: exists already and is not empty, not overwritten")
@@ -85,7 +85,7 @@ def crown(
         write_atomic(out / crown_design.CASE_TEXT, design.text)
         write_atomic(out / crown_design.DROP_TABLE, design.drop_table)
         write_atomic(out / "crown.json", json_text(record) + "\n")
-        picture = draw(record, out / "crown.png")
+        picture = write_atomic(out / "crown.png", png_of(design.figure))
         if not as_json:
             stdout.print(f"case text, drop table, record: {out}\npicture: {picture}", markup=False)
     return PASSED

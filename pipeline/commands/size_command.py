@@ -55,7 +55,7 @@ def size(
     from camwright.pipeline.base import units
     from camwright.pipeline.search.sizes.size_record import size_lines, size_record
     from camwright.pipeline.search.sizes.sizing import size as sizes
-    from camwright.reports.comparisons.size_picture import draw
+    from camwright.reports.figure_svg import write_figure
 
     if chart is not None and chart.suffix not in _PICTURES:
         raise InputError("--chart", str(chart), f"a file that ends in {' or '.join(_PICTURES)}")
@@ -76,7 +76,7 @@ def size(
     if out is not None:
         sizing.opened.write(sizing.text, out)
     if picture is not None:
-        draw(record, picture)
+        write_figure(sizing.figure, picture)
     if not as_json:
         for words, path in (("case", out), ("chart", picture)):
             if path is not None:

@@ -11,7 +11,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
-from camwright.geometry.display import Displayed, html_table, in_brief, panels_of
+import numpy as np
+
+from camwright.geometry.display import Displayed, html_table, in_brief
+from camwright.geometry.figures import (
+    Curve,
+    DrawnAxes,
+    Figure,
+    HorizontalAxis,
+    LimitLine,
+    Panel,
+    plotted,
+)
 from camwright.pipeline.base.columns import data_frame
 from camwright.pipeline.base.verdict import (
     CERTIFIED,
@@ -28,7 +39,6 @@ from camwright.pipeline.records.run_summary import StatedVerdict
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 _RECORD_DIGITS = 1e-12
 """Relative error of a sum of numbers with the 15 digits of a record."""
@@ -169,8 +179,8 @@ class CheckList(Displayed, tuple[Item, ...]):
         """A row per check, in the units of the column ``unit``; see `Table.to_pandas`."""
         return data_frame({key: [record.get(key) for record in self.records] for key in _SHOWN})
 
-    def plot(self, most: int = 12) -> tuple[Axes, ...]:
-        """Bars of the greatest utilisations with their values; drawn to twice the limit.
+    def plot(self, most: int = 12) -> DrawnAxes:
+        """Bars of the greatest utilisations with their values, on an axis to twice the limit.
 
         Parameters
         ----------
@@ -181,17 +191,17 @@ class CheckList(Displayed, tuple[Item, ...]):
             ((value, record) for value, record in used if value is not None),
             key=lambda each: -each[0],
         )[:most]
-        (axes,) = panels_of(1, (7.0, 0.3 * len(ranked) + 0.4))
-        colours = [_COLOURS[str(record["status"])] for _, record in ranked]
-        titles = [str(record["title"]) for _, record in ranked]
-        drawn = [min(value, _LONGEST_BAR) for value, _ in ranked]
-        bars = axes.barh(range(len(ranked)), drawn, color=colours)
-        axes.bar_label(bars, [f" {value:.3g}" for value, _ in ranked], fontsize="small")
-        axes.set_yticks(range(len(ranked)), titles, fontsize="small")
-        axes.invert_yaxis()
-        axes.axvline(1.0, color="black", linewidth=0.8)
-        axes.set_xlabel("utilisation")
-        return (axes,)
+        titles = tuple(str(record["title"]) for _, record in ranked)
+        used_by = np.array([value for value, _ in ranked])
+        statuses = np.array([record["status"] for _, record in ranked])
+        rows = [(status, np.flatnonzero(statuses == status)) for status in _COLOURS]
+        bars = tuple(
+            Curve(used_by[row], row.astype(float), status, _COLOURS[status], "bar", notes=titles)
+            for status, row in rows if row.size
+        )  # fmt: skip
+        axis = HorizontalAxis("utilisation", "", (0.0, _LONGEST_BAR))
+        panel = Panel("", "", bars, (LimitLine(1.0, "limit"),), kind="bars")
+        return plotted(Figure("utilisation", "Utilisation", "", (panel,), axis))
 
     def _repr_html_(self) -> str:
         return html_table(repr(self), _SHOWN[:8], map(_row_in_words, self.records))
@@ -206,7 +216,7 @@ class WithChecks(Displayed):
         """A row per check; see `CheckList.to_pandas`."""
         return CheckList(self.checks).to_pandas()
 
-    def plot(self, most: int = 12) -> tuple[Axes, ...]:
+    def plot(self, most: int = 12) -> DrawnAxes:
         """Bars of the greatest utilisations; see `CheckList.plot`."""
         return CheckList(self.checks).plot(most)
 
@@ -224,7 +234,7 @@ _SHOWN = (
 """Columns of a data frame of checks; the first eight in a notebook."""
 _LONGEST_BAR = 2.0
 """Utilisation to which a bar is drawn."""
-_COLOURS = {"pass": "tab:green", "waived": "tab:olive", "fail": "tab:red"}
+_COLOURS = {"pass": "ok", "waived": "warn", "fail": "fail"}
 
 
 def _row_in_words(record: AnyCheck) -> list[str]:

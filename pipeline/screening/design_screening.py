@@ -14,6 +14,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.extrema import sampled_greatest, sampled_least
+from camwright.geometry.figures import DrawnAxes
 from camwright.pipeline.base.columns import curves, data_frame
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
@@ -34,7 +35,6 @@ from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 BLOCK = 500
 """Designs solved at once: arrays of some megabytes."""
@@ -58,7 +58,7 @@ class ScreenedDesigns(Displayed, dict[str, Column]):
         """A row per design; see `Table.to_pandas`."""
         return data_frame(self)
 
-    def plot(self, *names: str) -> tuple[Axes, ...]:
+    def plot(self, *names: str) -> DrawnAxes:
         """Columns over the design number, one panel each; see `Table.plot`.
 
         Without a name the first utilisation.

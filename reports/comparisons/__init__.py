@@ -6,8 +6,6 @@ In the order of use:
 | --------------------- | -------------------------------------------------------------------- |
 | `smoother_page`       | comparison of smoothers                                              |
 | `redesign_page`       | Pareto front of a redesign                                           |
-| `crown_picture`       | axial pressure and drop of a crown                                   |
-| `size_picture`        | chart of cam size: pressure angle and curvature over the base radius |
 | `mechanism_figures`   | slider-crank and eccentric cams: friction energy, torque, workspaces |
 | `inspection_pictures` | deviation of a measured cam, normal force and contact pressure       |
 

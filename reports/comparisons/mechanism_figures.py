@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camwright.geometry.figures import SERIES
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports.figure_svg import COLOURS, png, shipped, style
-from camwright.reports.figures import SERIES
 from camwright.reports.report_tables import Record
 
 if TYPE_CHECKING:

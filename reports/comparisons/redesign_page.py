@@ -6,9 +6,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
+from camwright.geometry.figures import Curve, Figure, Panel, over
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.records.redesign_document import Against, RedesignDocument, is_refused
-from camwright.reports.figure_svg import COLOURS, png, shipped
+from camwright.reports.figure_svg import png_of
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_content import Note, Pictures, ReportSection, SectionBlock, Tabular
@@ -29,10 +32,11 @@ COLUMNS = (
     ("p0_max_MPa", "p0, MPa"),
     ("binding", "active limits"),
 )
-AXES: Mapping[Against, tuple[Literal["cam_radius_mm", "mass_g"], str]] = {
-    "size": ("cam_radius_mm", "maximum cam radius, mm"),
-    "mass": ("mass_g", "mass, g"),
+AXES: Mapping[Against, tuple[Literal["cam_radius_mm", "mass_g"], str, str]] = {
+    "size": ("cam_radius_mm", "maximum cam radius", "mm"),
+    "mass": ("mass_g", "mass", "g"),
 }
+_WIDTH = 7.2  # in, of the picture
 _ROUGH: Mapping[Against, Literal["cam_radius", "mass"]] = {"size": "cam_radius", "mass": "mass"}
 _SCALE = 1e3
 """Of a length or mass in SI to mm or g."""
@@ -49,45 +53,36 @@ def write(folder: Path, document: RedesignDocument) -> Path:
     -------
     Path   the page
     """
-    picture = drawn(document)
+    figure = figure_of(document)
+    picture = png_of(figure, _WIDTH)
     write_atomic(folder / "redesign.png", picture)
-    return write_atomic(folder / "redesign.html", _page(document, picture))
+    shown = Picture(figure.title, alt=figure.alt, png=picture)
+    return write_atomic(folder / "redesign.html", _page(document, shown))
 
 
-@shipped()
-def drawn(document: RedesignDocument) -> bytes:
-    """PNG of residual ripple over size or mass: evaluated designs, front, initial design."""
-    from matplotlib.figure import Figure
-
-    name, label = AXES[document["against"]]
-    canvas = Figure(figsize=(7.2, 4.4), layout="constrained")
-    axes = canvas.add_subplot()
-    rough, initial = _ROUGH[document["against"]], document["given"]
+def figure_of(document: RedesignDocument) -> Figure:
+    """Ripple left over size or mass: evaluated designs, front, initial design."""
+    name, quantity, unit = AXES[document["against"]]
+    rough, initial, curves = _ROUGH[document["against"]], document["given"], list[Curve]()
     tried = [row for row in document["tried"] if not is_refused(row)]
     tried = [row for row in tried if row["feasible"]]
     if tried and not is_refused(initial):
-        before = initial["ripple_before_Nm"]
-        axes.plot([_SCALE * row[rough] for row in tried], [before * row["ripple"] for row in tried],
-                  ".", color=COLOURS["muted"], ms=4, label="coarse evaluations")  # fmt: skip
-    points = document["points"]
-    if points:
-        x, y = [row[name] for row in points], [row["ripple_left_Nm"] for row in points]
-        axes.plot(x, y, "o-", color=COLOURS["blue"], lw=1.4, ms=5, label="front")
-        for k, place in enumerate(zip(x, y, strict=True), start=1):
-            axes.annotate(str(k), place, xytext=(5, 5), textcoords="offset points", fontsize=8)
+        ripple = initial["ripple_before_Nm"] * np.array([row["ripple"] for row in tried])
+        sizes = _SCALE * np.array([row[rough] for row in tried])
+        curves.append(Curve(sizes, ripple, "coarse evaluations", "muted", "points"))
+    if points := document["points"]:
+        x, y = (np.array([row[key] for row in points]) for key in (name, "ripple_left_Nm"))
+        notes = tuple(str(k) for k in range(1, len(points) + 1))
+        curves.append(Curve(x, y, "front", look="marked", notes=notes))
     if not is_refused(initial):
+        x, y = np.array([initial[name]]), np.array([initial["ripple_left_Nm"]])
         words = "initial design, fails" if initial["failing"] else "initial design"
-        axes.plot([initial[name]], [initial["ripple_left_Nm"]], "x", color=COLOURS["vermillion"],
-                  ms=8, mew=2, label=words)  # fmt: skip
-    axes.set_xlabel(label)
-    axes.set_ylabel("residual torque ripple, std, N m")
-    axes.set_ylim(bottom=0.0)
-    axes.grid(color=COLOURS["grid"], lw=0.6)
-    axes.legend(fontsize=8, frameon=False)
-    return png(canvas)
+        curves.append(Curve(x, y, words, "vermillion", "spot"))
+    panel = Panel("residual torque ripple, std", "N m", tuple(curves), height=2.0, from_zero=True)
+    return over("redesign", "Front", "", quantity, unit, [panel], dots=False)
 
 
-def _page(document: RedesignDocument, picture: bytes) -> str:
+def _page(document: RedesignDocument, picture: Picture) -> str:
     title = f"{document['case']}: redesign, ripple against {document['against']}"
     words = (
         "Each point is a case file with the lift of the constrained synthesis, checked by closed "
@@ -100,7 +95,6 @@ def _page(document: RedesignDocument, picture: bytes) -> str:
         for row in document["refused"]
     ]
     pruned = [[str(row["part"]), str(row["why"])] for row in document["pruned"]]
-    alt = f"Residual torque ripple over {AXES[document['against']][1]}"
     excluded = document["without_result"]
     front = [
         *(
@@ -109,7 +103,7 @@ def _page(document: RedesignDocument, picture: bytes) -> str:
             else [SectionBlock(Note(f"{line}.")) for line in excluded["lines"]]
         ),
         _table("Points of the front", [words for _, words in COLUMNS], points, 5, 7),
-        SectionBlock(Pictures([Picture("Front", alt=alt, png=picture)])),
+        SectionBlock(Pictures([picture])),
     ]
     return study_page(title, [
         ReportSection("points", "", front),

@@ -5,21 +5,31 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Mapping, Sequence
-from itertools import cycle
+from itertools import cycle, product
 from pathlib import Path
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.figures import (
+    CAM_STEP,
+    SERIES,
+    Curve,
+    Figure,
+    HorizontalAxis,
+    Look,
+    Panel,
+    closed,
+)
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS, png, shipped, style
-from camwright.reports.figures import CAM_STEP, SERIES
+from camwright.reports.figure_svg import png_of
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_content import Note, Pictures, ReportSection, SectionBlock, Tabular
 from camwright.reports.report_tables import Cell, Record, ReportTable, Scalar, Status, listed, words
 
 Cells = Scalar | Sequence[Scalar]
+_WIDTH = 8.0  # in, of the picture
 COLUMNS = (
     ("rank", "rank"),
     ("smoother", "smoother"),
@@ -64,7 +74,8 @@ def write(
     writer.writerow([name for name, _ in COLUMNS])
     writer.writerows([[_as_text(row.get(name, "")) for name, _ in COLUMNS] for row in rows])
     write_atomic(folder / "smoothers.csv", text.getvalue())
-    picture = drawn(lifts)
+    figure = figure_of(lifts)
+    picture = png_of(figure, _WIDTH)
     write_atomic(folder / "smoothers.png", picture)
     cells = [[_cell(name, row.get(name), common) for name, _ in COLUMNS] for row in rows]
     table = ReportTable("Smoothers", [title for _, title in COLUMNS], cells, 3, 6)
@@ -75,33 +86,23 @@ def write(
             else []
         ),
         SectionBlock(Tabular(table)),
-        SectionBlock(
-            Pictures([Picture("Lift", alt="Lift over one cam turn by smoother", png=picture)])
-        ),
+        SectionBlock(Pictures([Picture(figure.title, alt=figure.alt, png=picture)])),
     ]
     return write_atomic(
         folder / "smoothers.html", study_page(title, [ReportSection("", "", content)], lead)
     )
 
 
-@shipped()
-def drawn(lifts: Mapping[str, Array]) -> bytes:
-    """PNG of the lift of each smoother over one cam turn."""
-    from matplotlib.figure import Figure
-
-    with style("smoothers"):
-        canvas = Figure(figsize=(8.0, 3.6), layout="constrained")
-        axes = canvas.add_subplot()
-        for (label, lift), colour in zip(lifts.items(), cycle(SERIES), strict=False):
-            angle = np.arange(lift.size) * (360.0 / lift.size)
-            width = 2.2 if label == "constrained" else 1.2
-            axes.plot(angle, 1e3 * lift, linewidth=width, color=COLOURS[colour], label=label)
-        axes.set(xlabel="cam angle, deg", ylabel="lift, mm", xlim=(0.0, 360.0))
-        axes.set_xticks(np.arange(0.0, 361.0, CAM_STEP))
-        axes.grid(visible=True, axis="y")
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.legend(frameon=False)
-        return png(canvas)
+def figure_of(lifts: Mapping[str, Array]) -> Figure:
+    """Lifts, m, over one cam turn by their labels."""
+    looks: tuple[Look, ...] = ("line", "dashed", "dotted")
+    signs = cycle(product(looks, SERIES))
+    curves = tuple(
+        Curve(np.linspace(0.0, 360.0, lift.size + 1), 1e3 * closed(lift), label, colour, look)
+        for (label, lift), (look, colour) in zip(lifts.items(), signs, strict=False)
+    )
+    axis = HorizontalAxis("cam angle", "deg", (0.0, 360.0), CAM_STEP)
+    return Figure("smoothers", "Lift", "", (Panel("lift", "mm", curves, height=1.6),), axis)
 
 
 def _as_text(value: Cells) -> str:

@@ -12,8 +12,8 @@ import numpy as np
 from markupsafe import Markup
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.figures import SERIES
 from camwright.reports.figure_svg import COLOURS, FIGURE_WIDTH, LEFT, RIGHT, style, themed
-from camwright.reports.figures import SERIES
 from camwright.reports.report_tables import Record
 
 if TYPE_CHECKING:

@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from textwrap import wrap
 
 import numpy as np
 
+from camwright.geometry.figures import (
+    AxisMark,
+    Curve,
+    Figure,
+    HorizontalAxis,
+    LimitLine,
+    Panel,
+    outline,
+    outline_panel,
+    over,
+)
 from camwright.pipeline.base.files import write_atomic
-from camwright.pipeline.records.design_document import DesignDocument
-from camwright.reports.figure_svg import COLOURS, png, shipped
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from camwright.pipeline.records.design_document import ChosenDesign, DesignDocument
+from camwright.reports.figure_svg import draw, png, style
+from camwright.reports.outline_figures import circle
 
 _MOST = 3.0  # of the sizes of the front: candidates further away are left out
+_LETTERS = 60  # of a line of words
+_WIDTH, _HEIGHT = 11.0, 2.1  # in; of a panel over the others of a report
 
 
 def write(path: Path, document: DesignDocument) -> Path:
@@ -24,94 +36,89 @@ def write(path: Path, document: DesignDocument) -> Path:
     ----------
     document : dict   contents of ``design.json``
     """
-    return write_atomic(path, drawn(document))
+    with style("design"):
+        canvas = draw(figure_of(document), _WIDTH)
+        axes = canvas.axes[-1]
+        axes.clear()
+        axes.set_axis_off()
+        axes.text(0.0, 1.0, _words(document), va="top", family="monospace", fontsize=9)
+        return write_atomic(path, png(canvas))
 
 
-@shipped()
-def drawn(document: DesignDocument) -> bytes:
-    """PNG of a design: torque before and with the cam, front of ripple and size, cam, values."""
-    from matplotlib.figure import Figure
+def figure_of(document: DesignDocument) -> Figure:
+    """Torque before and with the cam, ripple over size, cam with roller; an empty place for words.
 
-    canvas = Figure(figsize=(11.0, 7.8), layout="constrained")
-    axes = canvas.subplots(2, 2)
-    _torque(axes[0, 0], document)
-    _front(axes[0, 1], document)
-    _cam(axes[1, 0], document)
-    _words(axes[1, 1], document)
-    return png(canvas)
+    Without a design that passes there is no cam.
+    """
+    chosen = document["chosen"]
+    panels = [_torque(document), _front(document)]
+    if chosen is not None:
+        panels.append(_cam(chosen))
+    place = Panel("", "", (), height=_HEIGHT)
+    return Figure("design", "Design", "", (*panels, place), columns=2)
 
 
-def _torque(axes: Axes, document: DesignDocument) -> None:
+def _torque(document: DesignDocument) -> Panel:
     demand, chosen = document["torque"], document["chosen"]
-    before = np.array(demand["values_Nm"])
-    angle = np.arange(before.size) * (demand["cycle_deg"] / before.size)
-    axes.plot(angle, before, color=COLOURS["muted"], lw=1.4, label="torque of the machine")
+    cycle, before = demand["cycle_deg"], np.array(demand["values_Nm"])
+    angle = np.arange(before.size, dtype=float) * (cycle / before.size)
+    curves = [Curve(angle, before, "torque of the machine", "muted")]
     if chosen is not None:
         after = np.array(chosen["torque_after_Nm"])
-        turn = np.arange(after.size) * (360.0 * demand["ratio"] / after.size)
-        shown = turn <= demand["cycle_deg"]
-        axes.plot(turn[shown], after[shown], color=COLOURS["blue"], lw=1.6, label="with the cam")
-    axes.set_xlabel("shaft angle, deg")
-    axes.set_ylabel("torque about its mean, N m")
-    _finish(axes, "Torque over one cycle")
+        turn = np.arange(after.size, dtype=float) * (360.0 * demand["ratio"] / after.size)
+        shown = turn <= cycle
+        curves.append(Curve(turn[shown], after[shown], "with the cam"))
+    axis = HorizontalAxis("shaft angle", "deg", (0.0, cycle), cycle / 8.0)
+    return Panel(
+        "torque about its mean", "N m", tuple(curves), height=_HEIGHT,
+        title="Torque over one cycle", axis=axis,
+    )  # fmt: skip
 
 
-def _front(axes: Axes, document: DesignDocument) -> None:
-    points, chosen = document["points"], document["chosen"]
-    cloud = document["cloud"]
+def _front(document: DesignDocument) -> Panel:
+    points, chosen, cloud = document["points"], document["chosen"], document["cloud"]
     if points:
         far = _MOST * points[-1]["size_mm"]
         cloud = [each for each in cloud if each[0] <= far]
+    curves = []
     for within, words, colour in (
-        (False, "screened, beyond a limit", "grid"),
+        (False, "screened, beyond a limit", "line"),
         (True, "screened, within limits", "muted"),
     ):
         own = [each for each in cloud if each[2] is within]
         if own:
-            axes.plot([each[0] for each in own], [each[1] for each in own], ".",
-                      color=COLOURS[colour], ms=4, label=words)  # fmt: skip
+            x, y, _ = np.array(own).T
+            curves.append(Curve(x, y, words, colour, "points"))
     if points:
-        sizes = [row["size_mm"] for row in points]
-        axes.plot(sizes, [row["ripple_left_Nm"] for row in points], "o-",
-                  color=COLOURS["blue"], lw=1.4, ms=5, label="front, synthesised")  # fmt: skip
+        x, y = (np.array([row[key] for row in points]) for key in ("size_mm", "ripple_left_Nm"))
+        curves.append(Curve(x, y, "front, synthesised", look="marked"))
     if chosen is not None:
-        axes.plot([chosen["size_mm"]], [chosen["ripple_left_Nm"]], "s", mfc="none", ms=11, mew=1.8,
-                  color=COLOURS["vermillion"], label="chosen")  # fmt: skip
+        x, y = np.array([chosen["size_mm"]]), np.array([chosen["ripple_left_Nm"]])
+        curves.append(Curve(x, y, "chosen", "vermillion", "spot"))
     allowed = (1.0 - document["remove"]) * document["torque"]["ripple_Nm"]
-    axes.axhline(allowed, color=COLOURS["vermillion"], lw=1.0, ls="--", label="allowed")
-    if document["space_mm"] is not None:
-        axes.axvline(document["space_mm"], color=COLOURS["vermillion"], lw=1.0, ls=":",
-                     label="space")  # fmt: skip
-    axes.set_ylim(0.0, 2.0 * allowed)
-    axes.set_xlabel("size, mm: far side of the cam to the top of the roller")
-    axes.set_ylabel("torque ripple left (std), N m")
-    _finish(axes, "Ripple against size")
+    space = document["space_mm"]
+    panel = Panel(
+        "torque ripple left (std)", "N m", tuple(curves), (LimitLine(allowed, "allowed"),),
+        height=_HEIGHT, span=(0.0, 2.0 * allowed), title="Ripple against size",
+    )  # fmt: skip
+    marks = () if space is None else (AxisMark(space, "space"),)
+    words = "size, far side of the cam to the top of the roller"
+    over_size = over("front", "", "", words, "mm", [panel], dots=False, marks=marks)
+    return replace(panel, axis=over_size.axis)
 
 
-def _cam(axes: Axes, document: DesignDocument) -> None:
-    chosen = document["chosen"]
-    if chosen is None:
-        axes.axis("off")
-        return
-    axes.set_title("Cam, shaft and roller at the base circle, mm", fontsize=10, loc="left")
-    axes.set_axisbelow(True)
-    x, y = np.array(chosen["contour_mm"])
-    turn = np.linspace(0.0, 2.0 * np.pi, 121)
-    axes.fill(x, y, facecolor=COLOURS["grid"], edgecolor=COLOURS["blue"], lw=1.6)
-    bore, radius = 0.5 * chosen["bore_mm"], chosen["roller_radius_mm"]
-    axes.fill(bore * np.cos(turn), bore * np.sin(turn), facecolor="white",
-              edgecolor=COLOURS["muted"], lw=1.2)  # fmt: skip
-    centre = np.array(chosen["roller_centre_mm"])
-    axes.plot(centre[0] + radius * np.cos(turn), centre[1] + radius * np.sin(turn),
-              color=COLOURS["vermillion"], lw=1.6)  # fmt: skip
-    axes.plot(*centre, "+", color=COLOURS["vermillion"])
-    axes.set_aspect("equal")
-    axes.grid(color=COLOURS["grid"], lw=0.4)
-    axes.tick_params(labelsize=8)
+def _cam(chosen: ChosenDesign) -> Panel:
+    x, y = chosen["roller_centre_mm"]
+    contour = np.array(chosen["contour_mm"])
+    return outline_panel((
+        outline(contour, "cam", look="fill"),
+        outline(circle((0.0, 0.0), 0.5 * chosen["bore_mm"]), "shaft", "muted"),
+        outline(circle((x, y), chosen["roller_radius_mm"]), "roller", "vermillion"),
+        Curve(np.array([x]), np.array([y]), colour="vermillion", look="points"),
+    ), "Cam, shaft and roller at the base circle")  # fmt: skip
 
 
-def _words(axes: Axes, document: DesignDocument) -> None:
-    axes.axis("off")
+def _words(document: DesignDocument) -> str:
     chosen, demand = document["chosen"], document["torque"]
     turns = "turn" if demand["ratio"] == 1.0 else "turns"
     lines = [
@@ -145,11 +152,5 @@ def _words(axes: Axes, document: DesignDocument) -> None:
         lines.append("the search keeps no design within:")
         lines += [f"  {each}" for each in conflict["limits"]]
         lines += [f"passes with {each['option']} {each['to']}" for each in conflict["relaxations"]]
-    lines += ["", "assumed: " + (", ".join(document["assumed"]) or "nothing")]
-    axes.text(0.0, 1.0, "\n".join(lines), va="top", family="monospace", fontsize=9)
-
-
-def _finish(axes: Axes, title: str) -> None:
-    axes.set_title(title, fontsize=10, loc="left")
-    axes.grid(color=COLOURS["grid"], lw=0.6)
-    axes.legend(fontsize=8, frameon=False)
+    assumed = "assumed: " + (", ".join(document["assumed"]) or "nothing")
+    return "\n".join([*lines, "", *wrap(assumed, _LETTERS)])

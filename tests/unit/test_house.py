@@ -255,7 +255,7 @@ INSIDE = (
 )  # fmt: skip
 UNIT_FACTORS = {1e3, 1e-3, 1e6, 1e-6}
 TO_UNITS = {"degrees", "rad2deg"}
-RIM = re.compile(r"record|columns|arrays|statement|words|(^|_)write_|^__str__$|^plot$")
+RIM = re.compile(r"record|columns|arrays|statement|words|(^|_)write_|^__str__$|^plot$|^figure$")
 """Functions that make records, columns, files, messages and figures."""
 
 

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from camwright import reports
+from camwright.geometry.figures import Curve, Figure, Panel, over
 from camwright.reports.field_raster import triangles_picture
 from camwright.reports.figure_svg import png_of, svg_of
-from camwright.reports.figures import SERIES, Curve, LineFigure, Panel
 
 OF_A_USER = {
     "text.usetex": True, "font.size": 20.0, "lines.linewidth": 7.0, "axes.grid": True,
@@ -23,7 +23,7 @@ OF_A_USER = {
 }  # fmt: skip
 
 
-def drawings(figure: LineFigure) -> tuple[object, ...]:
+def drawings(figure: Figure) -> tuple[object, ...]:
     corners = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     raster = triangles_picture(
         corners, np.array([[0], [1], [2]]), np.arange(3.0), (0.0, 1.0, 0.0, 1.0), (0.0, 2.0),
@@ -32,10 +32,10 @@ def drawings(figure: LineFigure) -> tuple[object, ...]:
     return svg_of(figure), png_of(figure), raster.tobytes()
 
 
-FIGURE = LineFigure(
-    "sweep", "Sweep", "", "speed", "rpm", np.array([1.0, 2.0]),
-    (Panel("force", "N", (Curve("least", np.array([1.0, 2.0]), SERIES[0]),)),),
-)  # fmt: skip
+POINTS = np.array([1.0, 2.0])
+FIGURE = over(
+    "sweep", "Sweep", "", "speed", "rpm", (Panel("force", "N", (Curve(POINTS, POINTS, "least"),)),)
+)
 
 
 def test_settings_of_the_user_change_no_drawing() -> None:

@@ -228,8 +228,8 @@ def test_several_load_cases_show_the_governing_one_and_a_ribbon(tmp_path, monkey
     monkeypatch.setattr(figure_svg, "svg_of", lambda figure: seen.append(figure) or "<svg/>")
     html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     pressure = next(figure for figure in seen if figure.id == "pressure")
-    assert pressure.panels[0].curves[0].band is not None
-    assert pressure.panels[0].curves[1].band is None
+    assert pressure.panels[0].curves[0].upper is not None
+    assert pressure.panels[0].curves[1].upper is None
     assert "Load case rated, the governing one" in html
     assert "range of all 2 load cases" in html
 

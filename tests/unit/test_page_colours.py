@@ -10,14 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from camwright.reports import figure_svg, figures, page
+from camwright.geometry.figures import SERIES
+from camwright.reports import figure_svg, page
 
 TEMPLATES = Path(page.__file__).parent / "templates"
 CSS = (TEMPLATES / "report.css").read_text(encoding="utf-8")
 TEXT, DRAWN = 4.5, 3.0
 GROUNDS = ("page", "card")
 ON_GROUNDS = ("ink", "muted", "link", "fail", "ok")
-CURVES = (*figures.SERIES, "ink", "muted", "fail")
+CURVES = (*SERIES, "ink", "muted", "fail")
 PAIRS = [
     *((text, ground, TEXT) for text in ON_GROUNDS for ground in GROUNDS),
     ("ok", "ok-soft", TEXT), ("fail", "fail-soft", TEXT), ("warn", "warn-soft", TEXT),

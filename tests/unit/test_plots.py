@@ -4,34 +4,40 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import get_args
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
+from camwright.geometry.figures import (
+    AxisMark,
+    Curve,
+    Figure,
+    HorizontalAxis,
+    LimitLine,
+    Look,
+    Panel,
+    outline_panel,
+    over,
+    over_turn,
+    plotted,
+)
 from camwright.reports import figure_svg
 from camwright.reports.analysis_sheet import broken
-from camwright.reports.figures import (
-    WORDS_HEIGHT,
-    AngleFigure,
-    Curve,
-    LimitLine,
-    LineFigure,
-    OutlineFigure,
-    Panel,
-    placed_limits,
-    vertical_span,
-)
+from camwright.reports.figure_layout import WORDS_HEIGHT, placed_limits, vertical_span
 from camwright.reports.interactive import specification
 from camwright.reports.machine_words import words_of
+from camwright.reports.outline_figures import OutlineFigure
 
 CRANK = np.arange(0.0, 720.0, 10.0)
 WAVE = np.sin(np.radians(CRANK))
 
 
 def figure(*panels, **more):
-    panels = panels or (Panel("torque", "N m", (Curve("engine", WAVE),)),)
-    return AngleFigure("wave", "A wave", "", CRANK, panels, **more)
+    panels = panels or (Panel("torque", "N m", (Curve(CRANK, WAVE, "engine"),)),)
+    return over_turn("wave", "A wave", "", panels, **more)
 
 
 def drawn(made):
@@ -60,7 +66,7 @@ def test_both_axes_are_named_and_agree():
 
 
 def test_a_drive_of_another_ratio_gets_its_own_crank_axis():
-    ax = drawn(figure(gear_ratio=1.0, marks=())).axes[0]
+    ax = drawn(figure(ratio=1.0)).axes[0]
     assert ax.get_xlim() == (0.0, 360.0)
     assert words_of({}, 1.0).marks == ()
 
@@ -70,7 +76,7 @@ def test_a_machine_has_its_own_words() -> None:
     forming = {"angle": "150 deg", "name": "forming"}
     press = {"torque": {"kind": "press", "marks": [{"angle": "0 deg", "name": "down"}, forming]}}
     machine = words_of(press, 2.0)
-    made = replace(figure(marks=machine.marks), shaft=machine.shaft)
+    made = figure(marks=machine.marks, shaft=machine.shaft)
     canvas = drawn(made)
     assert words(canvas)[:4] == ["down", "forming", "down", "forming"]
     assert canvas.axes[0].get_xlabel() == "shaft angle, deg"
@@ -92,9 +98,9 @@ def test_strokes_are_named_in_order():
 
 
 def test_a_near_limit_is_in_view_and_a_far_one_in_words():
-    near = Panel("p0", "MPa", (Curve("", WAVE),), (LimitLine(1.5, "limit"),))
-    far = Panel("p0", "MPa", (Curve("", WAVE),), (LimitLine(50.0, "limit"),))
-    below = Panel("p0", "MPa", (Curve("", WAVE),), (LimitLine(-50.0, "limit"),))
+    near = Panel("p0", "MPa", (Curve(CRANK, WAVE),), (LimitLine(1.5, "limit"),))
+    far = Panel("p0", "MPa", (Curve(CRANK, WAVE),), (LimitLine(50.0, "limit"),))
+    below = Panel("p0", "MPa", (Curve(CRANK, WAVE),), (LimitLine(-50.0, "limit"),))
     assert drawn(figure(near)).axes[0].get_ylim()[1] > 1.5
     assert "limit 1.5 MPa" in words(drawn(figure(near)))
     assert drawn(figure(far)).axes[0].get_ylim()[1] < 2.0
@@ -106,7 +112,7 @@ def test_a_near_limit_is_in_view_and_a_far_one_in_words():
 def test_a_label_is_clear_of_the_words_at_the_lower_edge(far):
     near = LimitLine(-18.5, "limit")
     limits = (near, LimitLine(-50.0, "far")) if far else (near,)
-    placed = placed_limits(Panel("x", "mm", (Curve("", WAVE),), limits), -20.0, -10.0)
+    placed = placed_limits(Panel("x", "mm", (Curve(CRANK, WAVE),), limits), -20.0, -10.0)
     assert placed.inside == ((near, far),)
 
 
@@ -114,7 +120,7 @@ def test_a_label_is_clear_of_the_words_at_the_lower_edge(far):
     "values", [np.zeros(72), np.full(72, 7.0), np.full(72, np.nan), -(WAVE**2)]
 )
 def test_flat_and_empty_curves_are_drawn_too(values):
-    low, high = drawn(figure(Panel("x", "mm", (Curve("", values),)))).axes[0].get_ylim()
+    low, high = drawn(figure(Panel("x", "mm", (Curve(CRANK, values),)))).axes[0].get_ylim()
     assert np.isfinite([low, high]).all()
     assert low < high
 
@@ -125,16 +131,18 @@ def test_a_pole_draws_no_line():
 
 
 def test_the_alternative_text_tells_range_place_and_limit():
-    made = figure(Panel("angle", "deg", (Curve("flank", WAVE * 40),), (LimitLine(30.0, "limit"),)))
+    made = figure(
+        Panel("angle", "deg", (Curve(CRANK, WAVE * 40, "flank"),), (LimitLine(30.0, "limit"),))
+    )
     assert "angle, flank: -40 to 40 deg" in made.alt
-    assert "90 degrees crank" in made.alt
-    assert "limit limit: 30 deg" in made.alt
+    assert "largest magnitude at 90 deg crank angle" in made.alt
+    assert "limit limit 30 deg" in made.alt
 
 
 def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
     svg, other = (
         figure_svg.themed(figure_svg.svg_of(made), made.id)
-        for made in (figure(), AngleFigure("second", "", "", CRANK, figure().panels))
+        for made in (figure(), replace(figure(), id="second", title=""))
     )
     ET.fromstring(svg)
     assert 'role="img"' in svg
@@ -149,8 +157,8 @@ def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
 
 
 def test_the_axis_holds_the_ribbon_of_all_load_cases():
-    ribbon = (WAVE - 2.0, WAVE + 3.0)
-    low, high = vertical_span(Panel("p", "N", (Curve("a", WAVE, band=ribbon),)), named=True)
+    curve = Curve(CRANK, WAVE, "a", lower=WAVE - 2.0, upper=WAVE + 3.0)
+    low, high = vertical_span(Panel("p", "N", (curve,)), named=True)
     assert low < WAVE.min() - 2.0 and high > WAVE.max() + 3.0
 
 
@@ -171,7 +179,9 @@ def test_words_of_near_limits_stand_clear_of_each_other():
 
 
 def test_trimming_coordinates_leaves_numbers_to_read_alone():
-    small = Panel("depth", "mm", (Curve("", 0.004 + 0.004 * WAVE),), (LimitLine(0.0075, "limit"),))
+    small = Panel(
+        "depth", "mm", (Curve(CRANK, 0.004 + 0.004 * WAVE),), (LimitLine(0.0075, "limit"),)
+    )
     svg = figure_svg.themed(figure_svg.svg_of(figure(small)), "small")
     assert re.search(r">0\.00\d+<", svg)
     assert "limit 0.0075 mm" in svg
@@ -186,7 +196,7 @@ def test_the_same_figure_gives_the_same_bytes():
 
 
 def test_hostile_labels_stay_text():
-    panel = Panel("x", "", (Curve("<script>$x_2$", WAVE), Curve("b", WAVE)))
+    panel = Panel("x", "", (Curve(CRANK, WAVE, "<script>$x_2$"), Curve(CRANK, WAVE, "b")))
     svg = figure_svg.svg_of(figure(panel))
     assert "<script" not in svg
     assert "&lt;script&gt;$x_2$" in svg
@@ -230,8 +240,10 @@ def live_curves(made):
 
 def test_both_renderers_draw_the_same_curves():
     panels = (
-        Panel("force", "N", (Curve("a", WAVE), Curve("b", 2 * WAVE, "green", dashed=True))),
-        Panel("share", "", (Curve("", WAVE**2),), (LimitLine(0.5, "limit"),)),
+        Panel(
+            "force", "N", (Curve(CRANK, WAVE, "a"), Curve(CRANK, 2 * WAVE, "b", "green", "dashed"))
+        ),
+        Panel("share", "", (Curve(CRANK, WAVE**2),), (LimitLine(0.5, "limit"),)),
     )
     made = figure(*panels, worst=1000.0)
     axes = drawn(made).axes
@@ -250,6 +262,104 @@ def test_both_renderers_draw_the_same_curves():
     assert {note["text"] for note in layout["annotations"]} == {*words(drawn(made))}
     dotted = [shape["x0"] for shape in layout["shapes"] if shape["line"].get("dash") == "dot"]
     assert dotted == [280.0]  # 1000 deg of crank, within the turn of 720
+
+
+PANEL = Panel(
+    "force", "N", (Curve(np.arange(3.0), np.array([1.0, 3.0, 2.0]), "a"),), (LimitLine(2.5, "x"),)
+)
+OTHER = {
+    "quantity": "torque",
+    "unit": "kN",
+    "curves": (Curve(np.arange(3.0), np.array([1.0, 3.0, 2.5]), "a"),),
+    "limits": (LimitLine(2.6, "x"),),
+    "height": 2.0,
+    "span": (-1.0, 9.0),
+    "from_zero": True,
+    "kind": "outline",
+    "title": "rise",
+    "note": "of a harmonic law",
+    "axis": HorizontalAxis("lift", "mm", (0.0, 4.0)),
+}
+
+
+@pytest.mark.parametrize("field", [each.name for each in fields(Panel)])
+def test_both_renderers_draw_every_field_of_a_panel(field):
+    """A figure with another value is another drawing, in the page and in its data."""
+    steep = replace(PANEL, curves=(replace(PANEL.curves[0], y=np.array([2.0, 3.0, 2.5])),))
+    panel = steep if field == "from_zero" else PANEL  # a curve whose axis leaves out zero
+    drawings = []
+    for each in (panel, replace(panel, **{field: OTHER[field]})):
+        made = Figure("one", "", "", (each, PANEL), HorizontalAxis("time", "s", (0.0, 2.0)))
+        drawings.append((figure_svg.svg_of(made), specification(made)))
+    (svg, spec), (other_svg, other_spec) = drawings
+    assert svg != other_svg
+    assert spec != other_spec
+
+
+@pytest.mark.parametrize("look", get_args(Look))
+def test_every_look_is_drawn_by_all(look):
+    """And tells a line from another: no two looks give the same drawing."""
+    ends = {"lower": np.array([0.0, 1.0, 1.0]), "upper": np.array([2.0, 4.0, 3.0])}
+    curve = replace(PANEL.curves[0], look=look, **(ends if look in ("bar", "band") else {}))
+    made = over("one", "One", "", "time", "s", [replace(PANEL, curves=(curve,))], dots=False)
+    plain = over("one", "One", "", "time", "s", [PANEL], dots=False)
+    assert (figure_svg.svg_of(made) == figure_svg.svg_of(plain)) == (look == "line")
+    assert (specification(made) == specification(plain)) == (look == "line")
+    assert plotted(made)[0].has_data()
+    plt.close("all")
+
+
+def test_horizontal_bars_have_names_ends_and_limits_in_all_drawings():
+    rows = ("first", "second")
+    curves = (
+        Curve(np.array([1.0, 2.0]), np.array([0.0, 1.0]), "base", look="bar", notes=rows),
+        Curve(np.array([3.0]), np.array([1.0]), "top", "green", "bar", lower=np.array([2.0])),
+    )  # fmt: skip
+    panel = Panel("", "", curves, (LimitLine(1.5, "most"),), kind="bars")
+    made = Figure("bars", "Bars", "", (panel,), HorizontalAxis("energy", "J", (0.0, 4.0)))
+    for ax in (drawn(made).axes[0], plotted(made)[0]):
+        assert [text.get_text() for text in ax.get_yticklabels()] == list(rows)
+        assert ax.get_ylim()[0] > ax.get_ylim()[1]  # the first at the top
+        assert {"1", "3"} <= {text.get_text().strip() for text in ax.texts}
+        assert [(bar.get_x(), bar.get_width()) for bar in ax.patches] == [
+            (0.0, 1.0), (0.0, 2.0), (2.0, 1.0),
+        ]  # fmt: skip
+    plt.close("all")
+    spec = specification(made)
+    assert spec["layout"]["yaxis"]["ticktext"] == list(rows)
+    assert [trace["base"] for trace in spec["data"]] == [[0.0, 0.0], [2.0]]
+    assert "most 1.5 J" in {note["text"] for note in spec["layout"]["annotations"]}
+    assert made.alt == (
+        "Bars by energy. energy, base: 1 to 2 J. energy, top: 3 to 3 J. limit most 1.5 J."
+    )
+
+
+def test_panels_stand_in_columns_with_axes_of_their_own():
+    ring = np.linspace(0.0, 2.0 * np.pi, 61)
+    disc = outline_panel((Curve(30.0 * np.cos(ring), 20.0 * np.sin(ring), "disc", look="fill"),))
+    lines = replace(
+        PANEL,
+        title="Rise",
+        axis=HorizontalAxis("time", "s", (0.0, 2.0), marks=(AxisMark(1.0, "t"),)),
+    )
+    made = Figure(
+        "pair", "Pair", "", (lines, disc, PANEL), HorizontalAxis("lift", "mm", (0.0, 2.0)), 2
+    )
+    canvas = drawn(made)
+    left, right, below = (ax.get_position() for ax in canvas.axes)
+    assert left.x1 < right.x0
+    assert right.y0 + right.y1 == pytest.approx(left.y0 + left.y1)
+    assert below.y1 < left.y0
+    assert [ax.get_xlabel() for ax in canvas.axes] == ["time, s", "x, mm", "lift, mm"]
+    assert canvas.axes[1].get_aspect() == 1.0
+    assert {"Rise", "t"} <= {text.get_text() for text in canvas.axes[0].texts}
+    assert "y, disc: -20 to 20 mm" in made.alt
+
+
+def test_a_ribbon_ends_in_the_range_of_its_text_alternative():
+    curve = replace(PANEL.curves[0], look="band", upper=np.array([5.0, 6.0, 7.0]))
+    made = over("band", "Band", "", "time", "s", [replace(PANEL, curves=(curve,), limits=())])
+    assert made.alt == "Band by time. force, a: 1 to 7 N."
 
 
 def test_both_renderers_draw_the_same_outline():
@@ -273,14 +383,17 @@ def test_both_renderers_draw_the_same_outline():
     assert notes == [(text.get_text(), *text.xy) for text in ax.texts]
 
 
+PLACES = np.array([1.0, 2.0])
+
+
 def sweep(**more):
     panels = (
-        Panel("ripple", "N m", (Curve("low", np.array([1.0, 2.0])),
-                                Curve("high", np.array([3.0, 5.0]), "green"))),
-        Panel("use", "", (Curve("", np.array([1.2, 0.9]), notes=("jump", "travel")),),
+        Panel("ripple", "N m", (Curve(PLACES, np.array([1.0, 2.0]), "low"),
+                                Curve(PLACES, np.array([3.0, 5.0]), "high", "green"))),
+        Panel("use", "", (Curve(PLACES, np.array([1.2, 0.9]), notes=("jump", "travel")),),
               (LimitLine(1.0, "limit"),)),
     )  # fmt: skip
-    return LineFigure("sweep", "Sweep", "", "speed", "rpm", np.array([1.0, 2.0]), panels, **more)
+    return over("sweep", "Sweep", "", "speed", "rpm", panels, **more)
 
 
 def test_points_of_a_sweep_are_named_on_axes_of_its_quantity():
@@ -295,16 +408,15 @@ def test_points_of_a_sweep_are_named_on_axes_of_its_quantity():
     assert [trace["y"] for trace in made["data"]] == [[1.0, 2.0], [3.0, 5.0], [1.2, 0.9]]
     assert made["at"] == {"name": "speed", "unit": "rpm"}
     notes = [note["text"] for note in made["layout"]["annotations"]]
-    assert notes == ["jump", "travel", "limit 1"]
+    assert notes == ["limit 1", "jump", "travel"]
     assert "use: 1.2 at 1 (jump), 0.9 at 2 (travel)" in sweep(whole=True).alt
     assert "ripple, high: 3 to 5 N m" in sweep().alt
-    assert sweep().span == pytest.approx((0.97, 2.03))
+    assert sweep().axis.span == pytest.approx((0.97, 2.03))
 
 
 def test_a_point_without_a_value_has_no_name():
-    use = Curve("", np.array([np.nan, 0.9]), notes=("jump", "travel"))
-    made = LineFigure("x", "X", "", "trial", "", np.array([1.0, 2.0]), (Panel("use", "", (use,)),),
-                      whole=True)  # fmt: skip
+    use = Curve(PLACES, np.array([np.nan, 0.9]), notes=("jump", "travel"))
+    made = over("x", "X", "", "trial", "", (Panel("use", "", (use,)),), whole=True)
     assert "jump" not in words(drawn(made))
     assert "jump" not in made.alt
     assert "travel" in words(drawn(made))

@@ -5,22 +5,21 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType, SimpleNamespace
+from types import MappingProxyType
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
+from camwright.geometry.figures import Curve, Figure, LimitLine, Panel, over
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import fatigue_record
 from camwright.reports import figure_svg, interactive
 from camwright.reports.analysis_sheet import groups
-from camwright.reports.figures import AngleFigure, Curve, LimitLine, Panel
 from camwright.reports.report_data import governing_turn, read_material
 from camwright.reports.sheet_turn import angle_figure
 
@@ -50,10 +49,10 @@ def figure_of(turn, name):
 def test_a_pure_harmonic_is_one_bar_of_its_amplitude(turn):
     wave = 5.0 * np.cos(3.0 * turn.columns["cam_angle_deg"] * np.pi / 180.0 + 0.4)
     made = figure_of(with_columns(turn, torque_before_Nm=wave + 2.0), "torque-spectrum")
-    amplitude = made.panels[0].curves[0].values
+    amplitude = made.panels[0].curves[0].y
     order = np.argmax(amplitude)
     assert amplitude[order] == pytest.approx(5.0)
-    assert made.x[order] == pytest.approx(3.0 / turn.gear_ratio)
+    assert made.panels[0].curves[0].x[order] == pytest.approx(3.0 / turn.gear_ratio)
     assert np.delete(amplitude, order) == pytest.approx(0.0, abs=1e-12)
 
 
@@ -62,7 +61,7 @@ def test_the_energy_of_a_linear_spring_is_that_of_its_formula(turn):
     lift = 4.0 - 3.0 * np.cos(np.radians(turn.columns["cam_angle_deg"]))  # mm
     force = 200.0 + 30.0 * lift
     made = figure_of(with_columns(turn, lift_mm=lift, spring_force_N=force), "energy")
-    spring = next(c.values for p in made.panels for c in p.curves if c.label.startswith("spring"))
+    spring = next(c.y[:-1] for p in made.panels for c in p.curves if c.label.startswith("spring"))
     low = lift.min()
     expected = 1e-3 * (200.0 * (lift - low) + 15.0 * (lift**2 - low**2))
     assert spring == pytest.approx(expected, abs=1e-12)
@@ -76,7 +75,7 @@ def test_load_cases_stand_side_by_side(turn):
     )
     made = figure_of(replace(turn, others=(first, other)), "load-cases")
     force = made.panels[0].curves[0]
-    assert force.values[1] == pytest.approx(2.0 * force.values[0])
+    assert force.y[1] == pytest.approx(2.0 * force.y[0])
     assert force.notes[1] == "over-speed"
     assert not any(each.id == "load-cases" for _, figures in groups(turn) for each in figures)
 
@@ -91,10 +90,12 @@ def test_the_sweep_marks_the_peaks_of_the_surge(turn):
         columns | {"preload_N": 0.0 * speed, "crank_speed_rpm": speed, "surge_force_N": surge}
     ))  # fmt: skip
     made = figure_of(replace(turn, sweep=sweep), "speed-sweep")
-    assert [at for at, _ in made.marks] == [pytest.approx(3000.0, abs=20.0)]
+    assert [mark.start for mark in made.axis.marks] == [pytest.approx(3000.0, abs=20.0)]
     spec = interactive.specification(made)
-    assert [s["x0"] for s in spec["layout"]["shapes"] if s["xref"] == "x"] == [made.marks[0][0]]
-    assert made.marks[0][1] in figure_svg.svg_of(made)
+    assert [s["x0"] for s in spec["layout"]["shapes"] if s["xref"] == "x"] == [
+        made.axis.marks[0].start
+    ]
+    assert made.axis.marks[0].name in figure_svg.svg_of(made)
 
 
 def test_bars_are_those_of_both_renderers(turn):
@@ -107,9 +108,9 @@ def test_bars_are_those_of_both_renderers(turn):
     for still, live, curve in zip(
         axes.containers, spec["data"], made.panels[0].curves, strict=True
     ):
-        assert [bar.get_height() for bar in still] == pytest.approx(list(curve.values))
+        assert [bar.get_height() for bar in still] == pytest.approx(list(curve.y))
         assert live["type"] == "bar"
-        assert live["y"] == pytest.approx(list(curve.values), rel=1e-5, abs=1e-12)
+        assert live["y"] == pytest.approx(list(curve.y), rel=1e-5, abs=1e-12)
     assert axes.get_ylim()[0] == 0.0
 
 
@@ -120,15 +121,18 @@ def test_a_limit_of_a_mean_stands_beside_the_mean(turn):
         if panel.quantity == "mean PV":
             instant = next(p for p in made.panels if p.quantity == "PV")
             for mean, curve in zip(panel.curves, instant.curves, strict=True):
-                assert mean.values == pytest.approx(curve.values.mean())
+                assert mean.y == pytest.approx(curve.y[:-1].mean())
 
 
 def test_flat_and_zero_curves_leave_the_axis_of_large_ones(turn):
     wave = np.cos(np.radians(turn.crank))
-    curves = (Curve("large", 100.0 * wave), Curve("small", wave), Curve("none", 0.0 * wave))
+    curves = tuple(
+        Curve(turn.crank, size * wave, name)
+        for name, size in (("large", 100.0), ("small", 1.0), ("none", 0.0))
+    )
     limit = (LimitLine(120.0, "limit"),)
     made = angle_figure(turn, "x", "X", "Some forces.", Panel("force", "N", curves, limit))
-    assert isinstance(made, AngleFigure)
+    assert isinstance(made, Figure)
     assert [[c.label for c in panel.curves] for panel in made.panels] == [["large"], ["small"]]
     assert made.panels[0].limits == limit
     assert made.panels[1].quantity == "small"
@@ -140,12 +144,11 @@ def test_the_goodman_diagram_has_each_part_over_its_strengths(turn):
              "strength_MPa": 1000.0}  # fmt: skip
     fatigue = {"spring": {"required_safety": 1.25, "points": [point]}}
     (panel,) = figure_of(replace(turn, fatigue=fatigue), "goodman-spring").panels
-    made = figure_of(replace(turn, fatigue=fatigue), "goodman-spring")
     line, safe, wire = panel.curves
-    assert line.values == pytest.approx(1.0 - made.x)
-    assert safe.values[made.x == 0.8] == pytest.approx(0.0)
-    (at,) = np.flatnonzero(np.isfinite(wire.values))
-    assert (made.x[at], wire.values[at]) == pytest.approx((0.45, 0.25))
+    assert line.y == pytest.approx(1.0 - line.x)
+    assert safe.y[safe.x == 0.8] == pytest.approx(0.0)
+    (at,) = np.flatnonzero(np.isfinite(wire.y))
+    assert (wire.x[at], wire.y[at]) == pytest.approx((0.45, 0.25))
 
 
 def test_the_points_of_the_goodman_diagrams_give_the_safeties_of_the_checks():
@@ -176,10 +179,10 @@ def test_trials_are_drawn_over_each_other_the_result_last_and_solid(turn):
     radius = np.hypot(*contours.contours[1][1])
     assert f"trial 2, 120\u00a0deg: {radius.min():.4g} to {radius.max():.4g} mm" in contours.alt
     (panel,) = torque.panels
-    assert [(curve.label, curve.dashed) for curve in panel.curves] == [
-        (labels[0], True), (labels[1], False),
+    assert [(curve.label, curve.look) for curve in panel.curves] == [
+        (labels[0], "dashed"), (labels[1], "line"),
     ]  # fmt: skip
-    assert panel.curves[0].values == pytest.approx(first.cycle["torque_after_Nm"])
+    assert panel.curves[0].y[:-1] == pytest.approx(first.cycle["torque_after_Nm"])
     for made in (contours, torque):
         assert "trial 1" in figure_svg.svg_of(made)
         assert [
@@ -206,12 +209,9 @@ def test_of_many_trials_the_first_the_latest_and_the_final_one_are_compared(tmp_
 def test_a_legend_stays_within_its_figure(count):
     labels = ("Goodman line", "safety 1.5", "cam", "gear seat", "bearing seat 1", "bearing seat 2",
               "counterweight", "a long name of a section", "seat")[:count]  # fmt: skip
-    panel = SimpleNamespace(curves=[SimpleNamespace(label=label) for label in labels])
-    with mpl.rc_context(figure_svg.STYLE):
-        canvas = figure_svg._canvas(2.0)
-        ax = canvas.add_axes((figure_svg.LEFT / figure_svg.FIGURE_WIDTH, 0.2, 0.8, 0.5))
-        for label in labels:
-            ax.plot([0.0, 1.0], [0.0, 1.0], label=label)
-        figure_svg._legend(ax, panel, 1.02)
+    x = np.array([0.0, 1.0])
+    panel = Panel("use", "", tuple(Curve(x, x, label) for label in labels))
+    with figure_svg.style("legend"):
+        canvas = figure_svg.draw(over("legend", "", "", "stress", "", [panel]))
         canvas.draw_without_rendering()
-        assert ax.get_legend().get_window_extent().x1 <= canvas.bbox.x1
+        assert canvas.axes[0].get_legend().get_window_extent().x1 <= canvas.bbox.x1

@@ -26,13 +26,13 @@ def columns():
 def test_strips_show_what_is_used_and_mark_where_it_binds():
     figure = limits_strip(columns(), 2.0, ENGINE)
     assert [panel.quantity for panel in figure.panels] == ["pressure angle", "roller life"]
-    use, tight = (curve.values for curve in figure.panels[0].curves)
+    use, tight = (curve.y[:-1] for curve in figure.panels[0].curves)
     marked = np.flatnonzero(np.isfinite(tight))
     # 0.999 |sin| is above 0.997 within 3.6 deg of 90 and 270
     assert set(marked) == {*range(87, 94), *range(267, 274)}
     assert np.all(use[marked] >= BINDS)
-    assert np.isfinite(figure.panels[1].curves[1].values).all()
-    assert figure.crank[-1] == 718.0
+    assert np.isfinite(figure.panels[1].curves[1].y).all()
+    assert figure.panels[0].curves[0].x[-2] == 718.0
 
 
 def test_strips_are_drawn_still_and_live():

@@ -5,18 +5,29 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import tomli_w
 
 from camwright.geometry.arrays import Array, freeze
-from camwright.geometry.display import Displayed, panels_of
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
+from camwright.geometry.figures import (
+    SERIES,
+    Curve,
+    DrawnAxes,
+    Figure,
+    LimitLine,
+    Look,
+    Panel,
+    over,
+    plotted,
+)
 from camwright.pipeline.base import units
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import Column, table
-from camwright.pipeline.base.units import shown
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.added_tables import ADDED
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import enter
@@ -50,7 +61,6 @@ from camwright.pipeline.search.crown.solved_lines import SignedRange, SolvedLine
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 RATIO, TOLERANCE = 1.1, 2e-6
 """Greatest signed pressure over plane strain; deviation of the drop at the ends, m."""
@@ -267,21 +277,56 @@ class CrownDesign(Displayed):
         """The drop table; see `Table.to_pandas`."""
         return table(self.columns()).to_pandas()
 
-    def plot(self) -> tuple[Axes, ...]:
+    @cached_property
+    def lines(self) -> tuple[tuple[Literal["straight", "crowned"], bool, AxialLine], ...]:
+        """Pressure at the governing state without and with the crown, each aligned and tilted."""
+        shapes: dict[Literal["straight", "crowned"], Crown] = {
+            "straight": Straight(),
+            "crowned": self.chosen.crown,
+        }
+        return tuple(
+            (name, tilted, self.line(shape, self.governing, tilted=tilted))
+            for name, shape in shapes.items()
+            for tilted in (False, True)
+        )
+
+    @property
+    def figure(self) -> Figure:
         """Axial pressure at the governing angle, and drop over y."""
-        pressure, drop = panels_of(2)
-        row = self.governing
-        for label, crown in (("straight", Straight()), ("crowned", self.chosen.crown)):
-            line = self.line(crown, row, tilted=True)
-            pressure.plot(1e3 * line.y, line.factor, label=label)
-        pressure.axhline(self.limit, color="tab:red", linewidth=0.9)
-        pressure.set_ylabel("pressure over plane strain")
-        pressure.legend(fontsize="small")
-        rows = table(self.columns())
-        drop.plot(rows["y_mm"], rows["drop_um"])
-        drop.set_ylabel("drop, um")
-        drop.set_xlabel("y, mm")
-        return pressure, drop
+        lines = tuple(
+            Curve(
+                1e3 * line.y, line.factor, f"{name}, {'tilted' if tilted else 'aligned'}",
+                SERIES[name == "straight"], "line" if tilted else "dashed",
+            )
+            for name, tilted, line in self.lines
+        )  # fmt: skip
+        greatest = max(self.limit, self.chosen.ratio, float(self.chosen.straight.max()))
+        case = self.load_cases[int(self.chosen.problem.states.load_case[self.governing])]
+        angle = in_unit(float(self.theta[self.governing]), "deg")
+        rows, drops = table(self.columns()), list[Curve]()
+        looks: dict[str, tuple[str, Look]] = {
+            "drop_um": ("middle", "line"), "drop_min_um": ("least", "dotted"),
+            "drop_max_um": ("heaviest", "dashed"),
+        }  # fmt: skip
+        y = np.concatenate([-rows["y_mm"][::-1], rows["y_mm"]])
+        for header, (label, look) in looks.items():
+            if header in rows:
+                drop = np.concatenate([rows[header][::-1], rows[header]])
+                drops.append(Curve(y, drop, label, look=look))
+        deepest = max(float(curve.y.max()) for curve in drops)
+        panels = (
+            Panel(
+                "pressure over plane strain", "", lines, (LimitLine(self.limit, "limit"),),
+                span=(0.0, 1.1 * greatest), height=1.3,
+                title=f"{case}, cam angle {angle:.4g} deg",
+            ),
+            Panel("drop", "um", tuple(drops), span=(1.05 * deepest, -0.05 * deepest)),
+        )  # fmt: skip
+        return over("crown", "Crown", "", "y", "mm", panels, dots=False)
+
+    def plot(self) -> DrawnAxes:
+        """Axial pressure at the governing angle, and drop over y."""
+        return plotted(self.figure)
 
 
 def crown(

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
 
 import numpy as np
 
 from camwright.pipeline.base.tables import table
 from camwright.pipeline.base.units import in_unit, shown
-from camwright.pipeline.contact.finite_length.axial_drop import Crown, Straight
 from camwright.pipeline.records.crown_document import (
     CrownDocument,
     CrownDrop,
@@ -171,16 +169,6 @@ def _governing_record(design: CrownDesign) -> CrownState:
 
 def _lines_record(design: CrownDesign) -> list[CrownLine]:
     """Axial pressure over plane strain at the governing state, aligned and under its moment."""
-    row, crowned = design.governing, design.chosen.crown
-    shapes: dict[Literal["straight", "crowned"], Crown] = {
-        "straight": Straight(),
-        "crowned": crowned,
-    }
-    drawn = [
-        (name, tilted, design.line(shape, row, tilted=tilted))
-        for name, shape in shapes.items()
-        for tilted in (False, True)
-    ]
     return [
         {
             "crown": name,
@@ -188,7 +176,7 @@ def _lines_record(design: CrownDesign) -> list[CrownLine]:
             "y_mm": [in_unit(float(y), "mm") for y in line.y],
             "pressure_over_plane_strain": [float(value) for value in line.factor],
         }
-        for name, tilted, line in drawn
+        for name, tilted, line in design.lines
     ]
 
 

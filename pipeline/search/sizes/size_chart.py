@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.cam_size import PitchLimits
+from camwright.geometry.figures import SERIES, AxisMark, Curve, Figure, LimitLine, Panel, over
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import UNDERCUT_FACTOR
@@ -16,22 +18,56 @@ from camwright.pipeline.search.sizes.shapes import FaceShapes, RollerShapes, Sha
 
 _RADIUS_FROM, _RADIUS_TO = 0.4, 2.2
 """Range of the chart over the prime or base radius of the sized cam."""
+_HEADROOM = 1.9
+"""Greatest value of a panel over the greater of limit and value at the sized radius."""
 _BEYOND_OFFSET = 1.02
 """Least prime radius of the chart over offset and roller radius."""
 _CHART_POINTS, _BEST_POINTS = 73, 19
 
 
-def chart_record(case: Case, shapes: Shapes, shape: Shape) -> SizeChart:
-    """Curves of the chart around a sized shape, in mm and deg."""
+def size_figure(case: Case, shapes: Shapes, shape: Shape) -> Figure:
+    """Pressure angle and curvature around a sized shape, in mm and deg."""
     panels = (
         _face_panels(case, shapes, shape)
         if isinstance(shapes, FaceShapes)
         else _roller_panels(shapes, shape)
     )
-    return {"base_radius_mm": in_unit(shape.base_radius, "mm"), "panels": panels}
+    size = in_unit(shape.base_radius, "mm")
+    mark = AxisMark(size, f"{size:.6g} mm")
+    title = "Size of the cam"
+    figure = over("size", title, "", "base radius", "mm", panels, dots=False, marks=(mark,))
+    return replace(figure, panels=tuple(_about_size(panel, size) for panel in panels))
 
 
-def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[SizePanel]:
+def _about_size(panel: Panel, size: float) -> Panel:
+    """A panel with the point at the size, to `_HEADROOM` of limit and value there."""
+    here = [float(np.interp(size, curve.x, curve.y)) for curve in panel.curves]
+    reached = [*here, *(line.value for line in panel.limits)]
+    spot = Curve(np.array([size]), np.array(here[:1]), colour="ink", look="spot")
+    span = min(0.0, *reached), _HEADROOM * max(reached)
+    return replace(panel, curves=(*panel.curves, spot), span=span)
+
+
+def chart_record(figure: Figure) -> SizeChart:
+    """Record of the figure of `size_figure`."""
+    panels: list[SizePanel] = [
+        {
+            "quantity": panel.quantity,
+            "unit": panel.unit,
+            "limits": {line.label: line.value for line in panel.limits},
+            "curves": [_curve_record(curve) for curve in panel.curves if curve.look != "spot"],
+        }
+        for panel in figure.panels
+    ]
+    return {"base_radius_mm": figure.axis.marks[0].start, "panels": panels}
+
+
+def _curve_record(curve: Curve) -> SizeCurve:
+    dashed = curve.look == "dashed"
+    return {"label": curve.label, "x": curve.x.tolist(), "y": curve.y.tolist(), "dashed": dashed}
+
+
+def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[Panel]:
     cam, inset = shapes.cam, shape.roller_radius
     low = max(
         _RADIUS_FROM * shape.prime_radius,
@@ -41,46 +77,43 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[SizePanel]:
     primes, some = (
         _about(low, shape.prime_radius, count) for count in (_CHART_POINTS, _BEST_POINTS)
     )
+    bases, few = (_in(radii - inset, "mm") for radii in (primes, some))
 
     def best(prime: float) -> float:
         offset = cam.best_offset(prime, shapes.angle_limits)
         return cam.extremes(prime, offset).pressure_angle.value
 
-    def curve(
-        label: str, at: Array, measure: Callable[[float], float], unit: str, *, dashed: bool = False
-    ) -> SizeCurve:
-        return _curve(label, at, [measure(float(each)) for each in at], inset, unit, dashed=dashed)
-
-    sized = {float(prime): cam.extremes(float(prime), shape.offset) for prime in primes}
+    sized = [cam.extremes(float(prime), shape.offset) for prime in primes]
     angles = [
-        curve("rise", primes, lambda prime: sized[prime].rise.value, "deg"),
-        curve("return", primes, lambda prime: sized[prime].back.value, "deg"),
+        Curve(bases, _in([each.rise.value for each in sized], "deg"), "rise"),
+        Curve(bases, _in([each.back.value for each in sized], "deg"), "return", SERIES[1]),
     ]
     if shape.offset != 0.0:
-        angles.append(
-            curve("no offset", some, lambda p: cam.extremes(p).pressure_angle.value, "deg")
-        )
-    angles.append(curve("balanced offset of each radius", some, best, "deg", dashed=True))
-    radius = [curve("", primes, lambda prime: sized[prime].convex_radius.value, "mm")]
+        plain = [cam.extremes(float(prime)).pressure_angle.value for prime in some]
+        angles.append(Curve(few, _in(plain, "deg"), "no offset", SERIES[2]))
+    balanced = _in([best(float(prime)) for prime in some], "deg")
+    label = "balanced offset of each radius"
+    angles.append(Curve(few, balanced, label, SERIES[len(angles)], "dashed"))
+    radius = Curve(bases, _in([each.convex_radius.value for each in sized], "mm"))
     least = in_unit(shapes.limits(shape.roller_radius).convex_radius, "mm")
     return [
-        _panel("pressure angle", "deg", _angle_limits(shapes.angle_limits), angles),
-        _panel("convex pitch radius", "mm", {"limit": least}, radius),
+        Panel("pressure angle", "deg", tuple(angles), _angle_limits(shapes.angle_limits)),
+        Panel("convex pitch radius", "mm", (radius,), (LimitLine(least, "limit"),)),
     ]
 
 
-def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[SizePanel]:
+def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[Panel]:
     bases, cam = (
         _about(_RADIUS_FROM * shape.prime_radius, shape.prime_radius, _CHART_POINTS),
         shapes.cam,
     )
-    radii = bases + cam.least_radius(0.0).value
-    factors = [cam.undercut_factor(float(each)) for each in bases]
-    limit, least = case.limits[UNDERCUT_FACTOR], in_unit(shapes.least_radius, "mm")
-    radius = [_curve("", bases, radii.tolist(), 0.0, "mm")]
+    radii, least = bases + cam.least_radius(0.0).value, in_unit(shapes.least_radius, "mm")
+    factors = np.array([cam.undercut_factor(float(each)) for each in bases])
+    edge, limit = LimitLine(least, "limit" if least else "cusp"), case.limits[UNDERCUT_FACTOR]
+    x = _in(bases, "mm")
     return [
-        _panel("radius of curvature", "mm", {"limit" if least else "cusp": least}, radius),
-        _panel("undercut factor", "", {"limit": limit}, [_curve("", bases, factors, 0.0, "")]),
+        Panel("radius of curvature", "mm", (Curve(x, _in(radii, "mm")),), (edge,)),
+        Panel("undercut factor", "", (Curve(x, factors),), (LimitLine(limit, "limit"),)),
     ]
 
 
@@ -88,20 +121,13 @@ def _about(least: float, radius: float, count: int) -> Array:
     return np.linspace(least, max(_RADIUS_TO * radius, 1.5 * least), count)
 
 
-def _curve(
-    label: str, at: Array, values: list[float], inset: float, unit: str, *, dashed: bool = False
-) -> SizeCurve:
-    x = [in_unit(float(each) - inset, "mm") for each in at]
-    return {"label": label, "x": x, "y": [in_unit(each, unit) for each in values], "dashed": dashed}
+def _in(values: Iterable[float], unit: str) -> Array:
+    return np.array([in_unit(float(each), unit) for each in values])
 
 
-def _angle_limits(limits: PitchLimits) -> dict[str, float]:
-    """Limits of the pressure angle by label, deg."""
+def _angle_limits(limits: PitchLimits) -> tuple[LimitLine, ...]:
+    """Limits of the pressure angle, deg."""
     rise, back = in_unit(limits.rise, "deg"), in_unit(limits.back, "deg")
-    return {"limit": rise} if rise == back else {"limit, rise": rise, "limit, return": back}
-
-
-def _panel(
-    quantity: str, unit: str, limits: dict[str, float], curves: list[SizeCurve]
-) -> SizePanel:
-    return {"quantity": quantity, "unit": unit, "limits": limits, "curves": curves}
+    if rise == back:
+        return (LimitLine(rise, "limit"),)
+    return LimitLine(rise, "limit, rise"), LimitLine(back, "limit, return")

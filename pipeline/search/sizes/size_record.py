@@ -9,6 +9,7 @@ from camwright.pipeline.case.limits import SPRING_SURGE
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.records.size_document import SizeDocument
 from camwright.pipeline.search.sizes.open_case import GAPS, PRELOAD, RATE
+from camwright.pipeline.search.sizes.size_chart import chart_record
 from camwright.pipeline.search.sizes.sizing import Sizing, unit_of
 from camwright.pipeline.search.sizes.spring_choice import greatest_coil_mass
 
@@ -41,7 +42,7 @@ def size_record(sizing: Sizing) -> SizeDocument:
         },
         "checks": [each.as_record() for each in sizing.checks],
         "other_failures": list(sizing.others),
-        "chart": sizing.chart,
+        "chart": chart_record(sizing.figure),
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import accumulate, islice, repeat
 from operator import mul
 from pathlib import Path
@@ -11,8 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camwright.geometry.display import Displayed, panels_of
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError, InputError
+from camwright.geometry.figures import DrawnAxes, Figure, plotted
 from camwright.pipeline.base.columns import data_frame
 from camwright.pipeline.base.crossing import first_passing
 from camwright.pipeline.base.progress import SILENT, Progress
@@ -59,7 +61,6 @@ from camwright.pipeline.checks.spring_strength import (
 )
 from camwright.pipeline.checks.tolerance_corners import governed, outcomes, spring_corners
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.records.size_document import SizeChart
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.judge import NOT_RAISED, Depth, Judge, Judgement, failing
 from camwright.pipeline.search.sizes.open_case import (
@@ -81,7 +82,7 @@ from camwright.pipeline.search.sizes.shapes import (
     shapes_of,
     values_of,
 )
-from camwright.pipeline.search.sizes.size_chart import chart_record
+from camwright.pipeline.search.sizes.size_chart import size_figure
 from camwright.pipeline.search.sizes.spring_choice import (
     ChosenSpring,
     more_preload,
@@ -91,7 +92,6 @@ from camwright.pipeline.search.sizes.spring_choice import (
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 _GROWTH = (pressure_angle, curvature_ratio, undercut, concave_radius, minimum_wall,
            contact_pressure, contact_pressure_at_life, edge_pressure, shakedown,
@@ -163,10 +163,10 @@ class Sizing(Displayed):
         values = {key: shown(value, unit_of(key), 6) for key, value in self.values.items()}
         return {"case": self.case.name, "verdict": self.verdict} | values
 
-    @property
-    def chart(self) -> SizeChart:
-        """Curves of pressure angle and curvature over the base radius."""
-        return chart_record(self.case, self.shapes, self.shape)
+    @cached_property
+    def figure(self) -> Figure:
+        """Pressure angle and curvature over the base radius, a panel each with its limits."""
+        return size_figure(self.case, self.shapes, self.shape)
 
     def to_pandas(self) -> pd.DataFrame:
         """A row per open key: key, value, unit, source; see `Table.to_pandas`."""
@@ -180,22 +180,9 @@ class Sizing(Displayed):
             }
         )
 
-    def plot(self) -> tuple[Axes, ...]:
-        """Figure of the `chart`, a panel for each quantity with its limits."""
-        quantities = self.chart["panels"]
-        panels = panels_of(len(quantities))
-        for axes, panel in zip(panels, quantities, strict=True):
-            for curve in panel["curves"]:
-                style = "--" if curve["dashed"] else "-"
-                axes.plot(curve["x"], curve["y"], style, label=curve["label"])
-            for limit in panel["limits"].values():
-                axes.axhline(limit, color="tab:red", linewidth=0.9)
-            axes.axvline(self.chart["base_radius_mm"], color="black", linewidth=0.7)
-            axes.set_ylabel(f"{panel['quantity']}, {panel['unit'] or '-'}")
-            if len(panel["curves"]) > 1:
-                axes.legend(fontsize="small")
-        panels[-1].set_xlabel("base radius, mm")
-        return panels
+    def plot(self) -> DrawnAxes:
+        """Figure of the sizes, a panel for each quantity with its limits."""
+        return plotted(self.figure)
 
     @property
     def verdict(self) -> Verdict:

@@ -1,0 +1,200 @@
+"""Outlines of a cam in the direction of its shaft, mm: curves, text, title and caption."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.figures import SERIES, Figure, closed
+
+X_AXIS, Y_AXIS = "x, mm (cam angle 0 points along x)", "y, mm"
+_ROUND = 121  # points of a circle
+
+
+@dataclass(frozen=True, eq=False)
+class OutlineCurve:
+    """A curve of the outline: points (2, n), mm, filled with the colour `fill` if it is named.
+
+    angle (n,) is the cam angle of each point, deg, or None; `dash` is solid, dashed or dashdot,
+    `marker` dot, cross or empty.
+    """
+
+    points: Array
+    colour: str
+    label: str = ""
+    width: float = 1.0
+    dash: str = "solid"
+    fill: str = ""
+    marker: str = ""
+    angle: Array | None = None
+
+
+@dataclass(frozen=True)
+class OutlineText:
+    """Text along a line: centre, mm, and rotation, deg counter-clockwise."""
+
+    words: str
+    place: tuple[float, float]
+    turn: float
+
+
+@dataclass(frozen=True, eq=False)
+class OutlineFigure:
+    """The cam in the direction of its shaft, points (2, n) in mm.
+
+    `pitch` is the pitch curve of a roller follower, `follower` the outline of roller or face at
+    row `worst`; None if unknown. `keyway` is width and depth, mm, and angle, rad; `counter_hole`
+    centre x, y and radius, mm, and whether it is drilled.
+    """
+
+    id: str
+    title: str
+    caption: str
+    contour: Array
+    pitch: Array | None
+    follower: Array | None
+    follower_name: str
+    bore_radius: float | None
+    keyway: tuple[float, float, float] | None
+    worst: int
+    worst_label: str
+    counter_hole: tuple[float, float, float, bool] | None = None
+
+    @property
+    def curves(self) -> tuple[OutlineCurve, ...]:
+        """All curves, from the bottom layer to the top one."""
+        angle = np.linspace(0.0, 360.0, self.contour.shape[1] + 1)
+        made = [
+            OutlineCurve(closed(self.contour), "blue", "cam contour", 1.4, fill="steel",
+                         angle=angle),
+            *self._openings(),
+        ]  # fmt: skip
+        if self.pitch is not None:
+            made.append(OutlineCurve(
+                closed(self.pitch), "muted", "pitch curve (roller centre)", 0.9, "dashdot",
+                angle=angle,
+            ))  # fmt: skip
+        for k in self.radii:
+            made.append(
+                OutlineCurve(np.stack([np.zeros(2), self.contour[:, k]], 1), "ink", "", 0.7)
+            )
+            made.append(OutlineCurve(self.contour[:, k : k + 1], "ink", marker="dot"))
+        cross = np.array([[-2.0, 2.0], [0.0, 0.0]])
+        made += [OutlineCurve(cross, "ink", "", 0.7), OutlineCurve(cross[::-1], "ink", "", 0.7)]
+        if self.follower is not None:
+            label = f"{self.follower_name} {self.worst_label}"
+            made.append(OutlineCurve(self.follower, "vermillion", label, 1.2))
+        touch = slice(self.worst, self.worst + 1)
+        made.append(OutlineCurve(self.contour[:, touch], "vermillion", marker="dot"))
+        if self.pitch is not None:
+            made.append(OutlineCurve(self.pitch[:, touch], "vermillion", marker="cross"))
+        return tuple(made)
+
+    def _openings(self) -> list[OutlineCurve]:
+        """Bore, keyway and counter-hole; a proposed hole is dashed."""
+        made = []
+        if self.bore_radius is not None:
+            bore = circle((0.0, 0.0), self.bore_radius)
+            made.append(OutlineCurve(bore, "blue", fill="card"))
+            if self.keyway is not None:
+                slot = _slot(self.bore_radius, *self.keyway)
+                made.append(OutlineCurve(slot, "blue", fill="card"))
+        if self.counter_hole is not None:
+            x, y, radius, drilled = self.counter_hole
+            dash, fill = ("solid", "card") if drilled else ("dashed", "")
+            made.append(OutlineCurve(circle((x, y), radius), "blue", dash=dash, fill=fill))
+        return made
+
+    @property
+    def radii(self) -> tuple[int, int]:
+        """Rows of the minimum and maximum radius of the contour."""
+        radius = np.hypot(*self.contour)
+        return int(np.argmin(radius)), int(np.argmax(radius))
+
+    @property
+    def texts(self) -> tuple[OutlineText, ...]:
+        """Minimum and maximum radius, written along the radius outside the bore."""
+        made = []
+        for word, k in zip(("min", "max"), self.radii, strict=True):
+            x, y = self.contour[:, k]
+            radius = float(np.hypot(x, y))
+            share = 0.5 + 0.5 * (self.bore_radius or 0.0) / radius
+            turn = (np.degrees(np.arctan2(y, x)) + 90.0) % 180.0 - 90.0  # not upside down
+            place = (float(share * x), float(share * y))
+            made.append(OutlineText(f"{word} {radius:.4g} mm", place, float(turn)))
+        return tuple(made)
+
+    @property
+    def reach(self) -> float:
+        """Half the side of the square about the shaft that is shown, mm."""
+        shown = [c for c in (self.contour, self.pitch, self.follower) if c is not None]
+        return 1.06 * max(float(np.abs(points).max()) for points in shown)
+
+    @property
+    def alt(self) -> str:
+        """Text alternative."""
+        radius = np.hypot(*self.contour)
+        return (
+            f"{self.title}: cam contour between {radius.min():.4g} and {radius.max():.4g} mm from"
+            f" the shaft, with {'' if self.pitch is None else 'pitch curve, '}bore and the"
+            f" {self.follower_name} {self.worst_label}."
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class ContoursFigure:
+    """Contours over each other: label and points (2, n), mm; the last one is the result."""
+
+    id: str
+    title: str
+    caption: str
+    contours: tuple[tuple[str, Array], ...]
+    bore_radius: float | None
+    texts: tuple[OutlineText, ...] = ()
+
+    @property
+    def curves(self) -> tuple[OutlineCurve, ...]:
+        """All curves, from the bottom layer to the top one."""
+        made = []
+        if self.bore_radius is not None:
+            made.append(OutlineCurve(circle((0.0, 0.0), self.bore_radius), "muted", "", 0.7))
+        last = len(self.contours) - 1
+        for k, (label, points) in enumerate(self.contours):
+            angle = np.linspace(0.0, 360.0, points.shape[1] + 1)
+            width, dash = (1.4, "solid") if k == last else (1.0, "dashed")
+            made.append(OutlineCurve(closed(points), SERIES[k], label, width, dash, angle=angle))
+        return tuple(made)
+
+    @property
+    def reach(self) -> float:
+        """Half the side of the square about the shaft that is shown, mm."""
+        return 1.06 * max(float(np.abs(points).max()) for _, points in self.contours)
+
+    @property
+    def alt(self) -> str:
+        """Text alternative: range of the radius of each contour."""
+        parts = []
+        for label, points in self.contours:
+            radius = np.hypot(*points)
+            parts.append(f"{label}: {radius.min():.4g} to {radius.max():.4g} mm")
+        return f"{self.title}, distance from the shaft. {'. '.join(parts)}."
+
+
+def circle(centre: tuple[float, float], radius: float) -> Array:
+    """Closed circle (2, n)."""
+    angle = np.linspace(0.0, 2 * np.pi, _ROUND)
+    return np.array(centre)[:, None] + radius * np.stack([np.cos(angle), np.sin(angle)])
+
+
+def _slot(bore_radius: float, width: float, depth: float, angle: float) -> Array:
+    """Sides and bottom (2, 4) of a keyway, open to the bore; angle in rad."""
+    inner, outer = np.sqrt(max(bore_radius**2 - width**2 / 4, 0.0)), bore_radius + depth
+    corners = np.array([[inner, outer, outer, inner], np.array([-1, -1, 1, 1]) * width / 2])
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]]) @ corners
+
+
+SheetFigure = Figure | OutlineFigure | ContoursFigure
+"""A figure of the analysis sheet."""
