@@ -12,8 +12,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import tomli_w
-
 _TO_BE_CONFIRMED = " (to be confirmed)"
 FORM = 'a text, or { text = "...", confirmed = false }'
 """Forms of a source in a case file."""
@@ -75,14 +73,6 @@ def reworded(entry: Any, words: Callable[[str], str]) -> Any:
     new = replace(source, text=words(source.text))
     plain = isinstance(entry, str) and source_in(new.text) == new
     return new.text if plain else entry_of(new)
-
-
-def written(source: Source) -> str:
-    """Source as a value in the text of a case file."""
-    entry = entry_of(source)
-    lines = tomli_w.dumps(entry if isinstance(entry, dict) else {"text": entry}).splitlines()
-    text = lines[0].removeprefix("text = ")
-    return text if isinstance(entry, str) else f"{{ {', '.join(lines)} }}"
 
 
 def old_words(tables: Mapping[str, Any]) -> tuple[str, ...]:

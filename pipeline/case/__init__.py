@@ -6,6 +6,7 @@ In the order of the calculation:
 | ---------------------- | -------------------------------------------- | ---------------- |
 | `section`              | base of the sections; parts as fields        |                  |
 | `toml_text`            | tables of a case as TOML, units included     |                  |
+| `case_writer`          | text of case files: values, comments, tables |                  |
 | `renamed_keys`         | former names of keys, in `renamed.toml`      |                  |
 | `limits`               | table of limits, section `[limits]`          | SI               |
 | `value_sources`        | source of each value, confirmed or not       |                  |

@@ -13,12 +13,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-import tomli_w
-
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.cards.card_filling import fill_cards, known_cards
 from camwright.pipeline.case.case_values import steps_of
+from camwright.pipeline.case.case_writer import ADDED, line_text
 from camwright.pipeline.case.error_text import MissingKeysError, Written, grouped
 from camwright.pipeline.case.keys import (
     MATERIAL,
@@ -33,7 +32,6 @@ from camwright.pipeline.case.keys import (
 from camwright.pipeline.case.scope_section import is_stand_in
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
-ADDED = "added"
 NOTHING = "# No data are missing.\n"
 _HEAD = (
     "# Data that the case lacks. Replace each example by the value of your machine, and paste the\n"
@@ -132,7 +130,7 @@ def _block(rows: Sequence[tuple[str, Key]], materials: Mapping[str, Material]) -
         pairs = [(line_of(key), _remark(key)) for _, key in listed]
         card = _card_of(table, materials)
         if card:
-            pairs.insert(0, (_line("card", card), "unchanged"))
+            pairs.insert(0, (line_text("card", card), "unchanged"))
         width = max(len(line) for line, _ in pairs)
         body = "".join(f"{line:{width}}  # {remark}\n" for line, remark in pairs)
         text += f"\n[{ADDED}.{table}]\n{body}" if table else body
@@ -147,18 +145,7 @@ def _place(path: str, rows: Sequence[tuple[str, Key]]) -> int:
 
 def line_of(key: Key) -> str:
     """Line of TOML: a key with its example."""
-    return _line(key.name, key.example)
-
-
-def _line(name: str, example: TomlValue) -> str:
-    if isinstance(example, list) and any(isinstance(each, dict) for each in example):
-        rows = (", ".join(_lines(each)) for each in example if isinstance(each, dict))
-        return f"{name} = [{', '.join(f'{{ {row} }}' for row in rows)}]"
-    return tomli_w.dumps({name: example}).strip()
-
-
-def _lines(table: Mapping[str, TomlValue]) -> list[str]:
-    return [_line(name, value) for name, value in table.items()]
+    return line_text(key.name, key.example)
 
 
 def _remark(key: Key) -> str:

@@ -22,6 +22,7 @@ from camwright.pipeline.base.files import hash_inputs
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Known, Resolved, Used
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.case_writer import to_toml
 from camwright.pipeline.case.engine_section import Engine, engine_files
 from camwright.pipeline.case.error_text import Written, refusal_of
 from camwright.pipeline.case.given_lift import given_lift
@@ -39,7 +40,7 @@ from camwright.pipeline.case.requirements_section import (
 )
 from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.case.section import Name, Section, StatedSource, Table, Text, named
-from camwright.pipeline.case.toml_text import Tables, tables_of, to_toml
+from camwright.pipeline.case.toml_text import Tables, tables_of
 from camwright.pipeline.case.torque_section import ShaftTorque, torque_files
 from camwright.pipeline.case.workshop_section import Document, Workshop, WorkshopOrder
 from camwright.pipeline.contact.cam_body import CamBody

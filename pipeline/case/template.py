@@ -13,6 +13,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.case.case_writer import Filling, filled
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.section import SAFE_NAME
 from camwright.pipeline.engine.crankshaft import Inertia, crank_motion
@@ -67,15 +68,11 @@ def first_case(name: str, kind: str = "cylinder") -> FirstCase:
 def _text(name: str, kind: Kind) -> str:
     balances = kind not in ("lift", "eccentric")
     parts = (_HEAD, _SOURCES[kind], _MACHINE, _BALANCE if balances else "", _REQUIREMENTS)
-    text = "\n".join(part for part in parts if part).replace("@NAME@", name)
-    reduction = _REDUCTION if balances else ""
-    words = _SHAFTS["shaft" if kind in _MACHINES else "crank"]
-    for mark, word in zip(
-        ("RATIO", "SHAFT", "SPEED", "MOST", "PINION", "JERK"), words, strict=True
-    ):
-        text = text.replace(f"@{mark}@", word)
-    text = text.replace("@POWER@", _POWER if kind in _WITHOUT_MEAN else "")
-    return text.replace("@DATA@", _data_name(name, kind)).replace("@REDUCTION@", reduction)
+    return filled(
+        "\n".join(part for part in parts if part), name=name, data=_data_name(name, kind),
+        power="230 W" if kind in _WITHOUT_MEAN else None, reduction=0.4 if balances else None,
+        **_SHAFTS["shaft" if kind in _MACHINES else "crank"],
+    )  # fmt: skip
 
 
 def _data_name(name: str, kind: Kind) -> str:
@@ -113,22 +110,18 @@ _MEASURED: dict[Kind, str] = {
 }  # fmt: skip
 """Quantity of the data file of a kind, as in its name."""
 _WITHOUT_MEAN = ("table", "speed", "voltage")
-_POWER = """\
-power = "230 W"                      # indicated: friction leaves the torque no mean
-"""
-
 _MACHINES = ("torque", "harmonics", "compressor", "pump", "press")
-_SHAFTS = {
-    "crank": (
-        "gear_ratio = 2.0                     # crank turns per cam turn",
-        "crank", "1500 rpm", "1650 rpm", "20", "7.0",
-    ),
-    "shaft": (
-        "gear_ratio = 1.0                     # shaft turns per cam turn; 2.0: two lobes",
-        "shaft", "750 rpm", "825 rpm", "40", "2.0",
-    ),
+_SHAFTS: dict[str, dict[str, Filling]] = {
+    "crank": {
+        "gear_ratio": 2.0, "turns": "crank turns per cam turn", "shaft": "crank",
+        "speed": "1500 rpm", "overspeed": "1650 rpm", "pinion_teeth": 20, "jerk_weight": 7.0,
+    },
+    "shaft": {
+        "gear_ratio": 1.0, "turns": "shaft turns per cam turn; 2.0: two lobes", "shaft": "shaft",
+        "speed": "750 rpm", "overspeed": "825 rpm", "pinion_teeth": 40, "jerk_weight": 2.0,
+    },
 }  # fmt: skip
-"""Drive of the cam, name of the shaft, speed and over-speed, teeth of the pinion, jerk weight."""
+"""Drive of the cam, name and speeds of the shaft, teeth of the pinion, jerk weight."""
 
 
 def _torque_text(torque: Torque) -> str:
@@ -140,14 +133,14 @@ def _torque_text(torque: Torque) -> str:
 
 _HEAD = """\
 # A first case: complete, and within all limits. Change one thing at a time, and look again:
-#   camwright check @NAME@.toml
+#   camwright check @name@.toml
 #
 # A number with a dimension is written as text with its unit: "100 kN/m", "60 deg", "1500 rpm".
 # A card fills in what its table leaves out; keys left out have their defaults, and case.toml in
 # the run folder states all of them. Values without a source are those of an example.
 
 schema_version = 1
-name = "@NAME@"
+name = @name@
 title = "What is this design for?"
 """
 
@@ -161,7 +154,7 @@ rod_mass = "123 g"
 """
 
 _WHEEL = """\
-file = "@DATA@"
+file = @data@
 teeth = 36                           # pitches of the wheel, with
 missing_teeth = 2                    # a gap
 pitch_tolerance = "0 deg"            # these data are computed; remove the line for a real wheel, or
@@ -189,14 +182,14 @@ burn_duration = "80 deg"
 # units in the header. Crank angle 0: top dead centre where intake starts.
 [engine]
 kind = "table"
-file = "@DATA@"
+file = @data@
 """,
     "pressure": f"""\
 # --- The torque to balance, from the cylinder pressure: a column of crank angle over 720 deg, one
 # of pressure for each cycle. Crank angle 0: top dead centre where intake starts; 360 deg: firing.
 [engine]
 kind = "pressure"
-file = "@DATA@"
+file = @data@
 # intake_pressure = "30 kPa"         # pegs a sensor that does not measure absolute pressure
 {_CRANK_DRIVE}""",
     "speed": f"""\
@@ -220,7 +213,7 @@ reference_angle = "0 deg"            # crank angle of the middle of the first to
 # units in the header. Positive drives the shaft; a steady motor or load takes the mean.
 [torque]
 kind = "table"
-file = "@DATA@"
+file = @data@
 cycle = "360 deg"                    # after which the torque repeats
 """,
     "harmonics": """\
@@ -288,7 +281,7 @@ eccentricity = "5 mm"                # half of the lift
 _MACHINE = """\
 # --- The mechanism: parts by their cards where there are any, else as drawn
 [mechanism]
-@RATIO@
+gear_ratio = @gear_ratio@ # @turns@
 
 [spring]
 rate = "100 kN/m"
@@ -331,7 +324,7 @@ counterweight = { residual = "20 g mm", position = "35 mm" }  # balanced on a be
 
 [camshaft.gear]
 teeth = 40
-pinion_teeth = @PINION@
+pinion_teeth = @pinion_teeth@
 width = "20 mm"
 material = "case_hardened"
 bending_limit = "430 MPa"
@@ -419,17 +412,15 @@ _BALANCE = """\
 [smoothing]
 kind = "constrained"                 # or a filter of the torque: moving_average, gaussian, ...
 corners = true                       # within the limits at the ends of all tolerances
-jerk_weight = @JERK@                    # more: smoother lift, less ripple removed
+jerk_weight = @jerk_weight@ # more: smoother lift, less ripple removed
 rest_force_weight = 0.2              # more: weaker spring force, less ripple removed
 """
-
-_REDUCTION = """
-torque_reduction = 0.4               # least reduction of the torque ripple"""
 
 _REQUIREMENTS = """\
 # --- Requirements without a default
 [limits]
-overspeed = "@MOST@"               # greatest speed that the machine can reach@REDUCTION@
+overspeed = @overspeed@ # greatest speed that the machine can reach
+torque_reduction = @reduction@ # least reduction of the torque ripple
 roller_life = "1000 h"
 shaft_bearing_life = "1000 h"
 target_life = "1000 h"               # for wear and fatigue
@@ -445,5 +436,6 @@ positions = 72                       # per cam turn; 720 for a sign-off
 # --- Load cases, one table each; standstill and over-speed are judged besides
 [[load_case]]
 name = "running"
-speed = "@SPEED@"                   # of the @SHAFT@
-@POWER@"""
+speed = @speed@ # of the @shaft@
+power = @power@ # indicated: friction leaves the torque no mean
+"""

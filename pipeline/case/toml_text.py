@@ -6,8 +6,6 @@ import datetime as dt
 from collections.abc import Mapping
 from typing import TypeAlias
 
-import tomli_w
-
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.material import Material
@@ -26,13 +24,7 @@ _FieldValue: TypeAlias = (
     " | Mapping[str, _FieldValue]"
 )
 
-_HEADING = "# Camwright case, resolved: every default is written out.\n"
 _FILE_KEYS = ("file", "torque", "motored_file", "external_force_file")
-
-
-def to_toml(case: Section, renamed: Mapping[str, str]) -> str:
-    """TOML text of a case; `renamed` maps included files to their names in a folder."""
-    return _HEADING + tomli_w.dumps(tables_of(case, renamed))
 
 
 def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -> Tables:

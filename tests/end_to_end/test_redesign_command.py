@@ -18,7 +18,7 @@ from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.cards.substitution import Choice
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
-from camwright.pipeline.case.toml_text import to_toml
+from camwright.pipeline.case.case_writer import to_toml
 from camwright.pipeline.commands.redesign_command import redesign
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.search.parts import part_search, redesign_study

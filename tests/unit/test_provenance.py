@@ -11,7 +11,7 @@ import pytest
 from small_machine import small_machine
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.source import Source, entry_of, old_words, source_in, written
+from camwright.pipeline.base.source import Source, entry_of, old_words, source_in
 from camwright.pipeline.case.cards.card_filling import FOLDER, KINDS, known_cards
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.provenance import (
@@ -23,6 +23,7 @@ from camwright.pipeline.case.cards.provenance import (
 )
 from camwright.pipeline.case.cards.substitution import with_roller
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
+from camwright.pipeline.case.case_writer import value_text
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.requirements_section import Confirmation
 from camwright.pipeline.case.value_sources import source_of, values_at, values_in
@@ -145,9 +146,9 @@ def test_a_stated_confirmation_decides_whatever_the_words(text, confirmed):
     source = Source(text, confirmed=confirmed)
     assert source_in(entry) == source
     assert source_in(entry_of(source)) == source
-    assert source_in(tomllib.loads(f"source = {written(source)}")["source"]) == source
+    assert source_in(tomllib.loads(f"source = {value_text(source)}")["source"]) == source
     assert str(source).endswith(" (to be confirmed)") is not confirmed
-    case = extra('card = "pa66"', f"source = {written(source)}", 'yield_strength = "48 MPa"')
+    case = extra('card = "pa66"', f"source = {value_text(source)}", 'yield_strength = "48 MPa"')
     assert source_of(case.tables(), "materials.extra.yield_strength") == source
     assert parse_case(case.to_toml()).to_toml() == case.to_toml()
 

@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import tomli_w
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.display import Displayed
@@ -28,9 +27,9 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import Column, table
 from camwright.pipeline.base.units import in_unit, shown
-from camwright.pipeline.case.added_tables import ADDED
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import enter
+from camwright.pipeline.case.case_writer import added_text, tables_text
 from camwright.pipeline.case.limits import END_MEAN_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.case.toml_text import Tables
@@ -234,8 +233,8 @@ class CrownDesign(Displayed):
         enter(tables, key, dict(entries))
         if self._stated is None:
             head = f"# {_MIDDLE}. Paste the block at the end of the case file.\n"
-            return head + tomli_w.dumps({ADDED: [tables]})
-        return f"# {_MIDDLE}. It replaces [{key}] of the case file.\n" + tomli_w.dumps(tables)
+            return head + added_text(tables)
+        return f"# {_MIDDLE}. It replaces [{key}] of the case file.\n" + tables_text(tables)
 
     @property
     def _stated(self) -> AxialCrown | None:

@@ -9,15 +9,15 @@ from math import inf, pi
 from pathlib import Path
 
 import numpy as np
-import tomli_w
 
 from camwright.pipeline.base import units
 from camwright.pipeline.base.cooling import STILL_AIR, housing_area
-from camwright.pipeline.base.source import Source, written
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
-from camwright.pipeline.case.cards.shaft_seats import Seat, seat_source
+from camwright.pipeline.case.cards.shaft_seats import seat_source
+from camwright.pipeline.case.case_writer import filled, tables_text, value_text
 from camwright.pipeline.case.limits import CHORD_SHARE
-from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.contact.cam_body import STANDARD_KEYS
 from camwright.pipeline.follower.bearing_life import rated_viscosity
 from camwright.pipeline.follower.spring import HelicalSpring
@@ -156,7 +156,7 @@ def case_text(
     positions : int   cam angles of a turn
     """
     parts = (
-        _HEAD.format(head=head, name=name, title=_title(design)),
+        head + filled(_HEAD, name=name, title=_title(design)),
         _source(design, file),
         _spring(design),
         _cam(design),
@@ -169,13 +169,13 @@ def case_text(
 
 
 _HEAD = """\
-{head}#
+#
 # A value whose source is not confirmed is to be confirmed before a sign-off; the verdict counts
 # them. Numbers carry their units; a card fills in what its table leaves out.
 
 schema_version = 1
-name = "{name}"
-title = "{title}"
+name = @name@
+title = @title@
 """
 
 
@@ -187,18 +187,45 @@ def _title(design: Machinery) -> str:
     )
 
 
-def _source(design: Machinery, file: str) -> str:
-    task, demand = design.task, design.task.demand
-    return f"""\
-# --- The torque: {demand.ripple:.4g} N m of ripple (std), {demand.energy_swing:.4g} J of energy
-# swing over {np.degrees(demand.cycle):g} deg of the shaft; its mean of {demand.mean:.4g} N m stays.
+_SOURCE = """\
+# --- The torque: @ripple@ N m of ripple (std), @energy_swing@ J of energy
+# swing over @degrees@ deg of the shaft; its mean of @mean@ N m stays.
 [torque]
 kind = "table"
-file = {_text(file)}
-cycle = "{_round(demand.cycle, "deg")}"
+file = @file@
+cycle = @cycle@
 
 [mechanism]
-gear_ratio = {task.ratio:.12g}                     # shaft turns per cam turn
+gear_ratio = @gear_ratio@ # shaft turns per cam turn
+"""
+
+
+def _source(design: Machinery, file: str) -> str:
+    task, demand = design.task, design.task.demand
+    return filled(
+        _SOURCE, file=file, cycle=_round(demand.cycle, "deg"), gear_ratio=_whole(task.ratio),
+        ripple=f"{demand.ripple:.4g}", energy_swing=f"{demand.energy_swing:.4g}",
+        degrees=f"{np.degrees(demand.cycle):g}", mean=f"{demand.mean:.4g}",
+    )  # fmt: skip
+
+
+def _whole(ratio: float) -> TomlValue:
+    """A ratio of twelve digits, without decimals where it is whole."""
+    rounded = float(f"{ratio:.12g}")
+    return int(rounded) if rounded.is_integer() else rounded
+
+
+_SPRING = """\
+# --- Spring: @origin@. It stores @energy@ J in @stroke@ of lift, and its
+# coils surge at @surge@ times the cam's frequency at over-speed.
+[spring]
+rate = @rate@
+preload = @preload@ # on the base circle
+travel_max = @travel_max@
+seat_thickness = @seat_thickness@
+source = @source@
+
+[spring.design]
 """
 
 
@@ -206,25 +233,16 @@ def _spring(design: Machinery) -> str:
     point, task = design.spring, design.task
     spring = point.spring
     origin = f"catalogue: spring {spring.name}" if spring.name else "wound for this design"
-    surge = spring.surge_ratio(task.cam_speed)
     words = tables_of(spring)
     for key in ("source", "name"):
         words.pop(key, None)
-    rows = tomli_w.dumps(words).rstrip("\n")
-    return f"""\
-# --- Spring: {origin}. It stores {point.energy:.4g} J in {_mm(point.travel)} of lift, and its
-# coils surge at {surge:.3g} times the cam's frequency at over-speed.
-[spring]
-rate = {_text(units.format(spring.rate, "kN/m"))}
-preload = {_text(_round(point.preload, "N"))}                      # on the base circle
-travel_max = {_text(_mm(design.lift))}
-seat_thickness = {_text(_mm(design.frame.seat_thickness))}
-source = "chosen: {origin}"
-
-[spring.design]
-{rows}
-source = {written(_spring_source(spring))}
-"""
+    text = filled(
+        _SPRING, origin=origin, energy=f"{point.energy:.4g}", stroke=_mm(point.travel),
+        surge=f"{spring.surge_ratio(task.cam_speed):.3g}", rate=units.format(spring.rate, "kN/m"),
+        preload=_round(point.preload, "N"), travel_max=_mm(design.lift),
+        seat_thickness=_mm(design.frame.seat_thickness), source=f"chosen: {origin}",
+    )  # fmt: skip
+    return f"{text}{tables_text(words)}source = {value_text(_spring_source(spring))}\n"
 
 
 def _spring_source(spring: HelicalSpring) -> Source:
@@ -234,222 +252,285 @@ def _spring_source(spring: HelicalSpring) -> Source:
     return Source(f"{origin}; temperature and relaxation assumed", confirmed=False)
 
 
-def _cam(design: Machinery) -> str:
-    frame, seat = design.frame, design.frame.seat
-    least, greatest = frame.interferences
-    offset = f'offset = "{_mm(design.offset)}"\n' if design.offset else ""
-    return f"""\
+_CAM = """\
 # --- Cam: the prime radius is that of the roller's CENTRE on the base circle.
 [cam]
-prime_radius = "{_mm(design.prime_radius)}"
-{offset}width = "{_mm(frame.cam_width)}"                   # within the flat of the roller, offset
-end = {{ kind = "sharp" }}
-bore_radius = "{_mm(0.5 * seat.bore)}"
+prime_radius = @prime_radius@
+offset = @offset@
+width = @width@ # within the flat of the roller, offset
+end = { kind = "sharp" }
+bore_radius = @bore_radius@
 material = "case_hardened"
-roughness = "0.3 um"                 # ground
-profile_tolerance = "{units.format(PROFILE, "um")}"           # ground
-keyway = {{ width = "{_mm(seat.key_width)}", depth = "{_mm(seat.hub_depth)}"{_root(seat)} }}
-source = {_assumed("case-hardened and ground")}
+roughness = "0.3 um" # ground
+profile_tolerance = @profile@ # ground
+keyway = @keyway@
+source = @ground@
 
-[cam.fit]                            # shrunk on a shaft that is ground to the bore
-least_interference = "{1e6 * least:.3g} um"
-greatest_interference = "{1e6 * greatest:.3g} um"
-source = {_assumed("friction by DIN 7190-1")}
+[cam.fit] # shrunk on a shaft that is ground to the bore
+least_interference = @least@
+greatest_interference = @greatest@
+source = @friction@
 
 [cam.key]
-length = "{_mm(frame.key_length)}"{_chamfer(seat)}
+length = @key_length@
+chamfer = @chamfer@
 form = "B"
 material = "c45"
-source = {written(seat_source())}
+source = @key_source@
 """
 
 
-def _root(seat: Seat) -> str:
-    """Root radius of a keyway of a standard width: 1.5 times the least, within DIN 6885-1."""
-    row = STANDARD_KEYS.get(round(1e3 * seat.key_width))
-    return "" if row is None else f', root_radius = "{_mm(1.5 * row.fillet)}"'
-
-
-def _chamfer(seat: Seat) -> str:
-    """Chamfer of a key of a standard width: the greatest, clear of the root of its keyway."""
-    row = STANDARD_KEYS.get(round(1e3 * seat.key_width))
-    return "" if row is None else f'\nchamfer = "{_mm(row.chamfer)}"'
-
-
-def _shaft(design: Machinery) -> str:
+def _cam(design: Machinery) -> str:
     frame, seat = design.frame, design.frame.seat
-    spacing = frame.bearing_spacing
-    speed = design.task.cam_speed
-    rotor = frame.rotor_mass(design.cam_radius)
-    residual = _BENCH_UNBALANCE * rotor / speed
-    gear, pinion = frame.teeth
-    return f"""\
-# --- Camshaft: bore, key and bearings {seat.bearing} carry the torque of the cam.
+    least, greatest = frame.interferences
+    keyway: Tables = {"width": _mm(seat.key_width), "depth": _mm(seat.hub_depth)}
+    row = STANDARD_KEYS.get(round(1e3 * seat.key_width))
+    if row is not None:  # 1.5 times the least root radius, within DIN 6885-1
+        keyway["root_radius"] = _mm(1.5 * row.fillet)
+    # The greatest chamfer of the standard clears that root.
+    chamfer = None if row is None else _mm(row.chamfer)
+    return filled(
+        _CAM, prime_radius=_mm(design.prime_radius),
+        offset=_mm(design.offset) if design.offset else None, width=_mm(frame.cam_width),
+        bore_radius=_mm(0.5 * seat.bore), profile=units.format(PROFILE, "um"), keyway=keyway,
+        ground=_assumed("case-hardened and ground"), least=f"{1e6 * least:.3g} um",
+        greatest=f"{1e6 * greatest:.3g} um", friction=_assumed("friction by DIN 7190-1"),
+        key_length=_mm(frame.key_length), chamfer=chamfer, key_source=seat_source(),
+    )  # fmt: skip
+
+
+_SHAFT = """\
+# --- Camshaft: bore, key and bearings @bearing@ carry the torque of the cam.
 [camshaft]
-bearing_spacing = "{_mm(spacing)}"
-cam_position = "{_mm(0.5 * spacing)}"              # in the middle
-gear_position = "{_mm(frame.gear_position)}"            # overhung
-gear_radius = "{_mm(frame.gear_radius)}"                # module {1e3 * frame.module:g} mm
-diameter = "{_mm(seat.bore)}"
+bearing_spacing = @spacing@
+cam_position = @middle@ # in the middle
+gear_position = @gear_position@ # overhung
+gear_radius = @gear_radius@ # module @module@ mm
+diameter = @bore@
 material = "c45"
-bearing_rating = "{units.format(seat.C, "kN")}"           # of two {seat.bearing}
-bearing_static_rating = "{units.format(seat.C0, "kN")}"
-bearing_width = "{_mm(seat.width)}"
-rotor_mass = "{rotor:.3g} kg"                # cam, gear and shaft
-counterweight = {{ residual = "{1e6 * residual:.3g} g mm", position = "{_mm(0.5 * spacing)}" }}
-source = {_assumed(f"proportions; {seat_source().text}")}
+bearing_rating = @C@ # of two @bearing@
+bearing_static_rating = @C0@
+bearing_width = @bearing_width@
+rotor_mass = @rotor@ # cam, gear and shaft
+counterweight = @counterweight@
+source = @source@
 
 [camshaft.gear]
-teeth = {gear}
-pinion_teeth = {pinion}
-width = "{_mm(frame.gear_width)}"
+teeth = @teeth@
+pinion_teeth = @pinion_teeth@
+width = @gear_width@
 material = "case_hardened"
 bending_limit = "430 MPa"
 contact_limit = "1500 MPa"
 pinion_bending_limit = "430 MPa"
 pinion_contact_limit = "1500 MPa"
-machine_shaft_diameter = "0 mm"      # assumed: the machine shaft ends at its pinion
-backlash = "0.03 mm"                # assumed: ground teeth of a fit for reversing torque
-source = {{ text = "ISO 6336-5, case-hardened steel, quality MQ", confirmed = false }}
+machine_shaft_diameter = "0 mm" # assumed: the machine shaft ends at its pinion
+backlash = "0.03 mm" # assumed: ground teeth of a fit for reversing torque
+source = { text = "ISO 6336-5, case-hardened steel, quality MQ", confirmed = false }
+"""
+
+
+def _shaft(design: Machinery) -> str:
+    frame, seat = design.frame, design.frame.seat
+    rotor = frame.rotor_mass(design.cam_radius)
+    residual = _BENCH_UNBALANCE * rotor / design.task.cam_speed
+    middle = _mm(0.5 * frame.bearing_spacing)
+    gear, pinion = frame.teeth
+    return filled(
+        _SHAFT, bearing=seat.bearing, spacing=_mm(frame.bearing_spacing), middle=middle,
+        gear_position=_mm(frame.gear_position), gear_radius=_mm(frame.gear_radius),
+        module=f"{1e3 * frame.module:g}", bore=_mm(seat.bore), C=units.format(seat.C, "kN"),
+        C0=units.format(seat.C0, "kN"), bearing_width=_mm(seat.width), rotor=f"{rotor:.3g} kg",
+        counterweight={"residual": f"{1e6 * residual:.3g} g mm", "position": middle},
+        source=_assumed(f"proportions; {seat_source().text}"), teeth=gear, pinion_teeth=pinion,
+        gear_width=_mm(frame.gear_width),
+    )  # fmt: skip
+
+
+_ROLLER = """\
+# --- Roller: @name@.
+[roller]
+radius = @radius@
+width = @width@
+end = @end@
+hub_radius = @hub_radius@ # shoulder of the inner ring
+axial_offset = @axial_offset@
+friction = 0.10 # oiled steel on steel
+roughness = "0.1 um"
+material = "bearing_steel"
+
+[roller.bearing]
+card = @card@
+static_radial_limit = @static@
+lubrication = "oil"
+viscosity = @viscosity@ # @grade@ at @temperature@
+contamination = "normal_cleanliness"
+
+[roller.pin]
+diameter = @bore@
+span = @span@ # between the middles of the cheeks
+material = "case_hardened"
+source = @pin_source@
+
+[roller.fork]
+cheek_width = @cheek_width@
+cheek_height = @cheek_height@
+cheek_length = @cheek_length@
+bridge_length = @bridge@
+material = "c45"
+source = @fork_source@
+
+[lubricant]
+card = @oil@
+temperature = @temperature@
+
+[cooling]
+ambient_temperature = @ambient@
+conductance = @conductance@
+heat = @heat@ # of gear and camshaft bearings
+source = @cooling_source@
 """
 
 
 def _roller(design: Machinery) -> str:
     frame, card = design.frame, design.frame.card
     oil, value = design.oil
-    grade = oil.replace("_", " ").upper()
     inside = card.bore if card.pitch_diameter is None else card.pitch_diameter
-    static = card.static_radial_limit or card.C0
-    return f"""\
-# --- Roller: {card.name}.
-[roller]
-radius = "{_mm(frame.radius)}"
-width = "{_mm(card.width)}"
-end = {{ kind = "chamfer", size = "{_mm(ROLLER_CHAMFER)}" }}
-hub_radius = "{_mm(0.25 * (card.bore + inside))}"              # shoulder of the inner ring
-axial_offset = "{_mm(AXIAL_OFFSET)}"
-friction = 0.10                      # oiled steel on steel
-roughness = "0.1 um"
-material = "bearing_steel"
+    return filled(
+        _ROLLER, name=card.name, radius=_mm(frame.radius), width=_mm(card.width),
+        end={"kind": "chamfer", "size": _mm(ROLLER_CHAMFER)},
+        hub_radius=_mm(0.25 * (card.bore + inside)), axial_offset=_mm(AXIAL_OFFSET),
+        card=frame.roller, static=units.format(card.static_radial_limit or card.C0, "kN"),
+        viscosity=f"{value / _CENTISTOKES:.3g} mm^2/s", grade=oil.replace("_", " ").upper(),
+        temperature=f"{design.oil_temperature - 273.15:g} degC", bore=_mm(card.bore),
+        span=_mm(frame.pin_span), pin_source=_assumed("the bore of the roller"),
+        cheek_width=_mm(frame.cheek_width), cheek_height=_mm(frame.cheek_height),
+        cheek_length=_mm(frame.cheek_length), bridge=_mm(frame.bridge),
+        fork_source=_assumed("proportions"), oil=oil,
+        ambient=units.format(design.task.ambient, "K"),
+        conductance=f"{design.conductance:.3g} W/K", heat=f"{design.other_heat:.3g} W",
+        cooling_source=_assumed("still air about a housing of cam, gear and follower"),
+    )  # fmt: skip
 
-[roller.bearing]
-card = "{frame.roller}"
-static_radial_limit = "{units.format(static, "kN")}"
-lubrication = "oil"
-viscosity = "{value / _CENTISTOKES:.3g} mm^2/s"            # {grade} at {_celsius(design)}
-contamination = "normal_cleanliness"
 
-[roller.pin]
-diameter = "{_mm(card.bore)}"
-span = "{_mm(frame.pin_span)}"                   # between the middles of the cheeks
-material = "case_hardened"
-source = {_assumed("the bore of the roller")}
+_FOLLOWER = """\
+# --- Follower and its guides: guided length over twice the overhang, room for
+# @lift@ of lift.
+[follower]
+mass = @mass@ # as drawn, with a third of the spring
+stem_diameter = @stem@
+stem_length = @stem_length@
+stem_material = "c45"
+overhang_at_max_lift = @overhang@ # from guide A to the roller's centre
+anti_rotation = "guided_fork"
+source = @source@
 
-[roller.fork]
-cheek_width = "{_mm(frame.cheek_width)}"
-cheek_height = "{_mm(frame.cheek_height)}"
-cheek_length = "{_mm(frame.cheek_length)}"
-bridge_length = "{_mm(frame.bridge)}"
-material = "c45"
-source = {_assumed("proportions")}
-
-[lubricant]
-card = "{oil}"
-temperature = "{_celsius(design)}"
-
-[cooling]
-ambient_temperature = "{units.format(design.task.ambient, "K")}"
-conductance = "{design.conductance:.3g} W/K"
-heat = "{design.other_heat:.3g} W"                      # of gear and camshaft bearings
-source = {_assumed("still air about a housing of cam, gear and follower")}
+[guides]
+spacing = @spacing@
+ambient_temperature = @ambient@ # in the housing, as warm as the oil
+"""
+_BUSH = """\
+card = @card@
+length = @length@
+diameter = @diameter@
+wall = @wall@
+clearance = "0.03 mm"
+housing_resistance = "1 K/W"
+wear_rate = "3e-8 mm^3/N/m"
+source = @source@
+"""
+_MATERIALS = """
+[materials]
+case_hardened = { card = "case_hardened" }
+bearing_steel = { card = "bearing_steel" }
+c45 = { card = "c45" }
 """
 
 
 def _follower(design: Machinery) -> str:
     frame, stem = design.frame, _mm(design.frame.stem)
-    bush = f"""\
-card = "{design.bush}"
-length = "{_mm(frame.bush_length)}"
-diameter = "{stem}"
-wall = "{_mm(frame.bush_wall)}"
-clearance = "0.03 mm"
-housing_resistance = "1 K/W"
-wear_rate = "3e-8 mm^3/N/m"
-source = {_assumed(f"size, clearance, housing, wear; card {design.bush}")}
+    text = filled(
+        _FOLLOWER, lift=_mm(design.lift), mass=_round(design.mass, "g"), stem=stem,
+        stem_length=_mm(frame.stem_length(design.lift)), overhang=_mm(frame.overhang),
+        source=_assumed("proportions"), spacing=_mm(frame.spacing(design.lift)),
+        ambient=f"{design.oil_temperature - 273.15:g} degC",
+    )  # fmt: skip
+    bush = filled(
+        _BUSH, card=design.bush, length=_mm(frame.bush_length),
+        diameter=stem, wall=_mm(frame.bush_wall),
+        source=_assumed(f"size, clearance, housing, wear; card {design.bush}"),
+    )  # fmt: skip
+    return text + "".join(f"\n[guides.{side}]\n{bush}" for side in "ab") + _MATERIALS
+
+
+_REQUIREMENTS = """\
+
+[limits]
+overspeed = @overspeed@
+torque_reduction = @reduction@
+roller_life = @life@
+shaft_bearing_life = @life@
+target_life = @life@
+tool_radius = @tool@ # grinding wheel or cutter
+cam_radius = @room@
+
+[limits.sources]
+overspeed = @overspeed_source@
+torque_reduction = @reduction_source@
+roller_life = @life_source@
+shaft_bearing_life = @life_source@
+target_life = @life_source@
+tool_radius = @tool_source@
+cam_radius = @room_source@
+
+[sources]
+"guides.ambient_temperature" = @ambient_source@
+
+[tolerances]
+source = @tolerances@
+
+[workshop]
+table_step = @table_step@ # chords within a quarter of the tolerance
+
+[solver]
+positions = @positions@ # per cam turn; 720 for a sign-off
+
 """
-    return f"""\
-# --- Follower and its guides: guided length over twice the overhang, room for
-# {_mm(design.lift)} of lift.
-[follower]
-mass = "{_round(design.mass, "g")}"                     # as drawn, with a third of the spring
-stem_diameter = "{stem}"
-stem_length = "{_mm(frame.stem_length(design.lift))}"
-stem_material = "c45"
-overhang_at_max_lift = "{_mm(frame.overhang)}"       # from guide A to the roller's centre
-anti_rotation = "guided_fork"
-source = {_assumed("proportions")}
+_LOAD_CASE = """\
+[[load_case]]
+name = @name@
+speed = @speed@
+ripple_weight = @weight@ # the cam only has to hold
+source = @source@
 
-[guides]
-spacing = "{_mm(frame.spacing(design.lift))}"
-ambient_temperature = "{_celsius(design)}"        # in the housing, as warm as the oil
-
-[guides.a]
-{bush}
-[guides.b]
-{bush}
-[materials]
-case_hardened = {{ card = "case_hardened" }}
-bearing_steel = {{ card = "bearing_steel" }}
-c45 = {{ card = "c45" }}
 """
 
 
 def _requirements(design: Machinery, smoothing: str, positions: int) -> str:
     task = design.task
-    life = units.format(task.life, "h")
-    radius = 1e-3 * np.ceil(1.15e3 * design.cam_radius) if task.space is None else design.room
-    room = _assumed("room for the chosen cam") if task.space is None else written(_ROOM)
-    tool = 1e-3 * max(2.0, np.floor(0.5e3 * design.frame.radius))
-    lived = written(task.source("life"))
-    cases = [_load_case("running", task.speed, 1.0, "given")]
+    room = design.room if task.space is not None else 1e-3 * np.ceil(1.15e3 * design.cam_radius)
+    cases = [_load_case("running", task.speed, None, "given")]
     for label, speed in zip(("slowest", "fastest"), task.speeds, strict=True):
         if abs(speed / task.speed - 1.0) > 1e-9:
             cases.append(_load_case(label, speed, 0.0, "given: end of the speed range"))
-    return f"""\
+    return _SMOOTHING + smoothing + filled(
+        _REQUIREMENTS, overspeed=_round(task.overspeed, "rpm"), reduction=task.remove,
+        life=units.format(task.life, "h"), room=_mm(float(room)),
+        tool=_mm(1e-3 * max(2.0, np.floor(0.5e3 * design.frame.radius))),
+        overspeed_source=task.source("overspeed", "1.2 times the greatest speed"),
+        reduction_source=task.source("remove"), life_source=task.source("life"),
+        tool_source=_assumed(""),
+        room_source=_assumed("room for the chosen cam") if task.space is None else _ROOM,
+        ambient_source=_assumed("the temperature of the oil in the same housing"),
+        tolerances=_assumed("ground profile; the rest: defaults"),
+        table_step=f"{_table_step(design):g} deg", positions=positions,
+    ) + "".join(cases)  # fmt: skip
+
+
+_SMOOTHING = """\
 # --- The lift of least torque ripple within all limits, at the ends of all tolerances
 [smoothing]
-{smoothing}
-[limits]
-overspeed = "{_round(task.overspeed, "rpm")}"
-torque_reduction = {task.remove!r}
-roller_life = "{life}"
-shaft_bearing_life = "{life}"
-target_life = "{life}"
-tool_radius = "{_mm(tool)}"                # grinding wheel or cutter
-cam_radius = "{_mm(float(radius))}"
-
-[limits.sources]
-overspeed = {written(task.source("overspeed", "1.2 times the greatest speed"))}
-torque_reduction = {written(task.source("remove"))}
-roller_life = {lived}
-shaft_bearing_life = {lived}
-target_life = {lived}
-tool_radius = {_assumed("")}
-cam_radius = {room}
-
-[sources]
-"guides.ambient_temperature" = {_assumed("the temperature of the oil in the same housing")}
-
-[tolerances]
-source = {_assumed("ground profile; the rest: defaults")}
-
-[workshop]
-table_step = "{_table_step(design):g} deg"              # chords within a quarter of the tolerance
-
-[solver]
-positions = {positions}                       # per cam turn; 720 for a sign-off
-
-{"".join(cases)}"""
+"""
 
 
 def _table_step(design: Machinery) -> float:
@@ -460,15 +541,8 @@ def _table_step(design: Machinery) -> float:
     )
 
 
-def _load_case(name: str, speed: float, weight: float, source: str) -> str:
-    counts = "" if weight else "ripple_weight = 0.0                  # the cam only has to hold\n"
-    return f"""\
-[[load_case]]
-name = "{name}"
-speed = "{_round(speed, "rpm")}"
-{counts}source = "{source}"
-
-"""
+def _load_case(name: str, speed: float, weight: float | None, source: str) -> str:
+    return filled(_LOAD_CASE, name=name, speed=_round(speed, "rpm"), weight=weight, source=source)
 
 
 def _mm(length: float) -> str:
@@ -479,14 +553,6 @@ def _round(value: float, unit: str, digits: int = 7) -> str:
     return units.rounded(units.format(value, unit), digits)
 
 
-def _celsius(design: Machinery) -> str:
-    return f"{design.oil_temperature - 273.15:g} degC"
-
-
-def _assumed(what: str) -> str:
+def _assumed(what: str) -> Source:
     """Source of an assumption, to be confirmed."""
-    return written(Source(f"assumed: {what}".removesuffix(": "), confirmed=False))
-
-
-def _text(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return Source(f"assumed: {what}".removesuffix(": "), confirmed=False)

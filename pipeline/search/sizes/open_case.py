@@ -6,8 +6,6 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import tomli_w
-
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import write_atomic
@@ -23,6 +21,7 @@ from camwright.pipeline.case.case_file import (
     validated,
 )
 from camwright.pipeline.case.case_values import quantity_of
+from camwright.pipeline.case.case_writer import added_text, tables_text
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
 PRIME, OFFSET = "cam.prime_radius", "cam.offset"
@@ -73,7 +72,7 @@ class OpenCase:
         for key, value in values.items():
             enter(table, key, _written(key, value))
         enter(table, "sources", dict(sources))
-        return f"{self.text.rstrip()}\n{_HEAD}{tomli_w.dumps({'added': [table]})}"
+        return f"{self.text.rstrip()}\n{_HEAD}{added_text(table)}"
 
     def sized(self, text: str) -> Case:
         """Complete case, from its text.
@@ -129,7 +128,7 @@ def parse_open_case(
     if free:
         for key in free:
             _open(stated, key)
-        text = tomli_w.dumps(stated)
+        text = tables_text(stated)
     tables = resolved(stated, folder)
     other = ROLLER if _entry(tables, "follower.kind") == "flat" else FACE
     gaps = tuple(key for key in GAPS if key != other and _entry(tables, key) is None)
