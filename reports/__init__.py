@@ -27,6 +27,7 @@ report_content         sections, blocks, text and tables of a report (`Report`)
 page                   ``8_report.html`` and the pages of studies, by Jinja
 pdf                    documents as PDF/A, by typst
 documents              ``8_signoff.pdf``, ``8_report.pdf``, shop drawing, spreadsheets
+motion_svg             ``motion.svg``: the mechanism over one turn, animated
 scene_solids           rings, boxes and rods as triangles
 scene_page             ``scene.html``: interactive 3-D view over the turn
 sections               parts of a report by name; `report` writes them

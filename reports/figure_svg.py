@@ -58,6 +58,9 @@ if TYPE_CHECKING:
 _CSS = (TEMPLATES / "report.css").read_text(encoding="utf-8")
 COLOURS = dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", _CSS[: _CSS.index("}")]))
 """Colours of the page's light theme by name."""
+_THEME = _CSS[_CSS.index("(prefers-color-scheme: dark)") :]
+DARK = dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", _THEME[: _THEME.index("}")]))
+"""The same of the dark theme."""
 STYLE: dict[RcKeyType, str | float] = {
     "svg.fonttype": "none",
     "font.family": "sans-serif",

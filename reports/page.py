@@ -23,7 +23,7 @@ PAGE = "8_report.html"
 LONG = 700
 LINKS = (
     ("Sign-off sheet", "8_signoff.pdf"), ("Report as PDF", "8_report.pdf"),
-    ("Shop drawing", "workshop/drawing.pdf"), ("3-D view", "scene.html"),
+    ("Shop drawing", "workshop/drawing.pdf"), ("3-D view", "scene.html"), ("Motion", "motion.svg"),
     ("Stress field (VTK)", "fields/stress.vtkhdf"),
 )  # fmt: skip
 """Other files of a run that the page links to where they are."""

@@ -16,6 +16,7 @@ from camwright.pipeline.results.folder_exchange import amended, is_being_written
 from camwright.reports import (
     documents,
     figure_svg,
+    motion_svg,
     page,
     picture_list,
     scene_page,
@@ -72,6 +73,9 @@ PARTS = (
     ),
     ReportPart(
         "scene", f"{scene_page.FILE}, interactive 3-D view", scene_page.write, scene_page.FILE
+    ),
+    ReportPart(
+        "motion", f"{motion_svg.FILE}, one turn animated", motion_svg.write, motion_svg.FILE
     ),
     ReportPart(
         "sheet",

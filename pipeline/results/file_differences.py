@@ -107,7 +107,7 @@ CLASSES = (
     FileClass(r"workshop/dimensions\.json", Kind.RECORD, Origin.SOLVED),
     FileClass(r"workshop/contour\.dxf", Kind.GEOMETRY, Origin.SOLVED),
     FileClass(r"workshop/cam\.step", Kind.SOLID, Origin.SOLVED),
-    FileClass(r"8_report\.html|scene\.html", Kind.PAGE, Origin.DRAWN),
+    FileClass(r"8_report\.html|scene\.html|motion\.svg", Kind.PAGE, Origin.DRAWN),
     FileClass(r"8_signoff\.pdf|8_report\.pdf|workshop/drawing\.pdf", Kind.DOCUMENT, Origin.DRAWN),
     FileClass(r"(workshop/(contour|inspection)|trial_N/5_cycle)\.xlsx", Kind.BOOK, Origin.DRAWN),
     FileClass(rf"figures/{_INNER}\.png", Kind.PICTURE, Origin.DRAWN),

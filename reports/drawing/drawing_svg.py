@@ -23,15 +23,15 @@ def svg_of(drawing: Drawing, colours: Mapping[str, str], font: str, attributes: 
     attributes : str    of the root element, escaped
     """
     left, _, _, top = drawing.box
-    width, height = drawing.size
+    box = " ".join(map(decimal, (left, -top, *drawing.size)))
     used = sorted(
         {s.colour for group in drawing.groups for s in group.shapes if isinstance(s, Arrow)}
     )
     heads = "".join(_head(name, colours[name]) for name in used)
     body = "\n".join(_group(group, colours) for group in drawing.groups)
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_n(left)} {_n(-top)} {_n(width)} '
-        f'{_n(height)}" font-family="{escape(font)}"{attributes and " " + attributes}>\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" '
+        f'font-family="{escape(font)}"{attributes and " " + attributes}>\n'
         f"<defs>{heads}</defs>\n{body}\n</svg>\n"
     )
 
@@ -56,7 +56,7 @@ def _group(group: ShapeGroup, colours: Mapping[str, str]) -> str:
 
 def transform(turn: float, x: float, y: float) -> str:
     """SVG transform of a pose; rotation in rad counter-clockwise, mm."""
-    return f"translate({_n(x)} {_n(-y)}) rotate({_n(-np.degrees(turn))})"
+    return f"translate({decimal(x)} {decimal(-y)}) rotate({decimal(-np.degrees(turn))})"
 
 
 def _shape(shape: DrawnOutline | Arrow | Text, stretch: float, colours: Mapping[str, str]) -> str:
@@ -72,19 +72,20 @@ def _outline(shape: DrawnOutline, stretch: float, colours: Mapping[str, str]) ->
     if len(shape.lines) > 1 and shape.closed:
         style += ' fill-rule="evenodd"'
     if pen.stroke:
-        style += f' stroke="{colours[pen.stroke]}" stroke-width="{_n(pen.width)}"'
+        style += f' stroke="{colours[pen.stroke]}" stroke-width="{decimal(pen.width)}"'
         style += ' stroke-linejoin="round"'
         if pen.dash in _DASHES:
-            dashes = " ".join(_n(part * max(pen.width, 0.3)) for part in _DASHES[pen.dash])
+            dashes = " ".join(decimal(part * max(pen.width, 0.3)) for part in _DASHES[pen.dash])
             style += f' stroke-dasharray="{dashes}"'
         elif not shape.closed:
             style += ' stroke-linecap="round"'
-    path = "".join(_line(line, stretch, shape.closed) for line in shape.lines)
+    path = "".join(line_path(line, stretch, shape.closed) for line in shape.lines)
     return f'<path d="{path}" {style}/>'
 
 
-def _line(points: Array, stretch: float, closed: bool) -> str:
-    pairs = [f"{_n(x)} {_n(-stretch * y)}" for x, y in points.T]
+def line_path(points: Array, stretch: float, closed: bool) -> str:
+    """Path data of a line (2, n), mm, stretched along y."""
+    pairs = [f"{decimal(x)} {decimal(-stretch * y)}" for x, y in points.T]
     return f"M{'L'.join(pairs)}{'Z' if closed else ''}"
 
 
@@ -96,9 +97,9 @@ def _arrow(arrow: Arrow, colours: Mapping[str, str]) -> str:
     neck = tip - (tip - tail) * (arrow.head / length) if shown else tip
     hidden = "" if shown else ' visibility="hidden"'
     return (
-        f'<line data-arrow="{arrow.name}" x1="{_n(tail[0])}" y1="{_n(-tail[1])}" '
-        f'x2="{_n(neck[0])}" y2="{_n(-neck[1])}" stroke="{colours[arrow.colour]}" '
-        f'stroke-width="{_n(arrow.width)}" marker-end="url(#head-{arrow.colour})"{hidden}/>'
+        f'<line data-arrow="{arrow.name}" x1="{decimal(tail[0])}" y1="{decimal(-tail[1])}" '
+        f'x2="{decimal(neck[0])}" y2="{decimal(-neck[1])}" stroke="{colours[arrow.colour]}" '
+        f'stroke-width="{decimal(arrow.width)}" marker-end="url(#head-{arrow.colour})"{hidden}/>'
     )
 
 
@@ -107,13 +108,13 @@ def _text(text: Text, colours: Mapping[str, str]) -> str:
     weight = ' font-weight="bold"' if text.bold else ""
     name = f' data-value="{text.name}"' if text.name else ""
     return (
-        f'<text{name} x="{_n(x)}" y="{_n(-y)}" font-size="{_n(text.height)}" '
+        f'<text{name} x="{decimal(x)}" y="{decimal(-y)}" font-size="{decimal(text.height)}" '
         f'text-anchor="{text.align}" fill="{colours[text.colour]}"{weight}>'
         f"{escape(text.words)}</text>"
     )
 
 
-def _n(value: float) -> str:
+def decimal(value: float) -> str:
     """A number with at most three decimals."""
     text = f"{value:.3f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text

@@ -106,7 +106,7 @@ def test_resumed_run_equals_a_straight_one_to_the_byte(
     """All files but the page, the clock figures of run.json, and signoff.json, which signs them."""
     _, out, summary = finished
     clock = {"run.json", "signoff.json"}
-    pages = {"8_report.html", "scene.html", "8_signoff.pdf", "workshop/drawing.pdf"}
+    pages = {"8_report.html", "scene.html", "motion.svg", "8_signoff.pdf", "workshop/drawing.pdf"}
     pages |= {"workshop/contour.xlsx", "workshop/inspection.xlsx", "trial_1/5_cycle.xlsx"}
     whole, other = (
         file_hashes(folder, lambda name: name not in clock) for folder in (out, straight)
