@@ -24,6 +24,7 @@ pressure_figures       pressure in both guides and along the line of contact
 picture_list           pictures of a report with title and caption
 utilisation_chart      chart of the greatest utilisations by part
 report_content         sections, blocks, text and tables of a report (`Report`)
+live_preview           sliders and quantities of the live preview of the page
 page                   ``8_report.html`` and the pages of studies, by Jinja
 pdf                    documents as PDF/A, by typst
 documents              ``8_signoff.pdf``, ``8_report.pdf``, shop drawing, spreadsheets

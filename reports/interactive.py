@@ -36,7 +36,7 @@ Spec = dict[str, Json]
 _HERE = Path(__file__).parent
 _SCRIPTS = (
     _HERE / "vendor" / "plotly-basic.min.js", _HERE / "templates" / "report.js",
-    _HERE / "templates" / "report_controls.js",
+    _HERE / "templates" / "report_controls.js", _HERE / "templates" / "live_preview.js",
 )  # fmt: skip
 _PANEL_PIXELS, _TOP_PIXELS, _LEGEND_PIXELS, _BOTTOM_PIXELS, _GAP_PIXELS = 165, 54, 24, 46, 14
 _DIGITS, _BAND_DIGITS, _STROKE_PIXELS = 6, 3, 14

@@ -221,29 +221,29 @@ def _box(place: int, count: int) -> tuple[float, float, float, float]:
 def _panel(panel: _MotionPanel, place: int, count: int) -> str:
     """Axes and curves of a panel."""
     left, top, width, height = _box(place, count)
-    made = [_text(f"{panel.title}, {panel.unit}", left, top - 26.0, 13.5, weight=650)]
+    lines = [_text(f"{panel.title}, {panel.unit}", left, top - 26.0, 13.5, weight=650)]
     for value in panel.ticks:
         y = _height_of(panel, place, count, value)
         colour = "muted" if value == 0.0 else "grid"
-        made.append(_line((left, y), (left + width, y), colour, 0.8))
-        made.append(_text(number(float(value), 4), left - 8.0, y + 4.0, 11.5, "muted",
+        lines.append(_line((left, y), (left + width, y), colour, 0.8))
+        lines.append(_text(number(float(value), 4), left - 8.0, y + 4.0, 11.5, "muted",
                           anchor="end"))  # fmt: skip
     for degrees in range(0, 361, 90):
         x = left + width * degrees / 360.0
-        made.append(_line((x, top), (x, top + height), "grid", 0.8))
+        lines.append(_line((x, top), (x, top + height), "grid", 0.8))
         name = "cam angle " if degrees == 180 and place == count - 1 else ""
         low = top + height + 17.0
-        made.append(_text(f"{name}{degrees}°", x, low, 11.5, "muted", anchor="middle"))
+        lines.append(_text(f"{name}{degrees}°", x, low, 11.5, "muted", anchor="middle"))
     across = left
     for curve in panel.curves:
         words = f"{curve.label}, at most {quantity(float(np.nanmax(curve.values)), panel.unit, 4)}"
-        made.append(_line((across, top - 10.0), (across + 16.0, top - 10.0), curve.colour, 2.4))
-        made.append(_text(words, across + 22.0, top - 6.0, 12.0, "muted"))
+        lines.append(_line((across, top - 10.0), (across + 16.0, top - 10.0), curve.colour, 2.4))
+        lines.append(_text(words, across + 22.0, top - 6.0, 12.0, "muted"))
         across += 44.0 + 6.4 * len(words)
     if np.isfinite(panel.limit):
         y = _height_of(panel, place, count, panel.limit)
-        made.append(_line((left, y), (left + width, y), "fail", 1.2, "5 4"))
-        made.append(_text(f"{panel.limit_name} {quantity(panel.limit, panel.unit, 4)}",
+        lines.append(_line((left, y), (left + width, y), "fail", 1.2, "5 4"))
+        lines.append(_text(f"{panel.limit_name} {quantity(panel.limit, panel.unit, 4)}",
                           left + width, y - 5.0, 11.5, "fail", anchor="end"))  # fmt: skip
     for curve in panel.curves:
         stride = -(-curve.values.size // _MOST_POINTS)
@@ -251,9 +251,9 @@ def _panel(panel: _MotionPanel, place: int, count: int) -> str:
         heights = [_height_of(panel, place, count, float(v)) for v in values]
         along = zip(left + width * np.linspace(0.0, 1.0, values.size), heights, strict=True)
         path = "L".join(f"{decimal(a)} {decimal(b)}" for a, b in along)
-        made.append(f'<path d="M{path}" fill="none" stroke="var(--{curve.colour})" '
+        lines.append(f'<path d="M{path}" fill="none" stroke="var(--{curve.colour})" '
                     'stroke-width="2" stroke-linejoin="round"/>')  # fmt: skip
-    return "\n".join(made)
+    return "\n".join(lines)
 
 
 def _height_of(panel: _MotionPanel, place: int, count: int, value: float) -> float:
@@ -293,15 +293,15 @@ def _marks(panel: _MotionPanel, place: int, count: int, row: int) -> str:
 def _moving_marks(panel: _MotionPanel, place: int, count: int) -> str:
     """Cursor and dots that run over the turn."""
     left, top, width, height = _box(place, count)
-    made = [_line((left, top), (left, top + height), "ink", 1.2)]
+    marks = [_line((left, top), (left, top + height), "ink", 1.2)]
     for curve in panel.curves:
         heights = [
             _height_of(panel, place, count, float(curve.values[k]))
             for k in _frames(curve.values.size)
         ]
-        made.append(_dot(left, heights[0], curve.colour, _animate("cy", map(decimal, heights))))
+        marks.append(_dot(left, heights[0], curve.colour, _animate("cy", map(decimal, heights))))
     run = _transform("translate", ("0 0", f"{decimal(width)} 0"))
-    return f"<g>{run}{''.join(made)}</g>"
+    return f"<g>{run}{''.join(marks)}</g>"
 
 
 def _dot(x: float, y: float, colour: str, inside: str = "") -> str:

@@ -14,6 +14,7 @@ from camwright.reports import interactive
 from camwright.reports.arrangement_data import arrangement_at, moving_data
 from camwright.reports.drawing.drawing_svg import svg_of
 from camwright.reports.figure_svg import COLOURS, drawn_groups
+from camwright.reports.live_preview import live_view
 from camwright.reports.report_content import SHORT, ReportSection, failed_checks, report_content
 from camwright.reports.report_data import ReportMaterial
 from camwright.reports.report_tables import plain, shortened
@@ -46,7 +47,7 @@ def text(material: ReportMaterial) -> bytes:
         turn=Markup(interactive.script_safe_json(moving_data(material.turn))),  # noqa: S704
         chart=utilisation_chart(material.run.final.checks), limit_share=LIMIT_SHARE,
         sections=[failed_checks(material), *sorted(report.sections, key=_is_check_table)],
-        links=links(material),
+        links=links(material), preview=live_view(material),
     )  # fmt: skip
     return page.encode("utf-8", "replace")
 

@@ -228,7 +228,7 @@ def schema(
         typer.Argument(
             metavar="NAME",
             help="run, trial, checks, check (of check --json), signoff, corners, crown, size, "
-            "redesign, design, inspect or study.",
+            "redesign, design, inspect, study or live.",
         ),
     ],
 ) -> int:
@@ -458,12 +458,16 @@ def recomputed(folder: Path, **options: Any) -> Recomputation:
 
     from camwright.pipeline.base import disk_cache
     from camwright.pipeline.recomputation import copy_without, page_differences, recompute
+    from camwright.pipeline.results.run_reader import LIVE
+    from camwright.pipeline.screening.live_preview import live_differences
     from camwright.reports.page import PAGE
     from camwright.reports.sections import redraw
 
     made = recompute(folder, **options)
+    surfaces = live_differences(folder) if (folder / LIVE).is_file() else ()
+    differences = (*made.differences, *(f"{LIVE}: {each}" for each in surfaces))
     if not made.pages:
-        return made
+        return replace(made, differences=differences)
     with disk_cache.left_out(), TemporaryDirectory(prefix="camwright-") as home:
         copy = Path(home) / "drawn"
         copy_without(folder, copy, made.pages)
@@ -474,7 +478,7 @@ def recomputed(folder: Path, **options: Any) -> Recomputation:
             del differing[PAGE]
             differing |= page_differences(folder, copy, {PAGE: made.pages[PAGE]})
     words = (f"{name}: {each}" for name, each in differing.items())
-    return replace(made, differences=(*made.differences, *words), pages={})
+    return replace(made, differences=(*differences, *words), pages={})
 
 
 def _checked_run(folder: Path) -> tuple[dict[str, Any], Clock]:

@@ -15,6 +15,7 @@
 | `design_document`     | ``design.json``, output of ``design --json``               |
 | `inspection_document` | ``inspection.json``, output of ``inspect --json``          |
 | `study_document`      | ``study.json``                                             |
+| `live_document`       | ``8_live.json``                                            |
 
 Imports `geometry` and `base`.
 """

@@ -24,6 +24,7 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import read_json, read_npz, read_text
 from camwright.pipeline.base.tables import CAM_ANGLE, Table, read_table
 from camwright.pipeline.results import signoff
+from camwright.pipeline.results.run_reader import LIVE
 
 SAME = 1e-6
 """Relative difference, of the greatest value of a column, that rounding may make."""
@@ -73,6 +74,7 @@ class Origin(StrEnum):
 
     SOLVED = "case and lift"
     DRAWN = "the other files of the run"
+    FITTED = "case, lift and checks, by the screening"
     SEARCH = "the search for the lift, which is not repeated"
     ELSEWHERE = "what the run does not hold"
     RECORD = "the whole run"
@@ -107,6 +109,7 @@ CLASSES = (
     FileClass(r"workshop/dimensions\.json", Kind.RECORD, Origin.SOLVED),
     FileClass(r"workshop/contour\.dxf", Kind.GEOMETRY, Origin.SOLVED),
     FileClass(r"workshop/cam\.step", Kind.SOLID, Origin.SOLVED),
+    FileClass(re.escape(LIVE), Kind.RECORD, Origin.FITTED),
     FileClass(r"8_report\.html|scene\.html|motion\.svg", Kind.PAGE, Origin.DRAWN),
     FileClass(r"8_signoff\.pdf|8_report\.pdf|workshop/drawing\.pdf", Kind.DOCUMENT, Origin.DRAWN),
     FileClass(r"(workshop/(contour|inspection)|trial_N/5_cycle)\.xlsx", Kind.BOOK, Origin.DRAWN),

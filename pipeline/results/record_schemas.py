@@ -13,6 +13,7 @@ from camwright.pipeline.records.crown_document import CrownDocument
 from camwright.pipeline.records.design_document import DesignDocument
 from camwright.pipeline.records.forms import Schema
 from camwright.pipeline.records.inspection_document import InspectionDocument
+from camwright.pipeline.records.live_document import LiveDocument
 from camwright.pipeline.records.redesign_document import RedesignDocument
 from camwright.pipeline.records.run_summary import Summary
 from camwright.pipeline.records.signoff_record import SignoffRecord
@@ -33,6 +34,7 @@ NAMES = {
     "design": "design.json, output of camwright design --json",
     "inspect": "inspection.json, output of camwright inspect --json",
     "study": "study.json",
+    "live": "8_live.json",
 }
 """Names of the schemas and the documents that they describe."""
 _FORMS: Mapping[str, Any] = {
@@ -48,6 +50,7 @@ _FORMS: Mapping[str, Any] = {
     "design": DesignDocument,
     "inspect": InspectionDocument,
     "study": StudyDocument,
+    "live": LiveDocument,
 }
 
 

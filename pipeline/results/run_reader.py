@@ -48,6 +48,8 @@ HEADLINE = tuple(HeadlineRecord.__annotations__)
 LIMITS_FILE = "2_limits.csv"
 SPLINE_FILE = "2_spline.csv"
 SWEEP_FILE = "5_speed_sweep.csv"
+LIVE = "8_live.json"
+"""Response surfaces of the live preview; fitted when the other results are there, for the page."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -272,7 +274,7 @@ def results_sha256(files: Mapping[str, str]) -> str:
 def is_result(name: str) -> bool:
     """Whether a file is a result (table, record, mesh, array), not a drawing of results."""
     file = Path(name)
-    made_last = ("run.json", "signoff.json")
+    made_last = ("run.json", "signoff.json", LIVE)
     return file.suffix in (".csv", ".json", ".msh", ".npz") and file.name not in made_last
 
 

@@ -10,6 +10,8 @@ In the order of the calculation:
 | `design_arrays`     | lift, contour and load cases of many designs        | s, m                 |
 | `screened_checks`   | the checks that screening judges                    |                      |
 | `design_screening`  | columns of the screening: demands, status, `screen` | as in the record     |
+| `response_surface`  | polynomials through values of many designs          |                      |
+| `live_preview`      | surfaces about the design of a run, for its page    | ``8_live.json``      |
 
 The formulas are those of the checks: `checks`, `follower` and `contact` on arrays (designs, cam
 angles). Loads of the guides are interpolated in tables, the crank speed is constant, no corner and

@@ -39,7 +39,7 @@ class LiftOrigin:
     """Source of the lifts of a group of designs: torque, stored energy, or stated lift.
 
     torque (1 or m, N): smoothed engine torque, crank N m; energy (N,): stored over the turn, J,
-    of a synthesised lift; lift (N,): of the case file, m. Two are None.
+    of a synthesised lift; lift (N,) or (m, N): of all designs or of each, m. Two are None.
     """
 
     torque: Array | None = None
@@ -59,6 +59,7 @@ class Designs:
     torques : mapping    engine torque by number of the load case, less its mean, (m or 1, N)
     count : int          designs m
     step : int           every `step`-th sample of the lift is a cam angle of the loads
+    torque_step : int    the same of the engine torque, a divisor of `step`; None: as of the loads
     results : dict       by name, computed on first use
     """
 
@@ -68,6 +69,7 @@ class Designs:
     torques: Mapping[int, Array]
     count: int
     step: int
+    torque_step: int | None = None
     results: dict[str, object] = field(default_factory=dict, init=False)
 
     def value(self, key: str) -> Array:
@@ -105,7 +107,7 @@ class Designs:
         """Lift at equal cam angles (m or 1, N), m."""
         source = self.source
         if source.lift is not None:
-            return source.lift[None, :]
+            return np.atleast_2d(source.lift)
         machine, mass = self.machine, self.value("follower.mass")
         dead_load = mass * machine.gravity_along_axis + machine.external.mean
         rate, preload = self.value("spring.rate"), self.value("spring.preload") + dead_load
@@ -206,7 +208,7 @@ class Designs:
             if not any(np.array_equal(preload, known) for known in preloads):
                 preloads.append(preload)
             torque = self.torques.get(k)
-            torque = None if torque is None else self.at_loads(torque)
+            torque = None if torque is None else torque[..., :: self.torque_step or self.step]
             speed = self.value(f"load_case[{k}].speed")
             states.append(ScreenedState(speed, preload, torque, self._required(each), each.duty))
         over = self.value(f"limits.{OVERSPEED.id}")

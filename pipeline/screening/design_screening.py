@@ -186,8 +186,7 @@ class _Blocks:
     def _columns(self, values: Mapping[str, Array]) -> dict[str, Column]:
         designs = self._designs(values)
         columns = judged_columns(designs) | headline_columns(designs)
-        travel = None if self.case.follower.face is None else designs.contact_travel
-        refused = np.array(refusals(self.case, values, designs.highest, travel), dtype=object)
+        refused = np.array(refusals_of(designs, values), dtype=object)
         away = refused != ""
         if away.any():
             for column in columns.values():
@@ -215,13 +214,19 @@ class _Blocks:
             case=case,
             columns={key: each[:, None] for key, each in values.items()},
             source=source,
-            torques={k: _resampled(each, samples) for k, each in torques.items()},
+            torques={k: resampled(each, samples) for k, each in torques.items()},
             count=count,
-            step=_step(samples, self.positions),
+            step=step_of(samples, self.positions),
         )
 
 
-def _step(samples: int, positions: int) -> int:
+def refusals_of(designs: Designs, values: Mapping[str, Array]) -> list[str]:
+    """Refusal of each design by its values and its lift in words, "" where it is accepted."""
+    travel = None if designs.case.follower.face is None else designs.contact_travel
+    return refusals(designs.case, values, designs.highest, travel)
+
+
+def step_of(samples: int, positions: int) -> int:
     """Greatest divisor of a number of samples that leaves at least some positions."""
     return max(
         step
@@ -230,7 +235,7 @@ def _step(samples: int, positions: int) -> int:
     )
 
 
-def _resampled(torque: Array, count: int) -> Array:
+def resampled(torque: Array, count: int) -> Array:
     """Torque (..., n) at another number of equal angles, by its harmonics."""
     n = torque.shape[-1]
     return torque if n == count else np.fft.irfft(np.fft.rfft(torque), n=count) * (count / n)

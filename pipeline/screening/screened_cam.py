@@ -21,9 +21,9 @@ from camwright.pipeline.screening.design_lengths import DesignValues, factors_of
 class ScreenedState(NamedTuple):
     """A load case of many designs: crank speed, rad/s, and preload, N, (m, 1).
 
-    torque (m or 1, n): of the engine less its mean, crank N m, at the cam angles of the loads; None
-    without one. required: reduction of its ripple, (m,) or (); None: none is required. duty:
-    share of the operating time; None: not known.
+    torque (m or 1, k): of the engine less its mean, crank N m, at cam angles that can be closer
+    than those of the loads, see `Designs`; None without one. required: reduction of its
+    ripple, (m,) or (); None: none is required. duty: share of the operating time; None: not known.
     """
 
     speed: Array

@@ -149,9 +149,30 @@ def _over_duty(designs: Designs, of_turn: Callable[[ScreenedCam], Array], *, lif
 
 
 def torque_after(designs: Designs, cam: ScreenedCam) -> Array:
-    """Measure: crank torque of engine and cam together (m, n), N m."""
+    """Measure: crank torque of engine and cam (m, k), N m, at the cam angles of the engine's.
+
+    That of the cam, smooth between the cam angles of its loads, is a cubic there: peaks of the
+    engine are narrower.
+    """
     before = np.zeros(1) if cam.state.torque is None else cam.state.torque
-    return np.asarray(before - cam.torque / designs.case.mechanism.gear_ratio)
+    torque = cam.torque
+    if designs.torque_step is not None:
+        torque = _between(torque, designs.step // designs.torque_step)
+    return np.asarray(before - torque / designs.case.mechanism.gear_ratio)
+
+
+def _between(values: Array, step: int) -> Array:
+    """Periodic values (m, n) at `step` times as many equal angles, cubic through four of them."""
+    at = np.arange(step) / step
+    weights = (
+        -at * (at - 1.0) * (at - 2.0) / 6.0,
+        (at + 1.0) * (at - 1.0) * (at - 2.0) / 2.0,
+        -(at + 1.0) * at * (at - 2.0) / 2.0,
+        (at + 1.0) * at * (at - 1.0) / 6.0,
+    )
+    shifted = zip((1, 0, -1, -2), weights, strict=True)
+    between = sum(np.roll(values, by, axis=-1)[..., None] * weight for by, weight in shifted)
+    return np.asarray(between).reshape(*values.shape[:-1], -1)
 
 
 def _torque_reduction(designs: Designs) -> Judged | None:

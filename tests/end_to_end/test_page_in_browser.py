@@ -4,17 +4,27 @@ from __future__ import annotations
 
 import itertools
 import re
+import shutil
+import subprocess
 import sys
 import time
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+import live_settings
 import report_fixture
 from browser_fixture import Tab, chromium
 
+from camwright.pipeline.base.files import read_json
+from camwright.pipeline.case.case_values import quantity_of
+from camwright.pipeline.results import signoff
+from camwright.pipeline.results.run_reader import LIVE
+from camwright.pipeline.studies.batch.dataset import read_dataset
 from camwright.reports import interactive
 
 UNDRAWN = ".live:not([data-drawn='done'])"
@@ -26,6 +36,8 @@ HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </s
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("browser") / "run"
     report_fixture.write_run(folder, title=HOSTILE)
+    live_settings.write_in(folder, (each["id"] for each in report_fixture.checks()))
+    signoff.write(folder)
     return report_fixture.page_of(folder)
 
 
@@ -190,6 +202,93 @@ def test_the_slider_turns_the_cam_by_keyboard(desktop: Tab) -> None:
         assert share == pytest.approx(shaft / period, abs=1e-3)
     figures = "[...document.querySelectorAll('.live')].filter(p => p._fullLayout.xaxis2).length"
     assert len(places) == tab.evaluate(figures)
+
+
+LIVE_MS = 50.0
+STATUS = "#live-status"
+
+
+def test_the_live_preview_follows_by_keyboard(desktop: Tab, report: Path) -> None:
+    """Its figures are those of the record, read by another program; each change is soon done."""
+    page, record = desktop.page, read_json(report.parent / LIVE)
+    settings = np.random.default_rng(5).uniform(size=(20, len(record["factors"])))
+    ends = np.array([(each["low"], each["high"]) for each in record["factors"]])
+    for multiples in np.exp(np.log(ends[:, 0]) + settings * np.log(ends[:, 1] / ends[:, 0])):
+        values = [m * next(iter(f["keys"].values()))
+                  for m, f in zip(multiples, record["factors"], strict=True)]  # fmt: skip
+        shown = page.evaluate(
+            "values => { const { all, names } = window.livePreview, made = all(values).figures;"
+            " return names.map((name, k) => [name, made[k].value ?? null, made[k].error ?? null,"
+            " made[k].doubt]); }",
+            values,
+        )
+        expected = live_settings.values(record, multiples)
+        assert len(shown) >= 10
+        for name, value, error, doubt in shown:
+            assert bool(doubt or value is None) == (not expected[name].holds), name
+            if expected[name].holds:
+                assert value == pytest.approx(expected[name].value, rel=1e-9, abs=1e-12), name
+                assert error == pytest.approx(expected[name].error, rel=1e-9, abs=1e-12), name
+    force = page.locator("[data-quantity='contact_force'] [data-cell='value']")
+    before = force.text_content()
+    page.locator("#live-0").focus()
+    for _ in range(20):
+        page.keyboard.press("ArrowRight")
+    assert float(force.text_content()) > float(before)
+    assert page.locator("#live-0-value").input_value() in page.locator("#live-0").get_attribute(
+        "aria-valuetext"
+    )
+    took = page.evaluate(
+        "() => { const slider = document.getElementById('live-0'), began = performance.now();"
+        " for (let k = 0; k < 20; k++) { slider.value = 5 * k;"
+        " slider.dispatchEvent(new Event('input')); document.body.offsetHeight; }"
+        " return (performance.now() - began) / 20; }"
+    )
+    assert took <= LIVE_MS
+    page.locator("#live-reset").focus()
+    page.keyboard.press("Enter")
+    assert force.text_content() == before
+    assert "no verdict" in page.locator(STATUS).text_content()
+
+
+def test_the_live_preview_says_where_it_does_not_hold(desktop: Tab) -> None:
+    """Outside the fitted range there is no figure, and load cases without contact are named."""
+    page = desktop.page
+    entry = page.locator("#live-0-value")
+    run = entry.input_value()
+    assert "leaves the cam: over-speed" in page.locator(STATUS).text_content()
+    entry.fill(str(3.0 * float(run)))
+    assert "Outside the fitted range" in page.locator(STATUS).text_content()
+    assert set(page.locator("#live [data-cell='value']").all_text_contents()) == {"–"}
+    entry.fill(run)
+    assert "–" not in page.locator("#live [data-cell='value']").all_text_contents()
+
+
+def test_the_changes_of_the_live_preview_are_a_study(desktop: Tab, tmp_path: Path) -> None:
+    """The study of the page solves the changed design, whose ripple is that of the page."""
+    page = desktop.page
+    page.locator("#live-0-value").fill("280")
+    ripple = page.locator("[data-quantity='torque_ripple']")
+    value, error = (ripple.locator(f"[data-cell='{name}']").text_content()
+                    for name in ("value", "error"))  # fmt: skip
+    page.locator("#live-show").focus()
+    page.keyboard.press("Enter")
+    toml, command = page.locator("#live-toml pre").all_text_contents()
+    page.locator("#live-reset").click()
+    assert command == "camwright study changes.toml --out changes"
+    study = tomllib.loads(toml)
+    assert study["case"] == "run/case.toml"
+    assert [each["key"] for each in study["factor"]] == ["spring.preload"]
+    assert all(quantity_of(each["key"]) is not None for each in study["factor"])
+    (tmp_path / "run").mkdir()
+    shutil.copy(live_settings.CASES / "gx120.toml", tmp_path / study["case"])
+    (tmp_path / "changes.toml").write_text(toml)
+    pytest.importorskip("dask")
+    command = [sys.executable, "-m", "camwright", *command.split()[1:]]
+    made = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert made.returncode in (0, 1), made.stderr
+    solved = list(read_dataset(tmp_path / "changes")["headline.torque_std_after_Nm"])
+    assert solved == [pytest.approx(float(value), abs=2.0 * float(error.removeprefix("± ")))]
 
 
 def test_the_filters_of_the_checks_work_by_keyboard(desktop: Tab) -> None:

@@ -251,7 +251,7 @@ def test_every_file_of_a_run_has_one_class() -> None:
         "case.toml", "inputs/torque.csv", "1_torque.csv", "1_speed.csv", "corners.json", "run.json",
         "signoff.json", "signoff.intoto.jsonl", "trial_1/2_lift.csv", "trial_1/trial.json",
         "inspection/cycle.csv", "inspection/deviation.png", "exports/loads_090.000.inp",
-        "fields/turn.npz", "workshop/crown_roller.csv", "workshop/inspection.xlsx",
+        "fields/turn.npz", "8_live.json", "workshop/crown_roller.csv", "workshop/inspection.xlsx",
         *(f"trial_2/{name}" for name in (
             "2_limits.csv", "2_lift.csv", "2_spline.csv", "3_contour.csv", "4_mesh.msh",
             "5_cycle.csv", "5_cycle.xlsx", "5_envelope.npz", "5_guides.npz", "5_length.npz",

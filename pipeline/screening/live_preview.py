@@ -1,0 +1,674 @@
+"""Live preview: the closed-form checks of a run as functions of a few numbers of its design.
+
+Hundreds of designs about that of the run are screened; polynomials through their demands follow the
+preview within an error that designs held out state. All of them keep the lift of the run.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import CamError
+from camwright.geometry.extrema import sampled_greatest, sampled_least
+from camwright.pipeline.base.files import json_text, read_json, write_atomic
+from camwright.pipeline.base.quantities import In
+from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.base.verdict import in_order
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import quantity_of, value_of
+from camwright.pipeline.case.lift_section import LiftPoints, LiftSegments
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.case.load_case_torque import has_torque
+from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.records.live_document import (
+    LiveDocument,
+    LiveFactor,
+    LivePart,
+    LiveQuantity,
+    LiveSurface,
+)
+from camwright.pipeline.results.check_records import of_records
+from camwright.pipeline.results.drawn_cam import drawn_cam
+from camwright.pipeline.results.file_differences import SAME, record_differences
+from camwright.pipeline.results.run_reader import LIVE, TrialRecord, read_run
+from camwright.pipeline.screening.design_arrays import Designs, LiftOrigin, Screened, TorqueOfSpeed
+from camwright.pipeline.screening.design_screening import (
+    refusals_of,
+    resampled,
+    step_of,
+    utilisations,
+)
+from camwright.pipeline.screening.response_surface import (
+    Surface,
+    SurfaceFit,
+    powers,
+    settings,
+    terms,
+)
+from camwright.pipeline.screening.screened_cam import ScreenedCam
+from camwright.pipeline.screening.screened_checks import SCREENED, torque_after
+
+CANDIDATES = 26
+"""Checks of the greatest utilisation that are fitted, so that a page has twelve of them."""
+SETTINGS, HELD_OUT = 3.5, 120
+"""Designs of a fit over the terms of its polynomials; further ones that state its error."""
+POSITIONS = 180
+"""Cam angles of the loads."""
+WORST_ERROR = 0.1
+"""Error of a check, as a share of demand or limit, beyond which it is not followed."""
+_SEED = 7
+_BLOCK = 250  # designs solved at once
+_RANGES = {"preload": 1.3, "rate": 1.3, "prime": 1.15, "roller": 1.2, "speed": 1.25, "stroke": 1.2}
+_SHRINK, _TRIES = 0.7, 8  # of the ranges, where a corner of them is refused
+_LEAST_RANGE = 1.01  # greatest over least factor
+_FAR = 1e9  # utilisation, of a demand without the sign of its limit
+_NEVER = 0.7  # utilisation over the greatest, below which a load case governs nowhere
+_MOST_POINTS = 40  # of a lift by points, whose keys are listed
+# Of the key figures from those of the preview, as `tests/verification/test_live_preview.py` has it.
+_DEVIATION = {"force": 0.02, "pressure": 0.002, "ripple": 0.01, "shape": 0.001}
+
+
+class _Factor(NamedTuple):
+    """Numbers of the design that change in proportion: keys with their values, SI; ranges."""
+
+    kind: str
+    name: str
+    values: Mapping[str, float]
+    low: float
+    high: float
+
+    @property
+    def is_stroke(self) -> bool:
+        return self.kind == "stroke"
+
+    def drawn_in(self, below: float, above: float) -> _Factor:
+        """With shares of its range below and above the value of the run."""
+        return self._replace(low=self.low**below, high=self.high**above)
+
+
+def _factors(case: Case) -> Iterator[_Factor]:
+    """Numbers of a case that a live preview changes, with their widest ranges."""
+    keys: dict[str, tuple[str, Sequence[str]]] = {}
+    if case.spring.shape is None:
+        keys["preload"] = "Spring preload", ("spring.preload",)
+        keys["rate"] = "Spring rate", ("spring.rate",)
+    keys["prime"] = "Prime radius", ("cam.prime_radius",)
+    keys["roller"] = "Roller radius", ("roller.radius",)
+    if case.lift is not None and case.lift.kind == "eccentric":
+        del keys["prime"], keys["roller"]  # its lift is one with its radii
+    running = [k for k, state in enumerate(case.load_cases) if state.speed > 0.0]
+    speeds = tuple(f"load_case[{k}].speed" for k in running)
+    if speeds:
+        words = case.load_cases[running[0]].name if len(case.load_cases) > 1 else ""
+        keys["speed"] = f"Speed{words and f', {words}'}", speeds
+    if strokes := _stroke_keys(case):
+        keys["stroke"] = "Stroke", strokes
+    for kind, (name, changed) in keys.items():
+        values = {key: value_of(case, key) for key in changed}
+        if all(values.values()):  # neither left out nor zero
+            yield _Factor(kind, name, values, 1.0 / _RANGES[kind], _RANGES[kind])
+
+
+def _stroke_keys(case: Case) -> tuple[str, ...]:
+    """Keys of a lift that scale it, those of zero left out; none of another kind of lift."""
+    lift = case.lift
+    if isinstance(lift, LiftSegments):
+        return tuple(f"lift.segment[{k}].stroke" for k, s in enumerate(lift.segments) if s.stroke)
+    if isinstance(lift, LiftPoints) and len(lift.points) <= _MOST_POINTS:
+        return tuple(f"lift.point[{k}].lift" for k, p in enumerate(lift.points) if p.lift)
+    return ()
+
+
+@dataclass(frozen=True, eq=False)
+class _Neighbours:
+    """Designs about that of a run.
+
+    Parameters
+    ----------
+    case : Case             with the cam of the run
+    lift : array (N,)       of the run, m
+    factors : tuple
+    torques : mapping       engine torque by number of the load case
+    """
+
+    case: Case
+    lift: Array
+    factors: tuple[_Factor, ...]
+    torques: Mapping[int, TorqueOfSpeed]
+
+    @classmethod
+    def of(cls, case: Case, lift: Array, factors: Sequence[_Factor]) -> _Neighbours:
+        speed = next((each for each in factors if each.kind == "speed"), None)
+        torques = {}
+        for k, state in enumerate(case.load_cases):
+            if not (case.balances and has_torque(case, state)):
+                continue
+            stated = None if speed is None else speed.values.get(f"load_case[{k}].speed")
+            wanted = None
+            if speed is not None and stated is not None:
+                wanted = stated * np.linspace(speed.low, speed.high, _BLOCK)
+            torques[k] = TorqueOfSpeed.of(case, k, wanted)
+        return cls(case, lift, tuple(factors), torques)
+
+    def multiples(self, places: Array) -> Array:
+        """Factors (m, d) on the values of the run at places (m, d) in [-1, 1]."""
+        low = np.log([each.low for each in self.factors])
+        high = np.log([each.high for each in self.factors])
+        return np.asarray(np.exp(0.5 * (low + high) + 0.5 * places * (high - low)))
+
+    def at(self, multiples: Array) -> Designs:
+        """Designs of factors (m, d) on the values of the run."""
+        values = self._values(multiples)
+        stroke = [k for k, each in enumerate(self.factors) if each.is_stroke]
+        scaled = multiples[:, stroke[0], None] if stroke else np.ones((1, 1))
+        torques = {
+            k: resampled(each.at(values.get(f"load_case[{k}].speed")), self.lift.size)
+            for k, each in self.torques.items()
+        }
+        step = step_of(self.lift.size, POSITIONS)
+        return Designs(
+            case=self.case,
+            columns={key: each[:, None] for key, each in values.items()},
+            source=LiftOrigin(lift=scaled * self.lift),
+            torques=torques,
+            count=len(multiples),
+            step=step,
+            torque_step=self._torque_step(step),
+        )
+
+    def _torque_step(self, step: int) -> int:
+        """Samples of the lift between those of the engine torque: at the positions of the case.
+
+        A torque with peaks has the ripple of the angles at which it is sampled, as in a preview.
+        """
+        between, odd = divmod(self.lift.size, self.case.solver.positions)
+        return 1 if odd or step % max(between, 1) else between
+
+    def _values(self, multiples: Array) -> dict[str, Array]:
+        """Values (m,) by key of the arrays, SI."""
+        return {
+            key: value * column
+            for each, column in zip(self.factors, multiples.T, strict=True)
+            if not each.is_stroke
+            for key, value in each.values.items()
+        }
+
+    def solved(
+        self, multiples: Array, start: int = 0
+    ) -> Iterator[tuple[NDArray[np.intp], Designs]]:
+        """Designs that are accepted, with their numbers among those of the factors (m, d).
+
+        Left out are those that the case refuses, with undercut, or that lock.
+        """
+        count = len(multiples)
+        for begin in range(0, count if count > _BLOCK else 0, _BLOCK):
+            yield from self.solved(multiples[begin : begin + _BLOCK], start + begin)
+        if not 0 < count <= _BLOCK:
+            return
+        try:
+            designs = self.at(multiples)
+            good = self._good(designs, multiples)
+        except CamError:
+            if count > 1:
+                half = count // 2
+                yield from self.solved(multiples[:half], start)
+                yield from self.solved(multiples[half:], start + half)
+            return
+        if good.all():
+            yield start + np.arange(count), designs
+        elif good.any():
+            yield start + np.flatnonzero(good), self.at(multiples[good])
+
+    def _good(self, designs: Designs, multiples: Array) -> NDArray[np.bool_]:
+        refused = refusals_of(designs, self._values(multiples))
+        good = np.array([not words for words in refused]) & (designs.least_factor > 0.0)
+        for cam in designs.cams:
+            good &= ~(cam.ends.lost & ~cam.ends.leaves)
+        return good
+
+    def accepted(self, multiples: Array) -> NDArray[np.bool_]:
+        """Whether designs (m,) are accepted, see `solved`."""
+        good = np.zeros(len(multiples), dtype=bool)
+        for rows, _ in self.solved(multiples):
+            good[rows] = True
+        return good
+
+
+def _in_range(case: Case, lift: Array) -> _Neighbours:
+    """Neighbours in the widest ranges whose ends and corners are accepted."""
+    factors = list(_factors(case))
+    steps = (0.25, 0.5, 0.75, 1.0)
+    near = _Neighbours.of(case, lift, factors)
+    trials: list[list[float]] = []
+    for k, each in enumerate(factors):
+        for end in (each.low, each.high):
+            for share in steps:
+                row = np.ones(len(factors))
+                row[k] = end**share
+                trials.append(list(row))
+    good = near.accepted(np.array([*trials, [1.0] * len(factors)]))
+    if not good[-1]:
+        return _Neighbours.of(case, lift, ())
+    reached = np.minimum.accumulate(good[:-1].reshape(len(factors), 2, len(steps)), axis=2)
+    shares = np.concatenate([[0.0], steps])[reached.sum(axis=2)]
+    factors = [each.drawn_in(*ends) for each, ends in zip(factors, shares, strict=True)]
+    factors = [each for each in factors if each.high > each.low * _LEAST_RANGE]
+    for _ in range(_TRIES):
+        near = replace(near, factors=tuple(factors))
+        corners = np.array(list(itertools.product((-1.0, 1.0), repeat=len(factors))))
+        if near.accepted(near.multiples(corners)).all():
+            return _Neighbours.of(case, lift, factors)
+        factors = [each.drawn_in(_SHRINK, _SHRINK) for each in factors]
+    return _Neighbours.of(case, lift, ())
+
+
+class _Figures(NamedTuple):
+    """Values of designs (m,) by load case, -1: of none; limits (m,), NaN without."""
+
+    parts: Mapping[int, Array]
+    limit: Array | None
+
+
+Measured = Callable[[Designs], _Figures | None]
+
+
+def _check_figures(screened: Screened) -> Measured:
+    """Demands of a check in each load case, SI; None where the screening does not know them all."""
+    declared = DECLARED[screened.check]
+    how = declared.measured
+    of_turns = how is not None and how.reduce in ("angles", "forces", "mean")
+    of_turns &= declared.id != TORQUE_REDUCTION.id  # of the load cases that require one
+
+    def figures(designs: Designs) -> _Figures | None:
+        if screened.is_bound(designs) or declared.is_bound(Tier.SCREENING):
+            return None
+        states = range(len(designs.cams)) if of_turns else (-1,)
+        parts, limits = {}, []
+        for state in states:
+            chosen = [k == state for k in range(len(designs.cams))]
+            part = designs if state < 0 else designs.in_load_cases(chosen)
+            judged = screened.judged(part)
+            if judged is None or judged[1] is None:
+                return None
+            shape = (designs.count,)
+            demand, limit = (np.broadcast_to(np.asarray(each), shape) for each in judged)
+            applies = np.broadcast_to(screened.applies(demand, designs), shape)
+            if not (np.isfinite(limit).all() and applies.all()):
+                return None
+            parts[state] = demand
+            limits.append(limit)
+        if any(not np.array_equal(each, limits[0]) for each in limits):
+            return None
+        return _Figures(parts, limits[0])
+
+    return figures
+
+
+class _Headline(NamedTuple):
+    """A key figure: values (m,) of designs in a load case, SI."""
+
+    id: str
+    title: str
+    unit: str
+    worst: Literal["greatest", "least"]
+    deviation: str
+    value: Callable[[Designs, ScreenedCam], Array | None]
+    of_turns: bool = True
+    rests: bool = True
+
+    def figures(self, designs: Designs) -> _Figures | None:
+        cams = designs.cams if self.of_turns else designs.cams[:1]
+        values = {k: self.value(designs, cam) for k, cam in enumerate(cams)}
+        parts = {k if self.of_turns else -1: v for k, v in values.items() if v is not None}
+        return _Figures(parts, None) if parts else None
+
+
+def _ripple(designs: Designs, cam: ScreenedCam) -> Array | None:
+    """Standard deviation of the torque in the first load case, as in the headline."""
+    if cam is not designs.cams[0] or cam.state.torque is None:
+        return None
+    return np.asarray(torque_after(designs, cam).std(axis=-1))
+
+
+HEADLINE = (
+    _Headline("torque_ripple", "Torque ripple with the cam", "N m", "greatest", "ripple", _ripple),
+    _Headline(
+        "contact_force", "Maximum contact force", "N", "greatest", "force",
+        lambda _, cam: sampled_greatest(cam.normal),
+    ),
+    _Headline(
+        "pressure_angle_max", "Maximum pressure angle", "deg", "greatest", "shape",
+        lambda designs, _: sampled_greatest(np.abs(designs.whole.motion.pressure_angle)),
+        of_turns=False, rests=False,
+    ),
+    _Headline(
+        "pitch_curvature", "Minimum radius of the pitch curve", "mm", "least", "shape",
+        lambda designs, _: designs.least_convex_radius, of_turns=False, rests=False,
+    ),
+    _Headline(
+        "hertz_pressure", "Peak contact pressure after Hertz", "MPa", "greatest", "pressure",
+        lambda _, cam: sampled_greatest(cam.p0_line),
+    ),
+)  # fmt: skip
+"""Key figures of a live preview, in the order of the calculation."""
+
+
+Key = TypeVar("Key", int, str)
+
+
+@dataclass(eq=False)
+class _Sample:
+    """Values of every quantity (m,) at the settings of a fit, NaN where a design is refused."""
+
+    count: int
+    lost: dict[int, NDArray[np.bool_]]
+    held: dict[int, Array]
+    parts: dict[str, dict[int, Array]]
+    limits: dict[str, Array]
+    unknown: set[str]
+
+    @classmethod
+    def of(cls, near: _Neighbours, multiples: Array, measures: Mapping[str, Measured]) -> _Sample:
+        """Designs of factors (m, d), solved block by block."""
+        sample = cls(len(multiples), {}, {}, {name: {} for name in measures}, {}, set())
+        for rows, designs in near.solved(multiples):
+            for k, cam in enumerate(designs.cams):
+                sample._enter(sample.held, k, rows, sampled_least(cam.required))
+                sample.lost.setdefault(k, np.zeros(sample.count, dtype=bool))[rows] = cam.ends.lost
+            for name, measure in measures.items():
+                figures = None if name in sample.unknown else measure(designs)
+                if figures is None:
+                    sample.unknown.add(name)
+                    continue
+                for state, values in figures.parts.items():
+                    sample._enter(sample.parts[name], state, rows, values)
+                if figures.limit is not None:
+                    sample._enter(sample.limits, name, rows, figures.limit)
+        return sample
+
+    def _enter(
+        self, into: dict[Key, Array], key: Key, rows: NDArray[np.intp], values: Array
+    ) -> None:
+        into.setdefault(key, np.full(self.count, np.nan))[rows] = values
+
+
+def live_record(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | None:
+    """Response surfaces about the design of a run.
+
+    Parameters
+    ----------
+    case : Case           with the spring and prime radius of the run
+    lift : array (N,)     of its final trial at equal cam angles, m
+    checks : sequence     ids of the checks, the most important first
+
+    Returns
+    -------
+    LiveDocument   None where no design about that of the run can be solved
+    """
+    try:
+        near = _in_range(case, lift)
+    except CamError:
+        return None
+    if not near.factors:
+        return None
+    count = int(SETTINGS * len(powers(len(near.factors))))
+    places = settings(count + HELD_OUT, len(near.factors), HELD_OUT, _SEED)
+    multiples = near.multiples(places)
+    measures: dict[str, Measured] = {each.id: each.figures for each in HEADLINE}
+    judged = [name for name in checks if name in SCREENED_BY_ID]
+    measures |= {name: _check_figures(SCREENED_BY_ID[name]) for name in judged}
+    sample = _Sample.of(near, multiples, measures)
+    fit = SurfaceFit(places, HELD_OUT)
+    contact = {k: fit.surface(values) for k, values in sample.held.items()}
+    if not contact or None in contact.values():  # the case refuses too many designs
+        return None
+    figures = (_key_figure(each, sample, fit) for each in HEADLINE)
+    quantities = [each for each in figures if each is not None]
+    left_out: dict[str, str] = {}
+    for name in checks:
+        check = _check(name, sample, fit)
+        if isinstance(check, str):
+            left_out[name] = check
+        else:
+            quantities.append(check)
+    return {
+        "case": case.name,
+        "lift": "run" if case.lift is None else "case",
+        "factors": [_factor_record(each) for each in near.factors],
+        "powers": fit.exponents.tolist(),
+        "states": _state_names(near),
+        "contact": [
+            {"state": k, "surface": _surface_record(each, 1.0)}
+            for k, each in contact.items()
+            if each is not None
+        ],
+        "quantities": quantities,
+        "left_out": left_out,
+        "settings": count,
+        "held_out": HELD_OUT,
+        "refused": int(np.isnan(sample.held[0]).sum()),
+    }
+
+
+SCREENED_BY_ID: Mapping[str, Screened] = {each.check: each for each in SCREENED}
+_DEEPER = "the screening does not know it"
+_BOUND = "the screening knows a bound of it alone"
+_UNEVEN = "it bends too much over the ranges"
+
+
+def greatest(final: TrialRecord) -> list[str]:
+    """Ids of the required checks of the design of the greatest utilisation, in their order."""
+    ordered = in_order(of_records(final.checks))
+    ids = [
+        each.id
+        for each in ordered
+        if each.must_have and not each.evidence and each.utilisation is not None
+    ]
+    return ids[:CANDIDATES]
+
+
+def _key_figure(figure: _Headline, sample: _Sample, fit: SurfaceFit) -> LiveQuantity | None:
+    if figure.id in sample.unknown:
+        return None
+    scale = in_unit(1.0, figure.unit)
+    values = sample.parts[figure.id]
+    rank = values if figure.worst == "greatest" else {k: -v for k, v in values.items()}
+    away = _Away(scale, figure.rests, _DEVIATION[figure.deviation], np.zeros(sample.count))
+    parts = _parts(sample, fit, values, rank, away)
+    if not parts:
+        return None
+    return {
+        "id": figure.id, "title": figure.title, "unit": figure.unit, "worst": figure.worst,
+        "rests": figure.rests, "parts": parts, "limit": None,
+    }  # fmt: skip
+
+
+def _check(name: str, sample: _Sample, fit: SurfaceFit) -> LiveQuantity | str:
+    """A check, or why it is not followed."""
+    screened = SCREENED_BY_ID.get(name)
+    if screened is None:
+        return _DEEPER
+    if name in sample.unknown or name not in sample.limits:
+        return _BOUND
+    declared = DECLARED[name]
+    at_most = declared.sense == "at_most"
+    limit, demands = sample.limits[name], sample.parts[name]
+    rank = {k: utilisations(v, limit, at_most=at_most) for k, v in demands.items()}
+    scale = in_unit(1.0, declared.unit)
+    bound = fit.surface(limit)
+    if bound is None:
+        return _BOUND
+    away = _Away(scale, bool(declared.rests_on), screened.deviation, limit)
+    parts = _parts(sample, fit, demands, rank, away)
+    if not parts:
+        return _BOUND
+    if any(away.beyond(part, demands[part["state"]]) for part in parts):
+        return _UNEVEN
+    return {
+        "id": name, "title": declared.title, "unit": declared.unit or "-",
+        "worst": "greatest" if at_most else "least", "rests": bool(declared.rests_on),
+        "parts": parts, "limit": _surface_record(bound, scale),
+    }  # fmt: skip
+
+
+class _Away(NamedTuple):
+    """Unit of a quantity, and its deviation from the preview.
+
+    scale: unit of the record over that of SI; rests: on the loads; deviation: of the screening from
+    the preview, over the greater of value and limit; limit (m,), SI
+    """
+
+    scale: float
+    rests: bool
+    deviation: float
+    limit: Array
+
+    def record(self, surface: Surface | None, values: Array) -> LiveSurface | None:
+        """Surface of values (m,) with its error from the preview; None without a finite one."""
+        if surface is None:
+            return None
+        size = np.abs(values)
+        more = self.deviation * np.fmax(size, np.abs(self.limit))
+        more = more / size if surface.share else more  # a share is of values above zero
+        error = surface.error + float(np.nanmax(more))
+        if not np.isfinite(error):
+            return None
+        return _surface_record(surface.with_error(error), self.scale)
+
+    def beyond(self, part: LivePart, values: Array) -> bool:
+        """Whether a part deviates from its values (m,), SI, by more than `WORST_ERROR`."""
+        surface = part["surface"]
+        if surface is None:
+            return False
+        size = np.abs(values)
+        away = surface["error"] * size if surface["share"] else surface["error"] / self.scale
+        return not float(np.nanmax(away / np.fmax(size, np.abs(self.limit)))) <= WORST_ERROR
+
+
+def _parts(
+    sample: _Sample,
+    fit: SurfaceFit,
+    known: Mapping[int, Array],
+    rank: Mapping[int, Array],
+    away: _Away,
+) -> list[LivePart]:
+    """Values by load case, those that govern nowhere left out.
+
+    Parameters
+    ----------
+    known, rank : mapping   by load case: values (m,), and what is greatest where one governs
+    """
+    everywhere = np.ones(sample.count, dtype=bool)
+    there = {k: ~sample.lost[k] if away.rests and k >= 0 else everywhere for k in known}
+    ranked = {
+        k: np.where(there[k] & ~np.isnan(rank[k]), np.minimum(rank[k], _FAR), -np.inf)
+        for k in known
+    }
+    most = np.max(list(ranked.values()), axis=0)
+    return [
+        {"state": k, "surface": away.record(fit.surface(values, there[k]), values)}
+        for k, values in known.items()
+        if (np.isfinite(most) & (ranked[k] >= most - (1.0 - _NEVER) * np.abs(most))).any()
+    ]
+
+
+def _surface_record(surface: Surface, scale: float) -> LiveSurface:
+    """A surface in a unit: of SI values times a scale."""
+    scaled = surface.times(scale)
+    return {
+        "scale": scaled.scale,
+        "coefficients": scaled.coefficients.tolist(),
+        "error": scaled.error,
+        "share": scaled.share,
+    }
+
+
+def _factor_record(factor: _Factor) -> LiveFactor:
+    quantity = quantity_of(next(iter(factor.values)))
+    unit = quantity.unit if isinstance(quantity, In) else ""
+    return {
+        "name": factor.name,
+        "keys": {key: in_unit(value, unit) for key, value in factor.values.items()},
+        "unit": unit,
+        "low": factor.low,
+        "high": factor.high,
+    }
+
+
+def _state_names(near: _Neighbours) -> list[str]:
+    """Names of the load cases; standstill and over-speed at each preload follow."""
+    designs = near.at(np.ones((1, len(near.factors))))
+    names = [each.name for each in near.case.load_cases]
+    for state in designs.states[len(names) :]:
+        word = "over-speed" if float(state.speed[0, 0]) > 0.0 else "standstill"
+        preload = shown(float(state.preload[0, 0]), "N")
+        names.append(f"{word}, preload {preload}" if word in names else word)
+    return names
+
+
+def live_of(folder: Path) -> LiveDocument | None:
+    """Response surfaces of a run, from its case, its lift and its greatest utilisations.
+
+    Raises
+    ------
+    ResultError
+        If the run cannot be read.
+    """
+    case, contour = drawn_cam(folder)
+    return live_record(case, contour.pitch.lift.values, greatest(read_run(folder).final))
+
+
+def write_live(folder: Path, record: LiveDocument | None) -> None:
+    """Write ``8_live.json``; nothing without surfaces."""
+    if record is not None:
+        write_atomic(folder / LIVE, f"{json_text(record)}\n")
+
+
+def _corner_values(record: Any) -> Iterator[Array]:
+    """Values of every surface at the corners of the ranges, on its scale."""
+    exponents = np.array(record["powers"])
+    axes = exponents.shape[1]
+    places = np.array([*itertools.product((-1.0, 1.0), repeat=axes), (0.0,) * axes])
+    at_places = terms(places, exponents)
+    parts = [*record["contact"], *(p for each in record["quantities"] for p in each["parts"])]
+    surfaces = [each["surface"] for each in parts if each["surface"] is not None]
+    for surface in (*surfaces, *(each["limit"] for each in record["quantities"] if each["limit"])):
+        coefficients = np.array(surface["coefficients"], dtype=float)
+        yield coefficients if coefficients.size == 1 else at_places @ coefficients
+
+
+def live_differences(folder: Path) -> Iterator[str]:
+    """Differences of ``8_live.json`` of a run from one fitted again, in words.
+
+    Which checks are followed is that of the file. Surfaces are compared by their values at the ends
+    of the ranges and in the middle.
+
+    Raises
+    ------
+    CamError
+        If the run cannot be read.
+    """
+    stored: Any = read_json(folder / LIVE)
+    case, contour = drawn_cam(folder)
+    try:
+        names = [each["id"] for each in stored["quantities"] if each["limit"] is not None]
+        again = live_record(case, contour.pitch.lift.values, [*names, *stored["left_out"]])
+        if again is None:
+            yield "is none of the run"
+            return
+        yield from record_differences(stored, again, left_out=("coefficients",))
+        ours, theirs = (list(_corner_values(each)) for each in (again, stored))
+        pairs = zip(ours, theirs, strict=True)
+        if any(np.abs(one - two).max() > SAME * np.abs(one).max() for one, two in pairs):
+            yield "a surface differs"
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
+        yield f"cannot be read ({type(error).__name__})"

@@ -1,0 +1,135 @@
+"""The live preview of a run against previews of the changed designs, at random settings."""
+
+from __future__ import annotations
+
+import sys
+from collections import defaultdict
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import live_settings
+from record_validation import schema_errors
+
+from camwright.geometry.lift import Lift
+from camwright.pipeline.base.units import from_unit, in_unit
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import replaced
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.results.run_records import headline
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.screening import live_preview
+from camwright.pipeline.solver import solve
+
+FEW, MANY = 3, 200
+WITHIN, TINY = 0.95, 1e-12
+KEY_FIGURES = {
+    "torque_ripple": "torque_std_after_Nm", "contact_force": "normal_force_max_N",
+    "pressure_angle_max": "pressure_angle_max_deg", "hertz_pressure": "p0_hertz_max_MPa",
+    "pitch_curvature": "pitch_radius_of_curvature_min_mm",
+}  # fmt: skip
+
+
+def solved(case: Case, lift: Lift, record: dict[str, Any], multiples: np.ndarray) -> Trial:
+    """The design at factors on the values of the run, solved on its own by closed forms."""
+    values, stroke = {}, 1.0
+    for factor, multiple in zip(record["factors"], multiples, strict=True):
+        for key, value in factor["keys"].items():
+            if key.startswith("lift."):
+                stroke = multiple
+            else:
+                values[key] = float(from_unit(value * multiple, factor["unit"]))
+    own = replaced(case, values)
+    contour = own.contour(Lift(lift.theta, stroke * lift.values))
+    torques = engine_torques(own) if own.balances else {}
+    return solve(own, contour, tier=Tier.PREVIEW, torques=torques, corners=False)
+
+
+def shares(name: str, count: int) -> dict[str, list[float]]:
+    """Deviation over stated error of every quantity at random settings where it holds."""
+    case, lift, record = live_settings.fitted(name)
+    draw = np.random.default_rng(43)
+    low, high = (np.array([f[end] for f in record["factors"]]) for end in ("low", "high"))
+    made: dict[str, list[float]] = defaultdict(list)
+    for _ in range(count):
+        multiples = np.exp(draw.uniform(np.log(low), np.log(high)))
+        trial = solved(case, lift, record, multiples)
+        figures, checks = headline(trial), {each.id: each for each in trial.checks}
+        for name_of, live in live_settings.values(record, multiples).items():
+            if name_of in KEY_FIGURES:
+                exact = figures[KEY_FIGURES[name_of]]
+            else:
+                check = checks.get(name_of)
+                demand = None if check is None else check.demand
+                exact = None if demand is None else in_unit(demand, check.unit)
+            if exact is None or not live.holds:
+                continue
+            made[name_of].append(abs(live.value - exact) / max(live.error, TINY))
+    return made
+
+
+def assert_within(made: dict[str, list[float]]) -> None:
+    """At least 95 % of the settings are within the stated error, of each quantity."""
+    outside = {
+        name: (float(np.mean(np.array(each) > 1.0)), max(each)) for name, each in made.items()
+    }
+    assert {n: each for n, each in outside.items() if each[0] > 1.0 - WITHIN} == {}
+    assert len(made) >= 10
+
+
+def test_the_same_run_has_the_same_surfaces(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Fitted again they are the same; a change of a surface, an error or a range is named."""
+    case, lift, record = live_settings.fitted("gx120")
+    names = [each["id"] for each in record["quantities"] if each["limit"] is not None]
+    again = live_preview.live_record(case, lift.values, [*names, *record["left_out"]])
+    contour = case.contour(lift)
+    monkeypatch.setattr(live_preview, "drawn_cam", lambda _: (case, contour))
+    monkeypatch.setattr(live_preview, "live_record", lambda *_: again)
+    live_preview.write_live(tmp_path, record)
+    assert list(live_preview.live_differences(tmp_path)) == []
+    force = next(each for each in record["quantities"] if each["id"] == "contact_force")
+    for change, words in (
+        (lambda one: one["parts"][0]["surface"]["coefficients"].__setitem__(0, 1.0), "surface"),
+        (lambda one: one["parts"][0]["surface"].update(error=0.0), "error"),
+    ):
+        forged = deepcopy(record)
+        change(forged["quantities"][record["quantities"].index(force)])
+        live_preview.write_live(tmp_path, forged)
+        assert any(words in each for each in live_preview.live_differences(tmp_path))
+    forged["factors"][0]["high"] = 9.0
+    live_preview.write_live(tmp_path, forged)
+    assert any("factors[0].high" in each for each in live_preview.live_differences(tmp_path))
+
+
+def test_a_record_has_its_form() -> None:
+    _, _, record = live_settings.fitted("gx120")
+    assert schema_errors("live", record) == []
+
+
+def test_ranges_end_where_the_case_refuses() -> None:
+    """The roller of the GX120 is its bearing: no smaller one, so that the range begins there."""
+    _, _, record = live_settings.fitted("gx120")
+    roller = next(each for each in record["factors"] if each["name"] == "Roller radius")
+    assert (roller["low"], roller["high"]) == (1.0, pytest.approx(1.2))
+    assert record["refused"] == 0
+
+
+def test_a_few_settings_are_within_the_stated_error() -> None:
+    assert_within(shares("gx120", FEW))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name",
+    ["gx120", "gx120-redesign", "gx120-flat-face", "machines/press", "machines/dosing-pump",
+     "machines/two-stroke"],
+)  # fmt: skip
+def test_two_hundred_settings_are_within_the_stated_error(name: str) -> None:
+    assert_within(shares(name, MANY))
