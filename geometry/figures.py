@@ -114,16 +114,16 @@ class SecondAxis:
 
 @dataclass(frozen=True)
 class HorizontalAxis:
-    """Horizontal axis: quantity, unit and limits; ticks at multiples of `step`, `whole` of a count.
+    """Horizontal axis: quantity, unit and limits; ticks at multiples of `step`, or at integers.
 
-    `second` is the axis above, `marks` are named parts and places.
+    counted: of a count, at integers; second: axis above; marks: named parts and places.
     """
 
     quantity: str
     unit: str
     span: tuple[float, float]
     step: float | None = None
-    whole: bool = False
+    counted: bool = False
     second: SecondAxis | None = None
     marks: tuple[AxisMark, ...] = ()
 
@@ -233,7 +233,7 @@ class Figure:
                 if not np.isfinite(values).any():
                     continue
                 name = f"{quantity}, {curve.label}" if curve.label else quantity
-                points = _points(curve, unit) if axis.whole else _range(values, unit)
+                points = _points(curve, unit) if axis.counted else _range(values, unit)
                 parts.append(f"{name}: {points}")
                 if axis.second is not None:
                     at = curve.x[int(np.nanargmax(np.abs(curve.y)))]
@@ -300,35 +300,35 @@ def closed(values: Array) -> Array:
 
 def over(
     figure_id: str, title: str, caption: str, quantity: str, unit: str, panels: Sequence[Panel], *,
-    whole: bool = False, dots: bool = True, marks: tuple[AxisMark, ...] = (),
+    counted: bool = False, dots: bool = True, marks: tuple[AxisMark, ...] = (),
 ) -> Figure:  # fmt: skip
     """Figure over a common quantity.
 
     Parameters
     ----------
     panels : sequence   x of the curves is ascending
-    whole : bool        the quantity is a count
+    counted : bool      the quantity is a count
     dots : bool         the points of lines are marked unless there are many
     """
-    axis = HorizontalAxis(quantity, unit, _span(panels, whole), whole=whole, marks=marks)
+    axis = HorizontalAxis(quantity, unit, _span(panels, counted), counted=counted, marks=marks)
     if dots:
         panels = [replace(p, curves=tuple(map(_dotted, p.curves))) for p in panels]
     return Figure(figure_id, title, caption, tuple(panels), axis)
 
 
-def _span(panels: Sequence[Panel], whole: bool) -> tuple[float, float]:
+def _span(panels: Sequence[Panel], counted: bool) -> tuple[float, float]:
     curves = [curve for panel in panels for curve in panel.curves]
     low, high = _ends(curve.x for curve in curves)
     width = max((bar_width(c.x) for c in curves if c.look == "bar"), default=0.0)
-    margin = 0.5 if whole else 0.7 * width or _MARGIN * (high - low)
+    margin = 0.5 if counted else 0.7 * width or _MARGIN * (high - low)
     return low - margin, high + margin
 
 
 def _ends(values: Iterable[Array]) -> tuple[float, float]:
     """Least and greatest of finite values; 0 and 1 without any."""
     finite = [each[np.isfinite(each)] for each in values]
-    known = np.concatenate(finite) if any(each.size for each in finite) else np.array([0.0, 1.0])
-    return float(known.min()), float(known.max())
+    reached = np.concatenate(finite) if any(each.size for each in finite) else np.array([0.0, 1.0])
+    return float(reached.min()), float(reached.max())
 
 
 def outline(points: Array, label: str = "", colour: str = "blue", look: Look = "line") -> Curve:

@@ -384,7 +384,7 @@ def _trial_points(turn: SheetTurn) -> Figure | None:
         "trial-points", "Trials",
         f"Standard deviation of the {turn.words.shaft} torque with the cam, and the greatest "
         "utilisation of the required checks that depend on the lift, by trial.",
-        "trial", "", panels, whole=True,
+        "trial", "", panels, counted=True,
     )  # fmt: skip
 
 

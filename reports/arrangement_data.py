@@ -94,24 +94,24 @@ def _counterweight(turn: SheetTurn) -> DrawnSector | None:
     def of(key: str, unit: str = "mm") -> float | None:
         return turn.length("camshaft", "counterweight", key, unit=unit)
 
-    made, balance = turn.counter_hole, turn.balance
-    drilled = made is not None and made[3]
+    hole, balance = turn.counter_hole, turn.balance
+    drilled = hole is not None and hole[3]
     cam = balance["residual_unbalance_g_mm" if drilled else "unbalance_g_mm"]
     turned, left = balance["unbalance_angle_deg"], of("residual", "g mm")
-    product, angle, place = of("unbalance", "g mm"), of("angle", "rad"), of("position")
+    product, angle, position = of("unbalance", "g mm"), of("angle", "rad"), of("position")
     if left is not None and isinstance(cam, (int, float)) and isinstance(turned, (int, float)):
         product, angle = float(cam) + left, np.radians(float(turned) + 180.0)
     middle, width = turn.length("camshaft", "cam_position"), turn.length("cam", "width")
     inner, radius = turn.length("cam", "bore_radius"), of("radius") or _below_follower(turn)
-    if product is None or angle is None or place is None or middle is None:
+    if product is None or angle is None or position is None or middle is None:
         return None
     if width is None or inner is None or not radius > inner:
         return None
     body = CounterweightBody.of(
-        place - middle, width, (radius, of("width")), inner, _density(turn), product
+        position - middle, width, (radius, of("width")), inner, _density(turn), product
     )
     half = body.half_angle(product)
-    return DrawnSector(angle, half, inner, radius, float(body.width), place - middle)
+    return DrawnSector(angle, half, inner, radius, float(body.width), position - middle)
 
 
 def _below_follower(turn: SheetTurn) -> float:

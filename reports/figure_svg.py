@@ -382,13 +382,13 @@ def _mark(ax: Axes, mark: AxisMark) -> None:
 def _mark_name(ax: Axes, mark: AxisMark) -> None:
     """Name of a mark at the top of the axes: in the middle of a part, along a line."""
     middle = mark.start if mark.end is None else 0.5 * (mark.start + mark.end)
-    place: dict[str, Any] = {"xytext": (0, -3), "ha": "center"}
+    offset: dict[str, Any] = {"xytext": (0, -3), "ha": "center"}
     if mark.end is None:
-        place = {"xytext": (-2, -3), "ha": "right", "rotation": 90, "bbox": BACKING, "zorder": 4}
+        offset = {"xytext": (-2, -3), "ha": "right", "rotation": 90, "bbox": BACKING, "zorder": 4}
     if mark.name:
         ax.annotate(
             mark.name, (middle, 1.0), xycoords=("data", "axes fraction"), va="top", fontsize=7.0,
-            textcoords="offset points", color=COLOURS["muted"], **place,
+            textcoords="offset points", color=COLOURS["muted"], **offset,
         )  # fmt: skip
 
 
@@ -468,7 +468,7 @@ def _horizontal(ax: Axes, axis: HorizontalAxis, columns: int) -> None:
     low, high = axis.span
     ax.set_xlim(low, high)
     if axis.step is None:
-        ax.xaxis.set_major_locator(MaxNLocator(nbins=8 // columns, integer=axis.whole))
+        ax.xaxis.set_major_locator(MaxNLocator(nbins=8 // columns, integer=axis.counted))
     else:
         first = axis.step * np.ceil(low / axis.step)
         ax.set_xticks(np.arange(first, high + 0.01 * axis.step, axis.step))

@@ -220,7 +220,7 @@ def _horizontal(axis: HorizontalAxis, anchor: str) -> Spec:
     """A horizontal axis below the panel of a vertical one."""
     spec: Spec = {"range": list(axis.span), "fixedrange": True, "anchor": anchor,
                   "title": {"text": html.escape(axis.words)}}  # fmt: skip
-    step = 1 if axis.whole else axis.step
+    step = 1 if axis.counted else axis.step
     return spec if step is None else spec | {"dtick": step}
 
 

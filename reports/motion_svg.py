@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.figures import Figure
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports.analysis_sheet import groups
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of, motion_of
@@ -27,7 +28,6 @@ from camwright.reports.drawing.drawing_shapes import (
 )
 from camwright.reports.drawing.drawing_svg import decimal, line_path, svg_of
 from camwright.reports.figure_svg import COLOURS, DARK
-from camwright.reports.figures import AngleFigure
 from camwright.reports.report_data import ReportMaterial
 from camwright.reports.report_tables import number, quantity, shortened
 from camwright.reports.sheet_turn import SheetTurn, lowest
@@ -196,9 +196,9 @@ def _panels(turn: SheetTurn) -> list[_MotionPanel]:
     ]
     panels = [_MotionPanel("Force", "N", forces, np.nan)]
     for figure in (each for _, group in groups(turn) for each in group):
-        if figure.id == _PRESSURE and isinstance(figure, AngleFigure):
+        if figure.id == _PRESSURE and isinstance(figure, Figure):
             drawn = figure.panels[0]
-            curve = _MotionCurve(f"p0, {drawn.curves[0].label}", drawn.curves[0].values, "blue")
+            curve = _MotionCurve(f"p0, {drawn.curves[0].label}", drawn.curves[0].y, "blue")
             limits = lowest(*drawn.limits)
             name = limits[0].label if limits else ""
             limit = limits[0].value if limits else np.nan

@@ -66,46 +66,46 @@ class OutlineFigure:
     def curves(self) -> tuple[OutlineCurve, ...]:
         """All curves, from the bottom layer to the top one."""
         angle = np.linspace(0.0, 360.0, self.contour.shape[1] + 1)
-        made = [
+        curves = [
             OutlineCurve(closed(self.contour), "blue", "cam contour", 1.4, fill="steel",
                          angle=angle),
             *self._openings(),
         ]  # fmt: skip
         if self.pitch is not None:
-            made.append(OutlineCurve(
+            curves.append(OutlineCurve(
                 closed(self.pitch), "muted", "pitch curve (roller centre)", 0.9, "dashdot",
                 angle=angle,
             ))  # fmt: skip
         for k in self.radii:
-            made.append(
+            curves.append(
                 OutlineCurve(np.stack([np.zeros(2), self.contour[:, k]], 1), "ink", "", 0.7)
             )
-            made.append(OutlineCurve(self.contour[:, k : k + 1], "ink", marker="dot"))
+            curves.append(OutlineCurve(self.contour[:, k : k + 1], "ink", marker="dot"))
         cross = np.array([[-2.0, 2.0], [0.0, 0.0]])
-        made += [OutlineCurve(cross, "ink", "", 0.7), OutlineCurve(cross[::-1], "ink", "", 0.7)]
+        curves += [OutlineCurve(cross, "ink", "", 0.7), OutlineCurve(cross[::-1], "ink", "", 0.7)]
         if self.follower is not None:
             label = f"{self.follower_name} {self.worst_label}"
-            made.append(OutlineCurve(self.follower, "vermillion", label, 1.2))
+            curves.append(OutlineCurve(self.follower, "vermillion", label, 1.2))
         touch = slice(self.worst, self.worst + 1)
-        made.append(OutlineCurve(self.contour[:, touch], "vermillion", marker="dot"))
+        curves.append(OutlineCurve(self.contour[:, touch], "vermillion", marker="dot"))
         if self.pitch is not None:
-            made.append(OutlineCurve(self.pitch[:, touch], "vermillion", marker="cross"))
-        return tuple(made)
+            curves.append(OutlineCurve(self.pitch[:, touch], "vermillion", marker="cross"))
+        return tuple(curves)
 
     def _openings(self) -> list[OutlineCurve]:
         """Bore, keyway and counter-hole; a proposed hole is dashed."""
-        made = []
+        curves = []
         if self.bore_radius is not None:
             bore = circle((0.0, 0.0), self.bore_radius)
-            made.append(OutlineCurve(bore, "blue", fill="card"))
+            curves.append(OutlineCurve(bore, "blue", fill="card"))
             if self.keyway is not None:
                 slot = _slot(self.bore_radius, *self.keyway)
-                made.append(OutlineCurve(slot, "blue", fill="card"))
+                curves.append(OutlineCurve(slot, "blue", fill="card"))
         if self.counter_hole is not None:
             x, y, radius, drilled = self.counter_hole
             dash, fill = ("solid", "card") if drilled else ("dashed", "")
-            made.append(OutlineCurve(circle((x, y), radius), "blue", dash=dash, fill=fill))
-        return made
+            curves.append(OutlineCurve(circle((x, y), radius), "blue", dash=dash, fill=fill))
+        return curves
 
     @property
     def radii(self) -> tuple[int, int]:
@@ -116,15 +116,15 @@ class OutlineFigure:
     @property
     def texts(self) -> tuple[OutlineText, ...]:
         """Minimum and maximum radius, written along the radius outside the bore."""
-        made = []
+        texts = []
         for word, k in zip(("min", "max"), self.radii, strict=True):
             x, y = self.contour[:, k]
             radius = float(np.hypot(x, y))
             share = 0.5 + 0.5 * (self.bore_radius or 0.0) / radius
             turn = (np.degrees(np.arctan2(y, x)) + 90.0) % 180.0 - 90.0  # not upside down
-            place = (float(share * x), float(share * y))
-            made.append(OutlineText(f"{word} {radius:.4g} mm", place, float(turn)))
-        return tuple(made)
+            position = (float(share * x), float(share * y))
+            texts.append(OutlineText(f"{word} {radius:.4g} mm", position, float(turn)))
+        return tuple(texts)
 
     @property
     def reach(self) -> float:
@@ -157,15 +157,15 @@ class ContoursFigure:
     @property
     def curves(self) -> tuple[OutlineCurve, ...]:
         """All curves, from the bottom layer to the top one."""
-        made = []
+        curves = []
         if self.bore_radius is not None:
-            made.append(OutlineCurve(circle((0.0, 0.0), self.bore_radius), "muted", "", 0.7))
+            curves.append(OutlineCurve(circle((0.0, 0.0), self.bore_radius), "muted", "", 0.7))
         last = len(self.contours) - 1
         for k, (label, points) in enumerate(self.contours):
             angle = np.linspace(0.0, 360.0, points.shape[1] + 1)
             width, dash = (1.4, "solid") if k == last else (1.0, "dashed")
-            made.append(OutlineCurve(closed(points), SERIES[k], label, width, dash, angle=angle))
-        return tuple(made)
+            curves.append(OutlineCurve(closed(points), SERIES[k], label, width, dash, angle=angle))
+        return tuple(curves)
 
     @property
     def reach(self) -> float:

@@ -128,7 +128,7 @@ def _load_cases(turn: SheetTurn) -> Figure | None:
     return over(
         "load-cases", "Load cases side by side",
         f"Greatest values over the turn in each load case: {', '.join(names)}.{ended}",
-        "load case", "", panels, whole=True,
+        "load case", "", panels, counted=True,
     )  # fmt: skip
 
 

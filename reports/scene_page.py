@@ -222,7 +222,7 @@ def _counterweight(mechanism: DrawnMechanism) -> list[Solid]:
     if weight is None:
         return []
     angles = weight.angle + weight.half * np.linspace(-1.0, 1.0, _ARC)
-    return [sector(angles, (weight.inner, weight.outer), weight.width).deeper(weight.place)]
+    return [sector(angles, (weight.inner, weight.outer), weight.width).deeper(weight.position)]
 
 
 def _drilled(mechanism: DrawnMechanism, width: float) -> list[Solid]:

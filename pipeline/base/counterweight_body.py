@@ -49,7 +49,7 @@ class CounterweightBody:
     kg m.
     """
 
-    place: Value
+    position: Value
     radius: Value
     width: Value
     beside: Value
@@ -57,23 +57,23 @@ class CounterweightBody:
 
     @classmethod
     def of(
-        cls, place: Value, cam_width: Value, sizes: tuple[Value, Value | None], inner: Value,
+        cls, position: Value, cam_width: Value, sizes: tuple[Value, Value | None], inner: Value,
         density: Value, product: Value,
     ) -> CounterweightBody:  # fmt: skip
         """Body of outer radius and width; width None: of a half ring that has the unbalance.
 
         Parameters
         ----------
-        place, cam_width : middle from that of the cam; width of the cam
+        position, cam_width : middle from that of the cam; width of the cam
         sizes            : outer radius, and width or None
         inner            : radius of the shaft below it
         density, product : kg/m3; unbalance that it has, kg m
         """
         radius, stated = sizes
-        per_width, apart = moment_per_width(radius, inner, density), np.abs(place)
+        per_width, apart = moment_per_width(radius, inner, density), np.abs(position)
         width = width_for(product / per_width, apart, cam_width) if stated is None else stated
         beside = width_beside(width, apart, cam_width)
-        return cls(place, radius, width, beside, per_width * beside)
+        return cls(position, radius, width, beside, per_width * beside)
 
     def half_angle(self, product: float) -> float:
         """Half of the angle of the sector that has an unbalance, kg m; at most a right angle."""
@@ -86,7 +86,7 @@ class CounterweightBody:
         Negative where they overlap.
         """
         half = 0.5 * self.width
-        gap: Value = np.maximum(low - (self.place + half), (self.place - half) - high)
+        gap: Value = np.maximum(low - (self.position + half), (self.position - half) - high)
         return gap
 
     def under(self, half_depth: Value, lowest: Value) -> Array:

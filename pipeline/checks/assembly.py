@@ -421,8 +421,8 @@ def beside_counterweight(body: CounterweightBody, numbers: Numbers) -> Gaps:
     wide = shaft.bearing_width if shaft.bearing_width is not None else shaft.widest
     half = np.nan if wide is None else 0.5 * wide
     gaps: dict[str, Value] = {}
-    for number, place in enumerate((0.0, shaft.bearing_spacing), 1):
-        at = place - shaft.cam_position
+    for number, bearing in enumerate((0.0, shaft.bearing_spacing), 1):
+        at = bearing - shaft.cam_position
         gaps[f"bearing {number}"] = body.beyond(at - half, at + half)
     name = follower.word if follower.parts.get("fork") is None else "fork"
     deep = numbers["follower.half_depth"] + _aside(numbers)
@@ -480,10 +480,10 @@ def _balancing(solution: Solution) -> tuple[Counterweight, float, CounterweightB
 )
 def counterweight_gap(solution: Solution) -> Demand | None:
     """Least gap of the counterweight, m; None without one."""
-    known, limit = _balancing(solution), solution.machine.limits[ASSEMBLY_GAP]
-    if known is None:
+    bodies, limit = _balancing(solution), solution.machine.limits[ASSEMBLY_GAP]
+    if bodies is None:
         return None
-    weight, _, body = known
+    weight, _, body = bodies
     gaps = beside_counterweight(body, solution.numbers)
     room = _one(counterweight_room(body, weight, solution.numbers))
     sizes = tuple(shown(_one(each), "mm", 3) for each in (body.radius, body.width))
@@ -536,10 +536,10 @@ def counterweight_gap(solution: Solution) -> Demand | None:
 )
 def counterweight_unbalance(solution: Solution) -> Demand | None:
     """Unbalance of the counterweight, kg m; None without one, or without its width."""
-    known = _balancing(solution)
-    if known is None or known[0].width is None:
+    bodies = _balancing(solution)
+    if bodies is None or bodies[0].width is None:
         return None
-    _, product, body = known
+    _, product, body = bodies
     capacity = _one(body.capacity)
     stated = {
         "U": product,

@@ -222,8 +222,8 @@ def _with_slope(demand: Demand, solution: Solution) -> Demand:
     """With the part of the camshaft in the angle."""
     if demand.at is None or not demand.at.load_case:
         return demand
-    cycle, place = row_of(solution.cycles, demand.at)
-    slope = float(abs(cycle.shaft_tilt[place]))
+    cycle, row = row_of(solution.cycles, demand.at)
+    slope = float(abs(cycle.shaft_tilt[row]))
     figures = tuple(map(solution.machine.limits.source, (AXIS_PARALLELISM, CAM_RUN_OUT)))
     note = f"{shown(slope, 'mrad', 3)} of it by the camshaft"
     return replace(demand, note=note, figures=figures, stated={"phi": slope})

@@ -563,8 +563,8 @@ class Spring(Part):
     def shape(self) -> SpringShape | None:
         """Rise of the force over the lift; None: linear."""
         kind = self.kind or "coil"
-        own: SpringShape | None = getattr(self, kind) if kind in SHAPES else None
-        return own
+        shape: SpringShape | None = getattr(self, kind) if kind in SHAPES else None
+        return shape
 
     @property
     def parts(self) -> dict[str, Part | None]:

@@ -219,20 +219,20 @@ def _of_each(value: Value, designs: Designs) -> Array:
 
 
 def _counterweight_gap(designs: Designs) -> Judged | None:
-    known = _counterweights(designs)
-    if known is None:
+    counterweights = _counterweights(designs)
+    if counterweights is None:
         return None
-    weight, _, body = known
+    weight, _, body = counterweights
     gap = assembly.counterweight_room(body, weight, designs.numbers)
     limit = designs.numbers.limit(ASSEMBLY_GAP)
     return _of_each(gap, designs), _of_each(limit, designs)
 
 
 def _counterweight_unbalance(designs: Designs) -> Judged | None:
-    known = _counterweights(designs)
-    if known is None or known[0].width is None:
+    counterweights = _counterweights(designs)
+    if counterweights is None or counterweights[0].width is None:
         return None
-    _, product, body = known
+    _, product, body = counterweights
     most = np.nan_to_num(body.capacity)
     return _of_each(product, designs), _of_each(most, designs)
 

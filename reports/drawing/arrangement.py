@@ -59,7 +59,7 @@ class DrawnBush:
 class DrawnSector(NamedTuple):
     """Counterweight: direction of its middle in the frame of the cam and half of its angle, rad.
 
-    Inner and outer radius, width along the shaft, place of its middle from that of the cam, mm.
+    Inner and outer radius, width along the shaft, position of its middle from that of the cam, mm.
     """
 
     angle: float
@@ -67,7 +67,7 @@ class DrawnSector(NamedTuple):
     inner: float
     outer: float
     width: float
-    place: float
+    position: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -46,7 +46,7 @@ def write(path: Path, document: DesignDocument) -> Path:
 
 
 def figure_of(document: DesignDocument) -> Figure:
-    """Torque before and with the cam, ripple over size, cam with roller; an empty place for words.
+    """Torque before and with the cam, ripple over size, cam with roller; an empty panel for words.
 
     Without a design that passes there is no cam.
     """
@@ -54,8 +54,8 @@ def figure_of(document: DesignDocument) -> Figure:
     panels = [_torque(document), _front(document)]
     if chosen is not None:
         panels.append(_cam(chosen))
-    place = Panel("", "", (), height=_HEIGHT)
-    return Figure("design", "Design", "", (*panels, place), columns=2)
+    panel = Panel("", "", (), height=_HEIGHT)
+    return Figure("design", "Design", "", (*panels, panel), columns=2)
 
 
 def _torque(document: DesignDocument) -> Panel:

@@ -41,8 +41,8 @@ MOST = {
     "pipeline/studies/batch": 32,
     "pipeline/studies/papers": 6,
     "pipeline/torque": 15,
-    "reports": 44,
-    "reports/comparisons": 4,
+    "reports": 37,
+    "reports/comparisons": 3,
     "reports/drawing": 13,
     "reports/study": 8,
 }
