@@ -32,7 +32,7 @@ CRANK_STEP, CAM_STEP = 90.0, 45.0
 """Spacing of the tick labels on the angle axes, deg."""
 MOST_POINTS = 40
 """Most points of a line that are marked."""
-_MARGIN, _BESIDE = 0.03, 0.05  # of the axis beside curves, of both axes about outlines
+_MARGIN, _TEXT_BESIDE = 0.03, 0.05  # of the axis beside curves, of both axes about outlines
 _PANEL, _OUTLINE, _BAR = (7.0, 2.4), (5.0, 4.4), 0.3  # inches
 _STROKES = {"dashed": "--", "dotted": ":", "points": "none", "given": "none"}
 _MARKERS = {"marked": "o", "points": ".", "spot": "o", "given": "D"}
@@ -344,7 +344,7 @@ def outline_panel(
     spans = []
     for values in ((curve.x for curve in curves), (curve.y for curve in curves)):
         low, high = _ends(values)
-        spans.append((low - _BESIDE * (high - low), high + _BESIDE * (high - low)))
+        spans.append((low - _TEXT_BESIDE * (high - low), high + _TEXT_BESIDE * (high - low)))
     axis = HorizontalAxis(names[0], "mm", spans[0])
     return Panel(names[1], "mm", curves, span=spans[1], kind="outline", title=title, axis=axis)
 

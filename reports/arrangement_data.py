@@ -26,11 +26,11 @@ from camwright.reports.sheet_turn import SheetTurn
 _COLUMNS = {"contact": "normal_force_N", "spring": "spring_force_N",
             "guide-a": "guide_reaction_A_N", "guide-b": "guide_reaction_B_N"}  # fmt: skip
 # Shares of the stem diameter where the case has no size.
-_COIL, _WIRE, _GUIDE, _OVERHANG, _SPACING = 2.6, 0.42, 2.0, 3.0, 7.0
+_COIL, _WIRE, _GUIDE, _OVERHANG_STEMS, _SPACING = 2.6, 0.42, 2.0, 3.0, 7.0
 _PIN_SHARE = 0.5  # of the roller
 _TURNS = 7.0
-_STEEL = 7850.0  # kg/m3
-_STATIONS = 360
+_STEEL_DENSITY = 7850.0  # kg/m3
+_OUTLINE_POINTS = 360
 """Most cam angles at which a page draws the arrangement."""
 
 
@@ -46,7 +46,7 @@ def moving_data(turn: SheetTurn) -> dict[str, Json]:
     `at` is the place of the maximum contact pressure, `shaft` the angle of the machine's shaft.
     """
     count = turn.crank.size
-    stride = -(-count // _STATIONS)
+    stride = -(-count // _OUTLINE_POINTS)
     rows = range(turn.worst % stride, count, stride)
     motion = motion_of(turn)
     return {
@@ -126,7 +126,7 @@ def _density(turn: SheetTurn) -> float:
     """Density of a counterweight, g/mm3: that of the camshaft, else that of the cam."""
     parts = (turn.case.get(part, {}).get("material") for part in ("camshaft", "cam"))
     name = next((each for each in parts if isinstance(each, str)), "")
-    return (turn.length("materials", name, "density", unit="kg/m^3") or _STEEL) * 1e-6
+    return (turn.length("materials", name, "density", unit="kg/m^3") or _STEEL_DENSITY) * 1e-6
 
 
 def _sizes(
@@ -220,7 +220,7 @@ def _face(turn: SheetTurn) -> tuple[float, float]:
 
 def _guides(turn: SheetTurn, stem: float, highest: float) -> tuple[DrawnBush, DrawnBush]:
     """Guide A at its overhang from roller centre or face at maximum lift, guide B beyond it."""
-    overhang = turn.length("follower", "overhang_at_max_lift") or _OVERHANG * stem
+    overhang = turn.length("follower", "overhang_at_max_lift") or _OVERHANG_STEMS * stem
     spacing = turn.length("guides", "spacing") or _SPACING * stem
     a, b = (
         DrawnBush(middle, turn.length("guides", name, "length") or _GUIDE * stem,

@@ -37,10 +37,10 @@ TURN_S = 8.0
 """Time of a turn, s."""
 FRAMES = 90
 """Most cam angles between which the motion is linear."""
-_WIDTH, _HEIGHT, _HEAD, _FOOT = 960.0, 620.0, 58.0, 40.0
-_SPLIT, _GAP, _EDGE = 400.0, 22.0, 24.0  # of the drawing beside the panels
+_PAGE_WIDTH, _PAGE_HEIGHT, _HEAD, _FOOT = 960.0, 620.0, 58.0, 40.0
+_SPLIT, _PANEL_GAP, _PAGE_EDGE = 400.0, 22.0, 24.0  # of the drawing beside the panels
 _AXIS_LEFT, _AXIS_TOP, _AXIS_BOTTOM = 64.0, 46.0, 34.0  # about a panel
-_MOST_POINTS = 360  # of a curve
+_CURVE_POINTS_MOST = 360  # of a curve
 _TICKS = 5
 _STANDSTILL = 0.1  # rpm, at most
 _FORCES = (("contact", "normal_force_N", "vermillion"), ("spring", "spring_force_N", "green"))
@@ -135,14 +135,15 @@ def text(material: ReportMaterial) -> str:
     panels = _panels(turn)
     return "\n".join(
         [
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}" '
-            f'font-family="{_FONT}" role="img" aria-labelledby="motion-title motion-text">',
+            '<svg xmlns="http://www.w3.org/2000/svg" '
+            f'viewBox="0 0 {_PAGE_WIDTH:g} {_PAGE_HEIGHT:g}" font-family="{_FONT}" role="img" '
+            'aria-labelledby="motion-title motion-text">',
             f'<title id="motion-title">{escape(title)}: motion</title>',
             f'<desc id="motion-text">{escape(alt)}</desc>',
             f"<style>{_style()}</style>",
-            f'<rect width="{_WIDTH:g}" height="{_HEIGHT:g}" fill="var(--card)"/>',
-            _text(title, _EDGE, 30.0, 19.0, weight=650),
-            _text(shortened(words, 100), _EDGE, 50.0, 13.0, "muted"),
+            f'<rect width="{_PAGE_WIDTH:g}" height="{_PAGE_HEIGHT:g}" fill="var(--card)"/>',
+            _text(title, _PAGE_EDGE, 30.0, 19.0, weight=650),
+            _text(shortened(words, 100), _PAGE_EDGE, 50.0, 13.0, "muted"),
             *(_panel(panel, k, len(panels)) for k, panel in enumerate(panels)),
             f'<g class="still">{_placed(svg_of(still, _NAMES, _FONT, _place()), "still")}',
             *(_marks(panel, k, len(panels), turn.worst) for k, panel in enumerate(panels)),
@@ -208,12 +209,12 @@ def _panels(turn: SheetTurn) -> list[_MotionPanel]:
 
 def _box(place: int, count: int) -> tuple[float, float, float, float]:
     """Left, top, width and height of the axes of a panel."""
-    height = (_HEIGHT - _HEAD - _FOOT) / count
-    left = _SPLIT + _GAP + _AXIS_LEFT
+    height = (_PAGE_HEIGHT - _HEAD - _FOOT) / count
+    left = _SPLIT + _PANEL_GAP + _AXIS_LEFT
     return (
         left,
         _HEAD + place * height + _AXIS_TOP,
-        _WIDTH - _EDGE - left,
+        _PAGE_WIDTH - _PAGE_EDGE - left,
         height - _AXIS_TOP - _AXIS_BOTTOM,
     )
 
@@ -246,7 +247,7 @@ def _panel(panel: _MotionPanel, place: int, count: int) -> str:
         lines.append(_text(f"{panel.limit_name} {quantity(panel.limit, panel.unit, 4)}",
                           left + width, y - 5.0, 11.5, "fail", anchor="end"))  # fmt: skip
     for curve in panel.curves:
-        stride = -(-curve.values.size // _MOST_POINTS)
+        stride = -(-curve.values.size // _CURVE_POINTS_MOST)
         values = _closed(curve.values[::stride])
         heights = [_height_of(panel, place, count, float(v)) for v in values]
         along = zip(left + width * np.linspace(0.0, 1.0, values.size), heights, strict=True)
@@ -313,7 +314,7 @@ def _dot(x: float, y: float, colour: str, inside: str = "") -> str:
 
 def _button() -> str:
     """Pause, by click, space and enter."""
-    x, y = _WIDTH - _EDGE - 76.0, 18.0
+    x, y = _PAGE_WIDTH - _PAGE_EDGE - 76.0, 18.0
     return (
         '<g id="pause" role="button" tabindex="0" aria-pressed="false" aria-label="Pause">'
         f'<rect x="{x:g}" y="{y:g}" width="76" height="28" rx="4" fill="var(--card)" '
@@ -329,8 +330,8 @@ def _button() -> str:
 
 def _place() -> str:
     """Attributes of the drawing of the mechanism: left of the panels."""
-    size = _SPLIT - _EDGE, _HEIGHT - _HEAD - 14.0
-    return f'x="{_EDGE:g}" y="{_HEAD:g}" width="{size[0]:g}" height="{size[1]:g}"'
+    size = _SPLIT - _PAGE_EDGE, _PAGE_HEIGHT - _HEAD - 14.0
+    return f'x="{_PAGE_EDGE:g}" y="{_HEAD:g}" width="{size[0]:g}" height="{size[1]:g}"'
 
 
 def _placed(svg: str, name: str) -> str:

@@ -10,7 +10,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.figures import SERIES, Figure, closed
 
 X_AXIS, Y_AXIS = "x, mm (cam angle 0 points along x)", "y, mm"
-_ROUND = 121  # points of a circle
+_CIRCLE_POINTS = 121  # points of a circle
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +184,7 @@ class ContoursFigure:
 
 def circle(centre: tuple[float, float], radius: float) -> Array:
     """Closed circle (2, n)."""
-    angle = np.linspace(0.0, 2 * np.pi, _ROUND)
+    angle = np.linspace(0.0, 2 * np.pi, _CIRCLE_POINTS)
     return np.array(centre)[:, None] + radius * np.stack([np.cos(angle), np.sin(angle)])
 
 

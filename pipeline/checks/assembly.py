@@ -759,7 +759,7 @@ def _beside_coil(lift: Value, numbers: Numbers) -> tuple[Value, Value]:
 def _torsion_gap(lift: Value, numbers: Numbers) -> Value:
     """Least gap of the coil, m; NaN where its place, which is not stated, decides it."""
     stem, guides = _beside_coil(lift, numbers)
-    least = np.minimum(stem, guides)
+    least = np.minimum(stem, guides) + 0.0 * lift
     if numbers.get("spring.seat_height") is not None:
         return least
     return decided(least, stem, numbers.limit(ASSEMBLY_GAP))

@@ -33,7 +33,7 @@ KEPT = "solved points are kept; run the command again with --resume to resume"
 
 OURS = re.compile(
     r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|workshop|inspection|trial_\d+"
-    r"|scene\.html|\d+_\w+\.(csv|html|json|pdf)"
+    r"|scene\.html|motion\.svg|\d+_\w+\.(csv|html|json|pdf)"
     rf"|{re.escape(signoff.AMENDMENT)}"
 )
 """Names of the files and folders of an unsigned run."""

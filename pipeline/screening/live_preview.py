@@ -65,14 +65,14 @@ POSITIONS = 180
 """Cam angles of the loads."""
 WORST_ERROR = 0.1
 """Error of a check, as a share of demand or limit, beyond which it is not followed."""
-_SEED = 7
-_BLOCK = 250  # designs solved at once
+_SAMPLING_SEED = 7
+_DESIGNS_A_BLOCK = 250  # designs solved at once
 _RANGES = {"preload": 1.3, "rate": 1.3, "prime": 1.15, "roller": 1.2, "speed": 1.25, "stroke": 1.2}
 _SHRINK, _TRIES = 0.7, 8  # of the ranges, where a corner of them is refused
 _LEAST_RANGE = 1.01  # greatest over least factor
 _FAR = 1e9  # utilisation, of a demand without the sign of its limit
 _NEVER = 0.7  # utilisation over the greatest, below which a load case governs nowhere
-_MOST_POINTS = 40  # of a lift by points, whose keys are listed
+_POINTS_MOST = 40  # of a lift by points, whose keys are listed
 # Of the key figures from those of the preview, as `tests/verification/test_live_preview.py` has it.
 _DEVIATION = {"force": 0.02, "pressure": 0.002, "ripple": 0.01, "shape": 0.001}
 
@@ -123,7 +123,7 @@ def _stroke_keys(case: Case) -> tuple[str, ...]:
     lift = case.lift
     if isinstance(lift, LiftSegments):
         return tuple(f"lift.segment[{k}].stroke" for k, s in enumerate(lift.segments) if s.stroke)
-    if isinstance(lift, LiftPoints) and len(lift.points) <= _MOST_POINTS:
+    if isinstance(lift, LiftPoints) and len(lift.points) <= _POINTS_MOST:
         return tuple(f"lift.point[{k}].lift" for k, p in enumerate(lift.points) if p.lift)
     return ()
 
@@ -155,7 +155,7 @@ class _Neighbours:
             stated = None if speed is None else speed.values.get(f"load_case[{k}].speed")
             wanted = None
             if speed is not None and stated is not None:
-                wanted = stated * np.linspace(speed.low, speed.high, _BLOCK)
+                wanted = stated * np.linspace(speed.low, speed.high, _DESIGNS_A_BLOCK)
             torques[k] = TorqueOfSpeed.of(case, k, wanted)
         return cls(case, lift, tuple(factors), torques)
 
@@ -210,9 +210,9 @@ class _Neighbours:
         Left out are those that the case refuses, with undercut, or that lock.
         """
         count = len(multiples)
-        for begin in range(0, count if count > _BLOCK else 0, _BLOCK):
-            yield from self.solved(multiples[begin : begin + _BLOCK], start + begin)
-        if not 0 < count <= _BLOCK:
+        for begin in range(0, count if count > _DESIGNS_A_BLOCK else 0, _DESIGNS_A_BLOCK):
+            yield from self.solved(multiples[begin : begin + _DESIGNS_A_BLOCK], start + begin)
+        if not 0 < count <= _DESIGNS_A_BLOCK:
             return
         try:
             designs = self.at(multiples)
@@ -375,12 +375,14 @@ class _Sample:
     parts: dict[str, dict[int, Array]]
     limits: dict[str, Array]
     unknown: set[str]
+    follower: str = ""
 
     @classmethod
     def of(cls, near: _Neighbours, multiples: Array, measures: Mapping[str, Measured]) -> _Sample:
         """Designs of factors (m, d), solved block by block."""
         sample = cls(len(multiples), {}, {}, {name: {} for name in measures}, {}, set())
         for rows, designs in near.solved(multiples):
+            sample.follower = designs.machine.follower.word
             for k, cam in enumerate(designs.cams):
                 sample._enter(sample.held, k, rows, sampled_least(cam.required))
                 sample.lost.setdefault(k, np.zeros(sample.count, dtype=bool))[rows] = cam.ends.lost
@@ -421,7 +423,7 @@ def live_record(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument 
     if not near.factors:
         return None
     count = int(SETTINGS * len(powers(len(near.factors))))
-    places = settings(count + HELD_OUT, len(near.factors), HELD_OUT, _SEED)
+    places = settings(count + HELD_OUT, len(near.factors), HELD_OUT, _SAMPLING_SEED)
     multiples = near.multiples(places)
     measures: dict[str, Measured] = {each.id: each.figures for each in HEADLINE}
     judged = [name for name in checks if name in SCREENED_BY_ID]
@@ -514,10 +516,14 @@ def _check(name: str, sample: _Sample, fit: SurfaceFit) -> LiveQuantity | str:
     if any(away.beyond(part, demands[part["state"]]) for part in parts):
         return _UNEVEN
     return {
-        "id": name, "title": declared.title, "unit": declared.unit or "-",
-        "worst": "greatest" if at_most else "least", "rests": bool(declared.rests_on),
-        "parts": parts, "limit": _surface_record(bound, scale),
-    }  # fmt: skip
+        "id": name,
+        "title": declared.title.format(follower=sample.follower),
+        "unit": declared.unit or "-",
+        "worst": "greatest" if at_most else "least",
+        "rests": bool(declared.rests_on),
+        "parts": parts,
+        "limit": _surface_record(bound, scale),
+    }
 
 
 class _Away(NamedTuple):

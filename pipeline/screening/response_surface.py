@@ -19,7 +19,7 @@ MARGIN = 1.25
 """Stated error over the greatest one at the designs held out."""
 LEAST_ERROR = 1e-6
 """Least stated error, of the greatest value."""
-_FLAT = 1e-9  # spread of the values, of the greatest, below which they are constant
+_NO_SLOPE = 1e-9  # spread of the values, of the greatest, below which they are constant
 
 
 def powers(count: int, degree: int = DEGREE) -> NDArray[np.intp]:
@@ -128,7 +128,7 @@ class SurfaceFit:
         if fitted.sum() < 2 * len(self.exponents) or held.sum() < 0.25 * self._held.sum():
             return None
         most = float(np.abs(values[there]).max())
-        if np.ptp(values[there]) <= _FLAT * most:
+        if np.ptp(values[there]) <= _NO_SLOPE * most:
             middle = float(np.median(values[there]))
             return Surface("linear", np.array([middle]), LEAST_ERROR * most, share=False)
         fits = [

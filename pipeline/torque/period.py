@@ -78,11 +78,20 @@ class Period:
 
 def ratio_text(ratio: float) -> str:
     """Ratio as a fraction of small whole numbers, such as ``3:2``, or as a decimal."""
+    exact = _fraction(ratio)
+    if exact:
+        return exact
+    rounded = f"{ratio:.4g}"  # which may be a fraction that the ratio is not
+    return f"{ratio:.6g}" if _fraction(float(rounded)) else rounded
+
+
+def _fraction(ratio: float) -> str:
+    """Ratio as a fraction of small whole numbers; "" if it is none."""
     for below in range(1, 13):
         above = round(ratio * below)
         if above and abs(ratio * below - above) <= _WHOLE * above:
             return f"{above}:{below}" if below > 1 else f"{above}"
-    return f"{ratio:.6g}"
+    return ""
 
 
 FOUR_STROKE = Period(4.0 * pi, 2.0)

@@ -24,9 +24,9 @@ from camwright.pipeline.records.design_document import ChosenDesign, DesignDocum
 from camwright.reports.figure_svg import draw, png, style
 from camwright.reports.outline_figures import circle
 
-_MOST = 3.0  # of the sizes of the front: candidates further away are left out
+_RIPPLE_MOST = 3.0  # of the sizes of the front: candidates further away are left out
 _LETTERS = 60  # of a line of words
-_WIDTH, _HEIGHT = 11.0, 2.1  # in; of a panel over the others of a report
+_PICTURE_WIDTH, _PANEL_HEIGHT = 11.0, 2.1  # in; of a panel over the others of a report
 
 
 def write(path: Path, document: DesignDocument) -> Path:
@@ -37,7 +37,7 @@ def write(path: Path, document: DesignDocument) -> Path:
     document : dict   contents of ``design.json``
     """
     with style("design"):
-        canvas = draw(figure_of(document), _WIDTH)
+        canvas = draw(figure_of(document), _PICTURE_WIDTH)
         axes = canvas.axes[-1]
         axes.clear()
         axes.set_axis_off()
@@ -54,7 +54,7 @@ def figure_of(document: DesignDocument) -> Figure:
     panels = [_torque(document), _front(document)]
     if chosen is not None:
         panels.append(_cam(chosen))
-    panel = Panel("", "", (), height=_HEIGHT)
+    panel = Panel("", "", (), height=_PANEL_HEIGHT)
     return Figure("design", "Design", "", (*panels, panel), columns=2)
 
 
@@ -70,7 +70,7 @@ def _torque(document: DesignDocument) -> Panel:
         curves.append(Curve(turn[shown], after[shown], "with the cam"))
     axis = HorizontalAxis("shaft angle", "deg", (0.0, cycle), cycle / 8.0)
     return Panel(
-        "torque about its mean", "N m", tuple(curves), height=_HEIGHT,
+        "torque about its mean", "N m", tuple(curves), height=_PANEL_HEIGHT,
         title="Torque over one cycle", axis=axis,
     )  # fmt: skip
 
@@ -78,7 +78,7 @@ def _torque(document: DesignDocument) -> Panel:
 def _front(document: DesignDocument) -> Panel:
     points, chosen, cloud = document["points"], document["chosen"], document["cloud"]
     if points:
-        far = _MOST * points[-1]["size_mm"]
+        far = _RIPPLE_MOST * points[-1]["size_mm"]
         cloud = [each for each in cloud if each[0] <= far]
     curves = []
     for within, words, colour in (
@@ -99,7 +99,7 @@ def _front(document: DesignDocument) -> Panel:
     space = document["space_mm"]
     panel = Panel(
         "torque ripple left (std)", "N m", tuple(curves), (LimitLine(allowed, "allowed"),),
-        height=_HEIGHT, span=(0.0, 2.0 * allowed), title="Ripple against size",
+        height=_PANEL_HEIGHT, span=(0.0, 2.0 * allowed), title="Ripple against size",
     )  # fmt: skip
     marks = () if space is None else (AxisMark(space, "space"),)
     words = "size, far side of the cam to the top of the roller"

@@ -91,7 +91,7 @@ def test_the_limit_of_a_figure_is_that_of_the_check_of_its_greatest_value(run):
         panel, check = panels[figure, quantity], checks[name]
         limits = [] if check["limit"] is None else [check["limit"]]
         assert [line.value for line in panel.limits if line.value > 0] == limits, name
-        drawn = [part for c in panel.curves for part in (c.values, *(c.band or ()))]
+        drawn = [part for c in panel.curves for part in (c.y, c.lower, c.upper) if part is not None]
         greatest = np.nanmax(np.abs(drawn))
         assert greatest == pytest.approx(check["demand"], rel=1e-3), name  # between samples too
 
@@ -101,7 +101,7 @@ def test_the_bearings_of_the_camshaft_have_the_rating_over_the_required_safety(r
     (panel,) = [p for _, figures in groups(turn) for each in figures if each.id == "parts"
                 for p in each.panels if p.quantity == "bearing load"]  # fmt: skip
     check = next(each for each in turn.checks if each["id"] == "shaft_bearing_static")
-    greatest = max(float(np.max(curve.values)) for curve in panel.curves)
+    greatest = max(float(np.max(curve.y)) for curve in panel.curves)
     assert panel.limits[0].value / greatest * check["limit"] == pytest.approx(check["demand"])
 
 

@@ -96,8 +96,8 @@ tried(
     ),
     lambda: cooled(conductance=None, heat=1e4),
     lambda: with_loads(axial_force=NAN),
-    25.0 + 0.5 * 100.0 * 0.5 * made.STROKE * 80.0 + 5.0,
-    "25 degC, 20 W of the guides and 5 W of other parts over 1 W/K",
+    25.0 + 0.5 * (0.5 * 100.0 * 0.5 * made.STROKE * 80.0 + 5.0),
+    "25 degC, 20 W of the guides and 5 W of other parts over 2 W/K",
 )
 # geometry
 by_limit(

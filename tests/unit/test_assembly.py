@@ -466,7 +466,7 @@ def test_counterweight_by_outlines_in_the_plane_of_the_shaft(
         weight.set_against(balance(of.machine.cam, of.contour).as_made)[0],
         of.numbers,
     )
-    middle, half = 0.035 + float(body.place), 0.5 * float(body.width)
+    middle, half = 0.035 + float(body.position), 0.5 * float(body.width)
     ring = box((0.015, float(body.radius)), (middle - half, middle + half), 400)
     lowest = of.machine.cam.prime_radius - of.machine.roller.radius
     deep = 0.014 + 0.0003  # of pin and cheeks, at the axial offset of the roller

@@ -61,7 +61,8 @@ GREATER_IS_WEAKER = {
     "acceleration_step", "bore_share", "chord_share", "closure", "complementarity",
     "contact_torque", "end_mean_length", "equilibrium", "follower_mass_ratio", "friction_balance",
     "friction_power", "jam_index", "jump", "key_reversal", "key_share", "mesh_uncertainty",
-    "pin_pressure_share", "pin_share", "pressure_angle", "roller_load_share", "roller_speed_share",
+    "pin_pressure_share", "pin_share", "pressure_angle", "roller_load_share",
+    "roller_misalignment", "roller_speed_share",
     "second_contact_depth", "shaft_deflection", "shaft_slope", "surface_temperature",
     "traction_share", "unbalance", "waviness", "wear_depth",
 }  # fmt: skip
@@ -109,9 +110,9 @@ DRAWN = {
     "acceleration_step", "anti_rotation", "cam_radius", "chord_error", "concave_radius",
     "bearing_gap", "curvature_rate", "curvature_ratio", "face_width", "fork_gap",
     "fork_shaft_gap", "gas_gap", "gear_gap", "machine_shaft_gap", "guide_gap", "guide_length",
-    "minimum_wall",
+    "key_corner", "minimum_wall",
     "pressure_angle", "second_contact", "self_intersection", "spring_buckling", "tool_gouge",
-    "tooth_count", "tooth_ratio", "undercut",
+    "tooth_count", "tooth_ratio", "torsion_gap", "undercut",
 }  # fmt: skip
 """Checks of lengths alone, which the drawing fixes."""
 

@@ -389,9 +389,9 @@ def test_figure_of_the_force_over_the_travel():
     )
     figure = part_figures._spring_force(turn)
     (panel,) = figure.panels
-    exact = SPRING.force(1e-3 * figure.x)
+    exact = SPRING.force(1e-3 * panel.curves[0].x)
     # linear between the angles of the turn
-    assert panel.curves[0].values == pytest.approx(exact, rel=0.02)
+    assert panel.curves[0].y == pytest.approx(exact, rel=0.02)
     assert panel.limits == ()
     linear = Table({"lift_mm": 1e3 * lift, "spring_force_N": 100.0 + 5e3 * lift})
     design = {"free_length": "60 mm", "wire_diameter": "3 mm", "coils": 6}

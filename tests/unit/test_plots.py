@@ -398,25 +398,25 @@ def sweep(**more):
 
 def test_points_of_a_sweep_are_named_on_axes_of_its_quantity():
     """In the drawing, its data for the page, and its text alternative."""
-    top, bottom = drawn(sweep(whole=True)).axes
+    top, bottom = drawn(sweep(counted=True)).axes
     assert bottom.get_xlabel() == "speed, rpm"
     assert bottom.get_xlim() == (0.5, 2.5)
     assert [text.get_text() for text in top.get_legend().get_texts()] == ["low", "high"]
     assert bottom.get_legend() is None
     assert {"jump", "travel", "limit 1"} <= {text.get_text() for text in bottom.texts}
-    made = specification(sweep(whole=True))
+    made = specification(sweep(counted=True))
     assert [trace["y"] for trace in made["data"]] == [[1.0, 2.0], [3.0, 5.0], [1.2, 0.9]]
     assert made["at"] == {"name": "speed", "unit": "rpm"}
     notes = [note["text"] for note in made["layout"]["annotations"]]
     assert notes == ["limit 1", "jump", "travel"]
-    assert "use: 1.2 at 1 (jump), 0.9 at 2 (travel)" in sweep(whole=True).alt
+    assert "use: 1.2 at 1 (jump), 0.9 at 2 (travel)" in sweep(counted=True).alt
     assert "ripple, high: 3 to 5 N m" in sweep().alt
     assert sweep().axis.span == pytest.approx((0.97, 2.03))
 
 
 def test_a_point_without_a_value_has_no_name():
     use = Curve(PLACES, np.array([np.nan, 0.9]), notes=("jump", "travel"))
-    made = over("x", "X", "", "trial", "", (Panel("use", "", (use,)),), whole=True)
+    made = over("x", "X", "", "trial", "", (Panel("use", "", (use,)),), counted=True)
     assert "jump" not in words(drawn(made))
     assert "jump" not in made.alt
     assert "travel" in words(drawn(made))

@@ -111,6 +111,7 @@ def test_the_same_run_has_the_same_surfaces(
 def test_a_record_has_its_form() -> None:
     _, _, record = live_settings.fitted("gx120")
     assert schema_errors("live", record) == []
+    assert not [each["title"] for each in record["quantities"] if "{" in each["title"]]
 
 
 def test_ranges_end_where_the_case_refuses() -> None:
