@@ -50,7 +50,7 @@ def test_ratio_is_written_as_a_fraction() -> None:
         "2",
         "3:2",
         "2:3",
-        "0.123457",
+        "0.1235",
     ]
 
 
