@@ -11,6 +11,7 @@
 | `check_document`      | output of ``check --json``                                 |
 | `crown_document`      | ``crown.json``, output of ``crown --json``                 |
 | `size_document`       | output of ``size --json``                                  |
+| `judgement_record`    | judgements of changed cases, as a search stores them       |
 | `redesign_document`   | ``redesign.json``, output of ``redesign --json``           |
 | `design_document`     | ``design.json``, output of ``design --json``               |
 | `inspection_document` | ``inspection.json``, output of ``inspect --json``          |

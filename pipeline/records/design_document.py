@@ -5,7 +5,7 @@ from typing import Annotated, Literal, NotRequired
 from typing_extensions import TypedDict
 
 from camwright.pipeline.records.forms import JsonBound, Least0Count, form
-from camwright.pipeline.records.redesign_document import PointRecord
+from camwright.pipeline.records.judgement_record import PreviewJudgement
 
 Number = str | float
 
@@ -69,7 +69,7 @@ class TorqueRecord(TypedDict):
 
 
 @form()
-class DesignFigures(PointRecord):
+class DesignFigures(PreviewJudgement):
     """A design that passes by its preview."""
 
     size_mm: float
@@ -177,10 +177,22 @@ class DesignConflict(TypedDict):
 
 
 @form()
+class ScreenedDesign(TypedDict):
+    """A design of the screening."""
+
+    size_mm: float
+    """From the far side of the cam to the top of the roller at maximum lift."""
+    ripple_left_Nm: float
+    """Standard deviation of the torque with the cam."""
+    within_limits: bool
+    """Whether it is within all limits."""
+
+
+@form()
 class DesignDocument(TypedDict):
     """Designs of a torque."""
 
-    schema: Literal[1]
+    schema: Literal[2]
     """Number of the form of this record."""
     torque: TorqueRecord
     """Torque that the cam is to balance."""
@@ -196,8 +208,8 @@ class DesignDocument(TypedDict):
     """Number of designs that were screened."""
     within_limits: Least0Count
     """Number of those within all limits."""
-    cloud: list[tuple[float, float, bool]]
-    """Some of them: size in mm, ripple left in N m, whether within all limits."""
+    cloud: list[ScreenedDesign]
+    """Some of them."""
     points: list[DesignPointRecord]
     """Designs of the front that pass, by increasing size."""
     chosen: ChosenDesign | None

@@ -6,6 +6,7 @@ In the order of the calculation:
 | ----------- | ---------------------------------------------------- | ------------------ |
 | `change`    | other values of a case, the case with them           | SI                 |
 | `judge`     | judgement of a change: solution, checks, figures     | utilisation, -     |
+| `figures`   | figures of a judged case: ripple, size, mass         | N m; mm; g         |
 | `front`     | front of two objectives                              |                    |
 | `remedies`  | smallest change that cures a failed check            | factor             |
 | `sizes`     | open keys of a case, as small as its limits allow    | r, e, m; k, N/m    |

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from camwright.pipeline.base import units
 from camwright.pipeline.base.levers import BEARING, BUSH_A, BUSH_B, CAM_MATERIAL
@@ -19,6 +20,13 @@ from camwright.pipeline.case.toml_text import TomlValue
 
 PARTS = (BEARING, CAM_MATERIAL, BUSH_A, BUSH_B)
 """Keys whose value is the name of a card."""
+
+
+class Applicable(Protocol):
+    """A change of a case: a `Change` of values, or parts with what depends on them."""
+
+    def applied(self, case: Case, folder: Path | None) -> Case:
+        """The case with the change; see `Change.applied`."""
 
 
 @dataclass(frozen=True)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from camwright.geometry.contour import Contour
-from camwright.geometry.errors import GeometryError
+from camwright.geometry.errors import CamError, GeometryError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.store import JSON, Store
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Corner, machines
 from camwright.pipeline.checks.check import Check, Declaration
@@ -30,12 +32,19 @@ from camwright.pipeline.checks.tolerance_corners import (
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, is_body, solution
 from camwright.pipeline.follower.camshaft_loads import unbalance
+from camwright.pipeline.records.judgement_record import (
+    JudgementRecord,
+    PreviewJudgement,
+    RefusedJudgement,
+)
 from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.search.change import Change
+from camwright.pipeline.search.change import Applicable, Change
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.solver import checked, judged_at_corners
 from camwright.pipeline.torque.torque import Torque
 
+STORED = "solved"
+"""Folder of the stored judgements of a search."""
 NOT_RAISED: Mapping[str, float] = MappingProxyType({})
 _DECIDING = tuple(each for each in CHECKS if each.must_have and not each.evidence)
 
@@ -65,6 +74,10 @@ class Depth(NamedTuple):
     worst : collection     names of those at which one check alone is judged
     undercut : bool        judge an undercut contour as well
     bounds : bool          solve the bounds of the friction, too
+    cam : str              "drawn": held by the judge, or of the smoother of the case;
+                           "synthesised": as of a preview, of the constrained synthesis of the case
+                           if it has one; "draft": of its synthesis on few cam angles. In a
+                           screening the figures are those of the synthesis alone
     """
 
     tier: Tier = Tier.PREVIEW
@@ -72,6 +85,12 @@ class Depth(NamedTuple):
     worst: Collection[str] = ()
     undercut: bool = False
     bounds: bool = True
+    cam: Literal["drawn", "synthesised", "draft"] = "drawn"
+
+
+DRAFT = Depth(Tier.SCREENING, cam="draft")
+SYNTHESIS = Depth(Tier.SCREENING, cam="synthesised")
+WHOLE = Depth(corners=None, cam="synthesised")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,18 +99,20 @@ class Judgement:
 
     Parameters
     ----------
-    change : Change     of the case of the judge
+    change              of the case of the judge
     solved : Solution   of the changed case
     governing : tuple   tolerance corners, besides the nominal, at which every check is judged
     worst : tuple       those at which one check alone is judged
     whole : bool        every check is judged at every corner of the case
+    drawn : Trial       of a synthesis, nominal; None: the cam is of none
     """
 
-    change: Change
+    change: Applicable
     solved: Solution
     governing: tuple[Corner, ...] = ()
     worst: tuple[Corner, ...] = ()
     whole: bool = False
+    drawn: Trial | None = None
     _outcomes: dict[str, dict[Corner, Outcome]] = field(default_factory=dict, init=False)
 
     def check(self, name: str, *, everywhere: bool = False) -> Check | None:
@@ -126,10 +147,14 @@ class Judgement:
         return {one.id: one for one in made}
 
     @cached_property
+    def nominal(self) -> Trial:
+        """The solution with all its checks, of evidence and of what may be left out, too."""
+        return checked(self.solved) if self.drawn is None else self.drawn
+
+    @cached_property
     def trial(self) -> Trial:
-        """Trial of the changed case, with all its checks, evidence and optional ones included."""
-        nominal = checked(self.solved)
-        return judged_at_corners(nominal) if self.whole else nominal
+        """As `nominal`, with the checks at the corners of the judgement."""
+        return judged_at_corners(self.nominal) if self.whole else self.nominal
 
     @property
     def every(self) -> tuple[Check, ...]:
@@ -146,6 +171,22 @@ class Judgement:
     ) -> tuple[Check, ...]:
         """Checks of some declarations that fail; see `failing`."""
         return failing(self.every, ones, raised)
+
+    @cached_property
+    def record(self) -> PreviewJudgement:
+        """Figures of a case with an engine.
+
+        Each check is judged at the corners, unless one that blocks fails nominally.
+
+        Raises
+        ------
+        InputError
+            If the case has no engine.
+        """
+        from camwright.pipeline.search.figures import preview_figures
+
+        failing = any(one.blocks and one.status == "fail" for one in self.nominal.checks)
+        return preview_figures(self.nominal if failing else self.trial)
 
     @cached_property
     def headline(self) -> Headline:
@@ -176,6 +217,8 @@ class Judge:
     folder : Path       of the user's cards; None: shipped cards only
     lift : Lift         held by every changed case; None: drawn from each
     corners : mapping   check -> names of its worst tolerance corners, the governing one first
+    store : Store       of the records of judgements; None: they are not stored
+    version : str       hash of the source, of which stored records are
     """
 
     base: Case
@@ -183,8 +226,10 @@ class Judge:
     folder: Path | None = None
     lift: Lift | None = None
     corners: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    store: Store[Any] | None = None
+    version: str = ""
 
-    def case(self, change: Change, *, quick: bool = False) -> Case:
+    def case(self, change: Applicable, *, quick: bool = False) -> Case:
         """The changed case.
 
         Parameters
@@ -196,7 +241,7 @@ class Judge:
         InputError
             If the values do not fit into the case.
         """
-        if quick and change.is_numbers_of(self.base):
+        if quick and isinstance(change, Change) and change.is_numbers_of(self.base):
             return change.replaced(self.base)
         return change.applied(self.base, self.folder)
 
@@ -224,7 +269,7 @@ class Judge:
         }
         return {name: used(by_corner[corner].get(name)) for name, corner in governing.items()}
 
-    def judged(self, change: Change, depth: Depth, *, quick: bool = False) -> Judgement:
+    def judged(self, change: Applicable, depth: Depth, *, quick: bool = False) -> Judgement:
         """Judgement of the changed case.
 
         Parameters
@@ -236,17 +281,93 @@ class Judge:
         CamError
             If there is no such case or cam, or it cannot be solved.
         """
-        case = self.case(change, quick=quick)
-        contour = self._contour(case, undercut=depth.undercut)
-        solved = solution(case, contour, depth.tier, torques=self.torques, bounds=depth.bounds)
+        return self._judged(change, self.case(change, quick=quick), depth)
+
+    def _judged(self, change: Applicable, case: Case, depth: Depth) -> Judgement:
+        drawn: Trial | None = None
+        if depth.cam == "drawn":
+            contour = self._contour(case, undercut=depth.undercut)
+            solved = solution(case, contour, depth.tier, torques=self.torques, bounds=depth.bounds)
+        else:
+            from camwright.pipeline.preview import preview_case
+
+            drawn = preview_case(case, corners=False, torques=self.torques)
+            case, solved = drawn.case, drawn.solution
         governing, worst = (_named(case, names or ()) for names in (depth.corners, depth.worst))
-        return Judgement(change, solved, governing, worst, whole=depth.corners is None)
+        every = depth.corners is None
+        return Judgement(change, solved, governing, worst, whole=every, drawn=drawn)
+
+    def kept(self, change: Applicable, depth: Depth) -> Any:
+        """Record of a judgement, from the store or judged; a refusal is a record, too.
+
+        Parameters
+        ----------
+        depth : Depth   with a cam of the synthesis
+
+        Returns
+        -------
+        dict   of `JudgementRecord` that of the depth, or a refusal
+        """
+
+        def record(case: Case) -> JudgementRecord:
+            if depth.tier is not Tier.SCREENING:
+                return self._judged(change, case, depth).record
+            from camwright.pipeline.search.figures import draft_figures
+
+            return draft_figures(case, self.torques, fine=depth.cam == "synthesised")
+
+        return self.stored(change, f"{depth.tier.word}_{depth.cam}", record)
+
+    def stored(
+        self, change: Applicable, kind: str, record: Callable[[Case], JudgementRecord]
+    ) -> Any:
+        """Record of a changed case, from the store or made; a refusal is a record, too.
+
+        Parameters
+        ----------
+        kind : str          of the record
+        record : function   changed case -> record
+        """
+        try:
+            case = self.case(change)
+        except CamError as error:
+            return refusal(error)
+
+        def made() -> JudgementRecord:
+            try:
+                return record(case)
+            except CamError as error:
+                return refusal(error)
+
+        if self.store is None:
+            return made()
+        texts = self.version, self._base_text, case.to_toml()
+        digest = hashlib.sha256("\0".join(texts).encode()).hexdigest()
+        return self.store.kept(f"{kind}_{digest[:24]}", made, _is_judgement)
+
+    @cached_property
+    def _base_text(self) -> str:
+        return self.base.to_toml()
 
     def _contour(self, case: Case, *, undercut: bool = False) -> Contour:
         contour = case.contour(cam_lift(case, self.torques) if self.lift is None else self.lift)
         if not (undercut or is_body(contour)):
             raise GeometryError("the contour is undercut")
         return contour
+
+
+def judgements(folder: Path) -> Store[Any]:
+    """Stored judgements of a folder."""
+    return Store(folder / STORED, JSON)
+
+
+def refusal(error: CamError) -> RefusedJudgement:
+    """Judgement of a case that is refused, or has no cam."""
+    return {"feasible": False, "why": str(error)}
+
+
+def _is_judgement(record: Mapping[str, object]) -> bool:
+    return "feasible" in record
 
 
 def _named(case: Case, names: Collection[str]) -> tuple[Corner, ...]:
@@ -281,5 +402,5 @@ def failing(
             factor > 1.0 and (check.utilisation or 0.0) * factor > 1.0
         )
 
-    known = (each for each in checks if each.declaration in ones and each.must_have)
-    return tuple(each for each in known if fails(each))
+    required = (each for each in checks if each.declaration in ones and each.must_have)
+    return tuple(each for each in required if fails(each))

@@ -10,7 +10,8 @@ import numpy as np
 
 from camwright.geometry.figures import Curve, Figure, Panel, over
 from camwright.pipeline.base.files import write_atomic
-from camwright.pipeline.records.redesign_document import Against, RedesignDocument, is_refused
+from camwright.pipeline.records.judgement_record import is_refused
+from camwright.pipeline.records.redesign_document import Against, RedesignDocument
 from camwright.reports.figure_svg import png_of
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
@@ -37,9 +38,6 @@ AXES: Mapping[Against, tuple[Literal["cam_radius_mm", "mass_g"], str, str]] = {
     "mass": ("mass_g", "mass", "g"),
 }
 _WIDTH = 7.2  # in, of the picture
-_ROUGH: Mapping[Against, Literal["cam_radius", "mass"]] = {"size": "cam_radius", "mass": "mass"}
-_SCALE = 1e3
-"""Of a length or mass in SI to mm or g."""
 
 
 def write(folder: Path, document: RedesignDocument) -> Path:
@@ -63,12 +61,12 @@ def write(folder: Path, document: RedesignDocument) -> Path:
 def figure_of(document: RedesignDocument) -> Figure:
     """Ripple left over size or mass: evaluated designs, front, initial design."""
     name, quantity, unit = AXES[document["against"]]
-    rough, initial, curves = _ROUGH[document["against"]], document["given"], list[Curve]()
+    initial, curves = document["given"], list[Curve]()
     tried = [row for row in document["tried"] if not is_refused(row)]
     tried = [row for row in tried if row["feasible"]]
     if tried and not is_refused(initial):
-        ripple = initial["ripple_before_Nm"] * np.array([row["ripple"] for row in tried])
-        sizes = _SCALE * np.array([row[rough] for row in tried])
+        ripple = initial["ripple_before_Nm"] * np.array([row["ripple_left_share"] for row in tried])
+        sizes = np.array([row[name] for row in tried])
         curves.append(Curve(sizes, ripple, "coarse evaluations", "muted", "points"))
     if points := document["points"]:
         x, y = (np.array([row[key] for row in points]) for key in (name, "ripple_left_Nm"))

@@ -79,15 +79,15 @@ def _front(document: DesignDocument) -> Panel:
     points, chosen, cloud = document["points"], document["chosen"], document["cloud"]
     if points:
         far = _RIPPLE_MOST * points[-1]["size_mm"]
-        cloud = [each for each in cloud if each[0] <= far]
+        cloud = [each for each in cloud if each["size_mm"] <= far]
     curves = []
     for within, words, colour in (
         (False, "screened, beyond a limit", "line"),
         (True, "screened, within limits", "muted"),
     ):
-        own = [each for each in cloud if each[2] is within]
+        own = [each for each in cloud if each["within_limits"] is within]
         if own:
-            x, y, _ = np.array(own).T
+            x, y = (np.array([each[key] for each in own]) for key in ("size_mm", "ripple_left_Nm"))
             curves.append(Curve(x, y, words, colour, "points"))
     if points:
         x, y = (np.array([row[key] for row in points]) for key in ("size_mm", "ripple_left_Nm"))

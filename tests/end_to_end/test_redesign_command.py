@@ -14,7 +14,9 @@ import pytest
 from record_validation import schema_errors
 
 from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base import worker_processes
 from camwright.pipeline.base.progress import Silent
+from camwright.pipeline.case.cards import substitution
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.cards.substitution import Choice
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
@@ -54,9 +56,9 @@ HARDENED = '\n[materials.hardened]\ncard = "case_hardened"\n'
 class Inline:
     """Stands for the processes: each piece of work is done as it is handed in."""
 
-    def submit(self, function, task):
+    def submit(self, function, *values):
         future = Future()
-        future.set_result(function(task))
+        future.set_result(function(*values))
         return future
 
 
@@ -90,7 +92,8 @@ def small():
         {"bronze": whole.bushes["bronze"]},
     )
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(redesign_study, "catalogue_of", lambda folder: few)
+        for module in (redesign_study, substitution):
+            patch.setattr(module, "catalogue_of", lambda folder: few)
         patch.setattr(redesign_study, "pool", lambda workers: nullcontext(Inline()))
         patch.setattr(redesign_study, "versions", lambda: {"source": "of the test"})
         patch.setattr(part_search, "RUNGS", 2)
@@ -172,11 +175,19 @@ def test_without_a_result_limit_and_way_are_named_and_no_file_is(
 def test_what_is_solved_is_used_again(done, case_file):
     out, document = done
     kept = {path: path.stat().st_mtime_ns for path in (out / "solved").iterdir()}
-    lost = next(path for path in sorted(kept) if path.name.startswith("rough"))
+    lost = next(path for path in sorted(kept) if path.name.startswith("screening"))
     lost.unlink()  # as if the search had been killed before it
     assert redesign_study.redesign(case_file, out, "size", 1, Silent()) == document
     assert lost.is_file()
     assert all(path.stat().st_mtime_ns == kept[path] for path in kept if path != lost)
+
+
+def test_a_judgement_of_a_worker_is_that_of_this_process(done, case_file, tmp_path):
+    task = redesign_study.RedesignTask(read_case(case_file), case_file.parent, tmp_path, "v")
+    with worker_processes.pool(1) as workers:
+        there = workers.submit(task.whole, None).result()
+    assert there == done[1]["given"]
+    assert list((tmp_path / "solved").iterdir())
 
 
 def test_the_next_command_names_case_and_run_folder(done, case_file, capsys):
@@ -232,8 +243,8 @@ def test_a_killed_search_blocks_nothing_and_a_running_one_blocks_others(
     with pytest.raises(KeyboardInterrupt):
         redesign_study.redesign(case_file, out, "size", 1, Silent())
     assert [each.name for each in out.iterdir()] == ["solved"]
-    (out / "solved" / "rough_a.json").symlink_to(case_file)
-    with pytest.raises(ResultError, match=r"rough_a\.json: is a link"):
+    (out / "solved" / "whole_a.json").symlink_to(case_file)
+    with pytest.raises(ResultError, match=r"whole_a\.json: is a link"):
         redesign_study.redesign(case_file, out, "size", 1, Silent())
 
 
@@ -247,8 +258,8 @@ def test_files_a_case_includes_go_with_its_points(tmp_path):
     case = case_of(given, tmp_path)
     path = tmp_path / "own.toml"
     path.write_text(to_toml(case, {"torque.csv": "torque.csv"}), encoding="utf-8")
-    parts, out = catalogue_of(None), tmp_path / "out"
-    asked = redesign_study.RedesignTask(read_case(path), tmp_path, parts, out, "v")
+    out = tmp_path / "out"
+    asked = redesign_study.RedesignTask(read_case(path), tmp_path, out, "v")
     redesign_study._begin(asked)
     text = asked.text(Choice(ROLLER, "60 x 42", "bronze"))
     point = parse_case(text, out)

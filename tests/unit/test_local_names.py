@@ -30,7 +30,7 @@ MOST = {
     "pipeline/records": 4,
     "pipeline/results": 42,
     "pipeline/screening": 29,
-    "pipeline/search": 13,
+    "pipeline/search": 12,
     "pipeline/search/crown": 8,
     "pipeline/search/machine": 21,
     "pipeline/search/parts": 7,

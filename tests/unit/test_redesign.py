@@ -20,11 +20,13 @@ from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.limits import CAM_RADIUS
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.search.change import Change
+from camwright.pipeline.search.figures import verdict_of
 from camwright.pipeline.search.front import front, thinned
-from camwright.pipeline.search.parts import point_store, redesign_study
-from camwright.pipeline.search.parts.design_point import DesignPoint, Rough
+from camwright.pipeline.search.judge import WHOLE, Judge, judgements
+from camwright.pipeline.search.parts import redesign_study
 from camwright.pipeline.search.parts.exclusions import exclusions
-from camwright.pipeline.search.parts.part_search import RUNG, RUNGS, Pruned, branch
+from camwright.pipeline.search.parts.part_search import RUNG, RUNGS, Pruned, RollerSearch
 from camwright.pipeline.search.parts.ripple_bounds import RippleBound, bearable_energy
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 
@@ -234,20 +236,22 @@ def test_refuses_bad_parts(tmp_path, file, text, match):
 # --- the order of trying
 
 
+class Solved:
+    """Stands for the judge: the judgement of each choice by `solve`."""
+
+    def __init__(self, solve):
+        self.solve = solve
+
+    def kept(self, choice, _depth):
+        return self.solve(choice)
+
+
 def walked(least, bushes, solve):
-    """The choices of a branch, each answered by `solve`."""
-    steps, asked = branch("r", least, bushes), []
-    answer = None
-    try:
-        while True:
-            choice = next(steps) if answer is None else steps.send(answer)
-            asked.append(choice)
-            answer = solve(choice)
-    except StopIteration:
-        return asked
+    """The choices of a roller, each judged by `solve`."""
+    return [choice for choice, _ in RollerSearch(Solved(solve), "r").searched(least, bushes)]
 
 
-def test_branch_finds_the_best_pair_of_every_room():
+def test_a_roller_has_the_best_pair_of_every_room():
     """Of two springs and two bushes: small rooms turn the order round."""
 
     def solve(choice):
@@ -255,7 +259,7 @@ def test_branch_finds_the_best_pair_of_every_room():
         steep = 30.0 if choice.spring == "long" else 5.0
         ripple = (0.1 if choice.spring == "long" else 0.2) + steep * (0.06 - size)
         rough = 0.0 if choice.bush == "slick" else 0.05
-        return Rough(feasible=True, ripple=ripple + rough, cam_radius=size, mass=1.0)
+        return {"feasible": True, "ripple": ripple + rough, "cam_radius": size}
 
     asked = walked({"long": 0.0, "short": 0.15}, ["dull", "slick"], solve)
     rooms = list(dict.fromkeys(choice.cam_radius for choice in asked))
@@ -264,33 +268,52 @@ def test_branch_finds_the_best_pair_of_every_room():
         Choice("r", "long", "dull"), Choice("r", "short", "dull"), Choice("r", "long", "slick"),
     ]  # fmt: skip
     for room in rooms[1:]:
-        tried = {(c.spring, c.bush): solve(c).ripple for c in asked if c.cam_radius == room}
+        tried = {(c.spring, c.bush): solve(c)["ripple"] for c in asked if c.cam_radius == room}
         known = [replace(c, cam_radius=room) for c in asked[:3]]
-        assert min(tried.values()) == min(solve(c).ripple for c in known)
+        assert min(tried.values()) == min(solve(c)["ripple"] for c in known)
     assert len(asked) < 3 * RUNGS  # the bounds have saved some
 
 
-def test_branch_ends_where_nothing_fits():
-    asked = walked({"a": 0.0, "c": 0.0}, ["b", "d"], lambda choice: Rough.impossible())
+def test_a_roller_that_fits_nowhere_is_left():
+    asked = walked(
+        {"a": 0.0, "c": 0.0}, ["b", "d"], lambda choice: {"feasible": False, "why": "no cam"}
+    )
     assert [(c.spring, c.bush) for c in asked] == [("a", "b"), ("c", "b"), ("a", "d")]
 
 
 # --- what is kept
 
 
-def test_a_point_that_is_kept_is_not_solved_again(tmp_path):
-    task = point_store.PointTask("no case at all", "nor this", tmp_path, "v", "whole")
-    known = {"feasible": True, "ripple_left_Nm": 1.0}
-    of = point_store.points(tmp_path)
-    of.put(task.key, known)
-    assert point_store.solved(task) == known
-    other = replace(task, version="w")  # solved by another version: it counts for nothing
-    assert point_store.solved(other)["why"].startswith("case = ")
-    assert of.holds(other.key)
-    of.put_written(task.key, b'{"feasib')  # torn
-    assert point_store.solved(task)["feasible"] is False
-    of.put(task.key, {"verdict": "pass"})  # of no point
-    assert "why" in point_store.solved(task)
+def test_a_judgement_that_is_kept_is_not_made_again(case, tmp_path):
+    store, known = judgements(tmp_path), {"feasible": True, "ripple_left_Nm": 1.0}
+    judge = Judge(case, engine_torques(case), store=store, version="v")
+    made = []
+
+    def record(changed):
+        made.append(changed.follower.mass)
+        if len(made) == 1:
+            raise InputError("cam.width", 0.01, "> 0.02 m")
+        return known
+
+    heavy = Change((("follower.mass", "180 g"),))
+    refused = {"feasible": False, "why": "cam.width = 0.01, must be > 0.02 m"}
+    assert [judge.stored(heavy, "whole", record) for _ in range(2)] == [refused, refused]
+    (path,) = tmp_path.glob("solved/whole_*.json")
+    path.write_bytes(b'{"feasib')  # torn
+    assert [judge.stored(heavy, "whole", record) for _ in range(2)] == [known, known]
+    store.put(path.stem, {"verdict": "pass"})  # of no judgement
+    assert judge.stored(heavy, "whole", record) == known
+    assert made == [0.18] * 3
+    others = (
+        replace(judge, version="w"),
+        replace(judge, base=Change.of({"cam.width": "9 mm"}).applied(case, None)),
+    )
+    for other in others:
+        assert other.stored(heavy, "whole", record) == known
+    assert judge.stored(Change((("follower.mass", "181 g"),)), "whole", record) == known
+    assert len(made) == 6 and len(list(tmp_path.glob("solved/*.json"))) == 4
+    bad = Change((("follower.mass", "-1 g"),))
+    assert judge.kept(bad, WHOLE)["why"].startswith("follower.mass = -1 g")
 
 
 def test_a_point_that_passes_keeps_one_without_data_off_the_front():
@@ -374,13 +397,8 @@ def test_without_any_choice_the_case_itself_is_solved():
     ]
 
 
-def test_the_verdict_of_a_point_is_that_of_its_checks():
-    figures = dict.fromkeys(
-        ("ripple_before", "ripple_left", "cam_radius", "mass", "prime_radius", "preload",
-         "spring_rate", "lift_max", "pressure_angle_max", "normal_force_max", "p0_max"), 1.0
-    )  # fmt: skip
-    good = DesignPoint(feasible=True, shortfalls=(), open=(), binding=(), **figures)
-    assert good.verdict == good.as_record()["verdict"] == "pass"
-    assert replace(good, open=("film",)).verdict == "incomplete"
-    assert replace(good, open=("film",), shortfalls=(shortfall("jump"),)).verdict == "fail"
-    assert replace(good, feasible=False).verdict == "fail"
+def test_the_verdict_of_a_judgement_is_that_of_its_checks():
+    assert verdict_of(True, (), ()) == "pass"
+    assert verdict_of(True, (), ("film",)) == "incomplete"
+    assert verdict_of(True, (shortfall("jump"),), ("film",)) == "fail"
+    assert verdict_of(False, (), ()) == "fail"

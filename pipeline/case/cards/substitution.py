@@ -10,7 +10,7 @@ from typing import Literal
 from camwright.pipeline.base import units
 from camwright.pipeline.base.crossing import first_passing
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
-from camwright.pipeline.case.cards.catalogue import Catalogue, nearest_spring
+from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of, nearest_spring
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of, completed
@@ -34,7 +34,7 @@ _FORK = 2e-3  # m between roller and fork if the case has no pin
 
 @dataclass(frozen=True)
 class Choice:
-    """Parts by card name, and limit of the cam radius, m; None: the limit of the case."""
+    """Change of parts by name, and the limit of the cam radius, m; None: that of the case."""
 
     roller: str
     spring: str
@@ -44,6 +44,20 @@ class Choice:
     @property
     def words(self) -> str:
         return f"{self.roller}, spring {self.spring}, bushes {self.bush}"
+
+    def applied(self, case: Case, folder: Path | None) -> Case:
+        """A case with the parts, and with the files that it includes; see `variant`.
+
+        Parameters
+        ----------
+        folder : Path   of the user's cards; None: shipped cards only
+
+        Raises
+        ------
+        InputError
+            If the parts do not fit into the case.
+        """
+        return completed(variant(case, catalogue_of(folder), self, folder), case.folder)
 
 
 def travel_of(spring: HelicalSpring, case: Case) -> float:
@@ -96,7 +110,7 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
     InputError
         If the parts do not fit into the case.
     """
-    data = case.tables()
+    data = tables_of(case)
     data.pop("waivers", None)
     data["name"] = f"{case.name[:31]}-redesign"
     data["title"] = f"{case.title or case.name}: {choice.words}"

@@ -35,6 +35,7 @@ from camwright.pipeline.records.design_document import (
 )
 from camwright.pipeline.results.check_records import to_be_confirmed
 from camwright.pipeline.results.run_folder import versions
+from camwright.pipeline.search.judge import STORED
 from camwright.pipeline.search.machine.candidate_search import Candidate, candidates
 from camwright.pipeline.search.machine.design_case import WRITTEN, case_text
 from camwright.pipeline.search.machine.part_exchange import Exchanged, exchanged
@@ -46,7 +47,6 @@ from camwright.pipeline.search.machine.synthesised_points import (
     solved_front,
 )
 from camwright.pipeline.search.machine.torque_task import DesignTask, task_of
-from camwright.pipeline.search.parts.point_store import SOLVED
 
 RECORD = "design.json"
 PICTURE = "design.png"
@@ -54,7 +54,7 @@ PICTURE = "design.png"
 _ROOM_SPARE, _SPARE_PRINTED = 1.001, 1.0005
 _BINDING_NAMED = 3  # limits that the nearest design uses fully, named with those that it fails
 _OURS = re.compile(
-    rf"design\.(json|png)|point_\d+\.toml|{SOLVED}|.*\.csv|cards\.toml|springs\.toml"
+    rf"design\.(json|png)|point_\d+\.toml|{STORED}|.*\.csv|cards\.toml|springs\.toml"
 )
 
 
@@ -150,7 +150,7 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
             room = inf if roomy is None else _ROOM_SPARE * roomy.point.size
             changes = relaxations(study, nearest, out, workers, progress, room)
     document: DesignDocument = {
-        "schema": 1,
+        "schema": 2,
         "torque": _demand_record(task),
         "assumed": sorted(task.assumed),
         "copied": copied,
@@ -159,7 +159,11 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
         "screened": len(screened),
         "within_limits": sum(each.excess == 0.0 for each in screened),
         "cloud": [
-            (round(1e3 * each.size, 2), round(each.ripple, 5), each.excess == 0.0)
+            {
+                "size_mm": round(1e3 * each.size, 2),
+                "ripple_left_Nm": round(each.ripple, 5),
+                "within_limits": each.excess == 0.0,
+            }
             for each in _sampled(screened)
         ],
         "points": [],

@@ -17,7 +17,7 @@ from camwright.pipeline.case.cards.shaft_seats import Seat, seats
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.records.design_document import ExchangeRecord, ExchangesRecord
-from camwright.pipeline.records.redesign_document import is_refused, is_whole
+from camwright.pipeline.records.judgement_record import is_refused, is_whole
 from camwright.pipeline.search.machine.design_case import Machinery
 from camwright.pipeline.search.machine.machine_frame import MODULES, STEMS
 from camwright.pipeline.search.machine.synthesised_points import PointStudy, Solved

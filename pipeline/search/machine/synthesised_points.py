@@ -6,25 +6,28 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil, inf
 from pathlib import Path
-from typing import NamedTuple, TypedDict
+from typing import Any, NamedTuple, TypedDict
 
-from camwright.geometry.errors import ResultError
+from camwright.geometry.errors import CamError, ResultError
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.verdict import Verdict
 from camwright.pipeline.base.worker_processes import Crew
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.registry import DECLARED
-from camwright.pipeline.records.redesign_document import (
-    PointRecord,
-    RefusedPoint,
-    RoughRecord,
+from camwright.pipeline.records.judgement_record import (
+    DraftJudgement,
+    PreviewJudgement,
+    RefusedJudgement,
     is_refused,
     is_whole,
 )
+from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.front import front, thinned
+from camwright.pipeline.search.judge import DRAFT, WHOLE, Depth, Judge, judgements, refusal
 from camwright.pipeline.search.machine.candidate_search import FAR, OPTIMISTIC, Candidate
 from camwright.pipeline.search.machine.design_case import SYNTHESIS, Machinery, case_text
 from camwright.pipeline.search.machine.torque_task import DesignTask
-from camwright.pipeline.search.parts.point_store import PointTask, solved
 from camwright.pipeline.smoothing.constraints import check_of
 
 _FRONT_WITHIN = 5  # of the front of the screening within the limits
@@ -78,16 +81,12 @@ class PointStudy:
         return case_text(design, "design", self.file, smoothing=smoothing)
 
     def solved(self, design: Machinery, smoothing: str = SYNTHESIS) -> Solved:
-        """Design previewed at all tolerance ends, from the store or solved."""
-        text = self.text(design, smoothing)
-        record = solved(PointTask(text, "", self.folder, self.version, "whole"))
-        return Solved(design, record, smoothing)
+        """A design with its record, cached or solved, its checks judged at all tolerance ends."""
+        return Solved(design, self._kept(design, smoothing, WHOLE), smoothing)
 
     def drafted(self, design: Machinery, smoothing: str) -> Solved:
-        """Design synthesised on few cam angles, from the store or solved."""
-        text = self.text(design, smoothing)
-        rough: RoughRecord | RefusedPoint
-        rough = solved(PointTask(text, "", self.folder, self.version, "coarse"))
+        """A design with the record of its synthesis on few cam angles, cached or solved."""
+        rough: DraftJudgement | RefusedJudgement = self._kept(design, smoothing, DRAFT)
         if is_refused(rough):
             return Solved(design, rough, smoothing)
         failing: list[DraftLimit] = []
@@ -106,13 +105,23 @@ class PointStudy:
         }
         return Solved(design, record, smoothing)
 
+    def _kept(self, design: Machinery, smoothing: str, depth: Depth) -> Any:
+        """Record of the judgement of a design, which is a case of its own; see `Judge.kept`."""
+        try:
+            case = parse_case(self.text(design, smoothing), self.folder)
+            torques = engine_torques(case)
+        except CamError as error:
+            return refusal(error)
+        store = judgements(self.folder)
+        return Judge(case, torques, store=store, version=self.version).kept(Change(), depth)
+
 
 @dataclass(frozen=True)
 class Solved:
     """Design with its preview or draft record."""
 
     design: Machinery
-    record: PointRecord | DraftRecord | RefusedPoint
+    record: PreviewJudgement | DraftRecord | RefusedJudgement
     smoothing: str = field(default=SYNTHESIS, repr=False)
 
     @property
@@ -121,7 +130,7 @@ class Solved:
         return not is_refused(self.record)
 
     @property
-    def figures(self) -> PointRecord | DraftRecord:
+    def figures(self) -> PreviewJudgement | DraftRecord:
         """The record of a cam.
 
         Raises
@@ -134,7 +143,7 @@ class Solved:
         return self.record
 
     @property
-    def whole(self) -> PointRecord:
+    def whole(self) -> PreviewJudgement:
         """The record of a preview.
 
         Raises

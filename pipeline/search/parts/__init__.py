@@ -5,8 +5,6 @@ In the order of the calculation:
 | module           | responsibility                                | symbol, unit |
 | ---------------- | --------------------------------------------- | ------------ |
 | `ripple_bounds`  | lower bounds of the residual ripple           | -; J; N      |
-| `design_point`   | point of a case: ripple, size, mass           | N m; m; kg   |
-| `point_store`    | points in worker processes, cached on disk    |              |
 | `part_search`    | search order over rollers, springs and bushes |              |
 | `exclusions`     | limits that exclude choices, changes needed   |              |
 | `redesign_study` | command: search, front, case files, record    |              |

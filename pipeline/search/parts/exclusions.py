@@ -8,17 +8,19 @@ from collections.abc import Callable, Sequence
 
 from camwright.pipeline.case.cards.substitution import Choice
 from camwright.pipeline.case.limits import LIMITS
-from camwright.pipeline.records.redesign_document import (
-    ConflictPoint,
-    ExcludingLimit,
-    ExclusionReasons,
-    ExclusionRecord,
-    PointRecord,
-    RefusedPoint,
-    RoughRecord,
+from camwright.pipeline.records.judgement_record import (
+    ConflictJudgement,
+    DraftJudgement,
+    PreviewJudgement,
+    RefusedJudgement,
     Shortfall,
     is_refused,
     is_whole,
+)
+from camwright.pipeline.records.redesign_document import (
+    ExcludingLimit,
+    ExclusionReasons,
+    ExclusionRecord,
 )
 from camwright.pipeline.results.check_report import number, unit_text
 from camwright.pipeline.search.parts.part_search import Pruned
@@ -28,24 +30,24 @@ _TITLES = {row.id: row.title for row in LIMITS.values()}
 
 
 def exclusions(
-    tried: Sequence[tuple[Choice, RoughRecord | RefusedPoint]],
-    refused: Sequence[tuple[Choice, PointRecord | RefusedPoint]],
+    tried: Sequence[tuple[Choice, DraftJudgement | RefusedJudgement]],
+    refused: Sequence[tuple[Choice, PreviewJudgement | RefusedJudgement]],
     pruned: Sequence[Pruned],
-    conflict: Callable[[Choice | None], ConflictPoint | RefusedPoint],
+    conflict: Callable[[Choice | None], ConflictJudgement | RefusedJudgement],
 ) -> ExclusionRecord:
     """Reasons why no choice is on the front.
 
-    A choice counts once, for the limit that it exceeds most: of its preview if it was solved in
+    A choice counts once, for the limit that it exceeds most: of its preview if it was judged in
     full, else of its synthesis, else of the bounds.
 
     Parameters
     ----------
-    tried : sequence      choices with their points of the synthesis alone
-    refused : sequence    choices with their points in full; none is on the front
+    tried : sequence      choices with their judgements by the synthesis alone
+    refused : sequence    choices with their judgements in full; none is on the front
     pruned : sequence     parts excluded without solution
     conflict : callable   choice, None of the case as it is -> record of its infeasibility
     """
-    whole: dict[Choice, RoughRecord | PointRecord | RefusedPoint] = dict(refused)
+    whole: dict[Choice, DraftJudgement | PreviewJudgement | RefusedJudgement] = dict(refused)
     reasons = [_reason(whole.get(choice, record)) for choice, record in tried]
     reasons += [each.limit for each in pruned if each.limit]
     counts = Counter(reason for reason in reasons if reason)
@@ -103,8 +105,8 @@ def _total(record: ExclusionReasons) -> int:
     return sum(int(each["count"]) for each in record["excluded"])
 
 
-def _reason(record: RoughRecord | PointRecord | RefusedPoint) -> str:
-    """Limit that a point exceeds most; field of the case that refuses it; "": none."""
+def _reason(record: DraftJudgement | PreviewJudgement | RefusedJudgement) -> str:
+    """Limit that a judged case exceeds most; field of the case that refuses it; "": none."""
     if is_refused(record):
         return record["why"].partition(" = ")[0][:60]
     if is_whole(record):
@@ -112,8 +114,8 @@ def _reason(record: RoughRecord | PointRecord | RefusedPoint) -> str:
     return record["limit"]
 
 
-def _excess(record: PointRecord) -> tuple[int, float]:
-    """Number of failing checks of a point, and the utilisation of the worst."""
+def _excess(record: PreviewJudgement) -> tuple[int, float]:
+    """Number of failing checks, and the utilisation of the worst."""
     used = record["shortfalls"][0]["utilisation"]
     return len(record["shortfalls"]), math.inf if used is None else used
 

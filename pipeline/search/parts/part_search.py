@@ -6,8 +6,8 @@ then under decreasing limits. The choices depend on the case alone, not on the p
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from camwright.pipeline.case.cards.catalogue import (
     Catalogue,
@@ -20,14 +20,19 @@ from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import JUMP, TORQUE_REDUCTION
 from camwright.pipeline.follower.spring import HelicalSpring, spring_energy
+from camwright.pipeline.records.judgement_record import (
+    DraftJudgement,
+    RefusedJudgement,
+    is_refused,
+)
+from camwright.pipeline.search.judge import SYNTHESIS, Judge
 from camwright.pipeline.search.parts import ripple_bounds
-from camwright.pipeline.search.parts.design_point import Rough
 from camwright.pipeline.smoothing.scenario import Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 RUNGS, RUNG = 12, 0.93  # limits of the cam radius per roller, and their ratio to the last cam
 
-Branch = Generator[Choice, Rough, None]
+Tried = tuple[Choice, DraftJudgement | RefusedJudgement]
 
 
 @dataclass(frozen=True)
@@ -48,70 +53,105 @@ class Pair:
     bound: float
 
 
-Found = tuple[list[Pair], Rough | None]
-"""Feasible pairs with their residual ripple as bound, and the best point of them."""
-
-
-def branch(roller: str, least: Mapping[str, float], bushes: Sequence[str]) -> Branch:
-    """Generator of a roller's choices; the solved point of each is sent back.
-
-    First without a limit on the cam radius, then under limits below the best cam so far. A smaller
-    limit never reduces the ripple: the ripple of a pair is its bound under the next limit.
+@dataclass(frozen=True)
+class RollerSearch:
+    """Search of the choices of a roller: judgements by the synthesis alone, in their order.
 
     Parameters
     ----------
-    least : mapping      lower bound of the ripple by spring
-    bushes : sequence    best pv rating first
+    judge : Judge
+    roller : str   its name
+    tried : list   choices with their judgements
     """
-    pairs, best = yield from _unbounded(roller, least, bushes)
-    for _ in range(1, RUNGS):
-        if best is None:
-            return
-        pairs, best = yield from _within(roller, pairs, RUNG * best.cam_radius)
+
+    judge: Judge
+    roller: str
+    tried: list[Tried] = field(default_factory=list)
+
+    def searched(self, least: Mapping[str, float], bushes: Sequence[str]) -> list[Tried]:
+        """All choices of the roller.
+
+        First without a limit on the cam radius, then under limits below the best cam so far. A
+        smaller limit never reduces the ripple: the ripple of a pair is its bound under the next
+        limit.
+
+        Parameters
+        ----------
+        least : mapping      lower bound of the ripple by spring
+        bushes : sequence    best pv rating first
+        """
+        pairs, best = self._unbounded(least, bushes)
+        for _ in range(1, RUNGS):
+            if best is None:
+                break
+            pairs, best = self._within(pairs, RUNG * best["cam_radius"])
+        return self.tried
+
+    def _unbounded(
+        self, least: Mapping[str, float], bushes: Sequence[str]
+    ) -> tuple[list[Pair], DraftJudgement | None]:
+        """All springs with the first bush, then the other bushes with the best spring."""
+        pairs: list[Pair] = []
+        good: list[DraftJudgement] = []
+        ripples: dict[str, float] = {}
+
+        def judge(spring: str, bush: str) -> float:
+            record = self._judged(spring, bush)
+            if record is not None and record["feasible"]:
+                pairs.append(Pair(spring, bush, max(record["ripple"], least[spring])))
+                good.append(record)
+            return 1.0 if record is None else record["ripple"]
+
+        for spring in sorted(least, key=lambda name: (least[name], name)):
+            ripples[spring] = judge(spring, bushes[0])
+        best = min(ripples, key=lambda name: (ripples[name], name))
+        for bush in bushes[1:]:
+            judge(best, bush)
+        return pairs, min(good, key=lambda record: record["ripple"], default=None)
+
+    def _within(
+        self, pairs: Sequence[Pair], room: float
+    ) -> tuple[list[Pair], DraftJudgement | None]:
+        """Pairs by increasing bound until a bound is not below the best ripple."""
+        best: DraftJudgement | None = None
+        after: list[Pair] = []
+        for pair in sorted(pairs, key=lambda p: (p.bound, p.spring, p.bush)):
+            if best is not None and pair.bound >= best["ripple"]:
+                after.append(pair)
+                continue
+            record = self._judged(pair.spring, pair.bush, room)
+            if record is not None and record["feasible"]:
+                after.append(replace(pair, bound=max(record["ripple"], pair.bound)))
+                if best is None or record["ripple"] < best["ripple"]:
+                    best = record
+        return after, best
+
+    def _judged(self, spring: str, bush: str, room: float | None = None) -> DraftJudgement | None:
+        """Judgement of a choice by the synthesis alone; None: there is no such cam."""
+        choice = Choice(self.roller, spring, bush, room)
+        record: DraftJudgement | RefusedJudgement = self.judge.kept(choice, SYNTHESIS)
+        self.tried.append((choice, record))
+        return None if is_refused(record) else record
 
 
-def _unbounded(
-    roller: str, least: Mapping[str, float], bushes: Sequence[str]
-) -> Generator[Choice, Rough, Found]:
-    """All springs with the first bush, then the other bushes with the best spring."""
-    pairs: list[Pair] = []
-    points: list[Rough] = []
-    ripples: dict[str, float] = {}
-    for spring in sorted(least, key=lambda name: (least[name], name)):
-        point = yield Choice(roller, spring, bushes[0])
-        ripples[spring] = point.ripple
-        if point.feasible:
-            pairs.append(Pair(spring, bushes[0], max(point.ripple, least[spring])))
-            points.append(point)
-    best = min(ripples, key=lambda name: (ripples[name], name))
-    for bush in bushes[1:]:
-        point = yield Choice(roller, best, bush)
-        if point.feasible:
-            pairs.append(Pair(best, bush, max(point.ripple, least[best])))
-            points.append(point)
-    return pairs, min(points, key=lambda point: point.ripple, default=None)
+@dataclass(frozen=True)
+class Selection:
+    """Parts of the catalogues that a redesign tries.
+
+    Parameters
+    ----------
+    springs : mapping   of each roller, its springs with the lower bounds of their ripple
+    bushes : tuple      best pv rating first
+    pruned : tuple      parts excluded without solution
+    """
+
+    springs: Mapping[str, Mapping[str, float]]
+    bushes: tuple[str, ...]
+    pruned: tuple[Pruned, ...]
 
 
-def _within(roller: str, pairs: Sequence[Pair], room: float) -> Generator[Choice, Rough, Found]:
-    """Pairs by increasing bound until a bound is not below the best ripple."""
-    best: Rough | None = None
-    after: list[Pair] = []
-    for pair in sorted(pairs, key=lambda p: (p.bound, p.spring, p.bush)):
-        if best is not None and pair.bound >= best.ripple:
-            after.append(pair)
-            continue
-        point = yield Choice(roller, pair.spring, pair.bush, room)
-        if point.feasible:
-            after.append(replace(pair, bound=max(point.ripple, pair.bound)))
-            if best is None or point.ripple < best.ripple:
-                best = point
-    return after, best
-
-
-def branches(
-    case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool
-) -> tuple[dict[str, Branch], list[Pruned]]:
-    """Search branches by roller, and excluded parts with reasons.
+def selection(case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool) -> Selection:
+    """Parts of a catalogue that a redesign of a case tries.
 
     Parameters
     ----------
@@ -132,13 +172,13 @@ def branches(
     names = sorted(bushes, key=lambda name: (-bushes[name].pv, name))
     names = [AS_GIVEN, *names] if _bushes_known(case) else names
     least = _Least(case, problem, springs)
-    running: dict[str, Branch] = {}
+    tried: dict[str, dict[str, float]] = {}
     for name, card in rollers.items():
         force = ripple_bounds.bearable_force(card, case)
         bounds = least.by_spring(force)
         bound = {name: each for name, each in bounds.items() if each <= least.allowed}
         if bound:
-            running[name] = branch(name, bound, names)
+            tried[name] = bound
         else:
             most, required = 1.0 - min(bounds.values(), default=1.0), 1.0 - least.allowed
             words = (
@@ -146,7 +186,7 @@ def branches(
                 f"at most {most:.2f} of {required:.2f}"
             )
             pruned.append(Pruned(name, words, TORQUE_REDUCTION.id))
-    return running, pruned
+    return Selection(tried, tuple(names), tuple(pruned))
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -15,30 +15,33 @@ from camwright.pipeline.base.owned_folder import OwnedFolder
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.worker_processes import pool, workers_for
-from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
-from camwright.pipeline.case.cards.substitution import Choice, variant
+from camwright.pipeline.case.cards.catalogue import catalogue_of
+from camwright.pipeline.case.cards.substitution import Choice
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.records.judgement_record import (
+    ConflictJudgement,
+    DraftJudgement,
+    PreviewJudgement,
+    RefusedJudgement,
+    is_refused,
+)
 from camwright.pipeline.records.redesign_document import (
     Against,
     ChoiceRecord,
-    ConflictPoint,
     FrontPoint,
-    PointRecord,
     RedesignDocument,
-    RefusedPoint,
-    RoughRecord,
     TriedPoint,
     TriedRefusal,
-    is_refused,
 )
 from camwright.pipeline.results.run_folder import versions
+from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.front import front, thinned
-from camwright.pipeline.search.parts.design_point import Rough
+from camwright.pipeline.search.judge import STORED, WHOLE, Judge, judgements
 from camwright.pipeline.search.parts.exclusions import exclusions
-from camwright.pipeline.search.parts.part_search import Branch, branches
-from camwright.pipeline.search.parts.point_store import SOLVED, PointTask, solved
+from camwright.pipeline.search.parts.part_search import RollerSearch, Selection, Tried, selection
+from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.problem_setup import problem_of
 
 AGAINST: Mapping[Against, Literal["cam_radius_mm", "mass_g"]] = {
@@ -49,30 +52,56 @@ RECORD = "redesign.json"
 MOST_POINTS = 12  # of a front, solved in full
 ALIKE = 1e-3  # relative size or ripple below which two points are equal
 _BUSY = 64  # maximum number of processes
-_OF_A_BRANCH = 16  # expected choices per branch
-_OURS = re.compile(rf"redesign\.(json|html|png)|point_\d+\.toml|inputs|{SOLVED}")
+_OURS = re.compile(rf"redesign\.(json|html|png)|point_\d+\.toml|inputs|{STORED}")
 
-Tried = tuple[Choice, RoughRecord | RefusedPoint]
-Whole = tuple[Choice, PointRecord]
-Solved = tuple[Choice, PointRecord | RefusedPoint]
+Whole = tuple[Choice, PreviewJudgement]
+Judged = tuple[Choice, PreviewJudgement | RefusedJudgement]
 
 
 @dataclass(frozen=True, eq=False)
 class RedesignTask:
-    """Case to redesign, with catalogue, output folder and source version."""
+    """A case to be redesigned: its folder, output folder and source version.
+
+    Its functions judge in the process that calls them.
+    """
 
     case: Case
     folder: Path
-    parts: Catalogue
     out: Path
     version: str
 
     def text(self, choice: Choice) -> str:
         """Resolved text of the case with the parts of a choice."""
-        return variant(self.case, self.parts, choice, self.folder).to_toml()
+        return choice.applied(self.case, self.folder).to_toml()
 
-    def task(self, text: str, tier: Literal["rough", "whole", "conflict"]) -> PointTask:
-        return PointTask(text, self.case.to_toml(), self.out, self.version, tier)
+    def judge(self) -> Judge:
+        """Judge of the case; all choices share its torque."""
+        torques, store = engine_torques(self.case), judgements(self.out)
+        return Judge(self.case, torques, self.folder, store=store, version=self.version)
+
+    def searched(
+        self, roller: str, least: Mapping[str, float], bushes: Sequence[str]
+    ) -> list[Tried]:
+        """All choices of a roller with their judgements; see `RollerSearch`."""
+        return RollerSearch(self.judge(), roller).searched(least, bushes)
+
+    def whole(self, choice: Choice | None) -> PreviewJudgement | RefusedJudgement:
+        """Judgement of a choice by preview, None: of the case, at its worst tolerance corners."""
+        record: PreviewJudgement | RefusedJudgement
+        record = self.judge().kept(Change() if choice is None else choice, WHOLE)
+        return record
+
+    def conflict(self, choice: Choice | None) -> ConflictJudgement | RefusedJudgement:
+        """Infeasibility of a choice, None: of the case."""
+        judge = self.judge()
+
+        def conflict(case: Case) -> ConflictJudgement:
+            problem = problem_of(case, judge.torques)
+            return {"feasible": False, **infeasibility(problem).as_record()}
+
+        record: ConflictJudgement | RefusedJudgement
+        record = judge.stored(Change() if choice is None else choice, "conflict", conflict)
+        return record
 
 
 def redesign(
@@ -99,34 +128,41 @@ def redesign(
     case, folder = read_case(case_file), case_file.resolve().parent
     if not case.balances:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
-    search = RedesignTask(case, folder, catalogue_of(folder), out.absolute(), versions()["source"])
+    search = RedesignTask(case, folder, out.absolute(), versions()["source"])
     problem = problem_of(case, engine_torques(case))
-    running, pruned = branches(case, search.parts, problem, by_mass=other == "mass")
+    parts = selection(case, catalogue_of(folder), problem, by_mass=other == "mass")
     with OwnedFolder(search.out, _OURS, "redesign"):
         _begin(search)
         with pool(workers_for(jobs, _BUSY)) as workers:
             progress.stage("search the catalogue")
-            tried = _searched(search, running, workers, progress)
-            original, points = _solved_whole(search, _chosen(tried, other), workers, progress)
-            kept, refused = _split(points, other)
+            tried = _searched(search, parts, workers, progress)
+            given, judged = _judged_whole(search, _chosen(tried, other), workers, progress)
+            kept, refused = _split(judged, other)
             excluded = None
             if not kept:
                 progress.stage("conflicting limits")
-                excluded = exclusions(tried, refused, pruned, _conflict_of(search, workers))
+                excluded = exclusions(
+                    tried,
+                    refused,
+                    parts.pruned,
+                    lambda choice: workers.submit(search.conflict, choice).result(),
+                )
         verdict = kept[0][1]["verdict"] if kept else "fail"
         document: RedesignDocument = {
-            "schema": 1,
+            "schema": 2,
             "case": case.name,
             "input_sha256": case.sha256,
             "version": search.version,
             "against": other,
-            "given": original,
+            "given": given,
             "points": _written(search, kept),
             "refused": [
                 {**_named(choice), "why": _why(record, verdict)} for choice, record in refused
             ],
             "without_result": excluded,
-            "pruned": [{"part": one.part, "why": one.why, "limit": one.limit} for one in pruned],
+            "pruned": [
+                {"part": one.part, "why": one.why, "limit": one.limit} for one in parts.pruned
+            ],
             "tried": [_tried_record(choice, record) for choice, record in tried],
         }
         write_atomic(search.out / RECORD, json_text(document) + "\n")
@@ -153,51 +189,44 @@ def _begin(search: RedesignTask) -> None:
 
 
 def _searched(
-    search: RedesignTask,
-    running: Mapping[str, Branch],
-    workers: ProcessPoolExecutor,
-    progress: Progress,
+    search: RedesignTask, parts: Selection, workers: ProcessPoolExecutor, progress: Progress
 ) -> list[Tried]:
-    """All choices of the branches with their points of the synthesis alone, by choice."""
+    """All choices of the rollers with their judgements by the synthesis alone, by choice."""
+    waiting = [
+        workers.submit(search.searched, roller, least, parts.bushes)
+        for roller, least in parts.springs.items()
+    ]
     tried: list[Tried] = []
-    refusals: list[InputError] = []
-    waiting: dict[Future[RoughRecord | RefusedPoint], tuple[Branch, Choice]] = {}
-    expected = _OF_A_BRANCH * len(running)
-
-    def ask(branch: Branch, answer: Rough | None) -> None:
-        """Submit the next valid choice of a branch to the workers."""
-        while True:
-            try:
-                choice = next(branch) if answer is None else branch.send(answer)
-            except StopIteration:
-                return
-            try:
-                task = search.task(search.text(choice), "rough")
-            except InputError as error:
-                refusals.append(error)
-                tried.append((choice, {"feasible": False, "why": str(error)}))
-                answer = Rough.impossible()
-                continue
-            waiting[workers.submit(solved, task)] = (branch, choice)
-            return
-
-    for branch in running.values():
-        ask(branch, None)
-    while waiting:
-        completed, _ = wait(waiting, return_when=FIRST_COMPLETED)
-        for future in completed:
-            branch, choice = waiting.pop(future)
-            record = future.result()
-            tried.append((choice, record))
-            progress.advance(len(tried), max(expected, len(tried) + len(waiting)))
-            ask(branch, Rough.impossible() if is_refused(record) else Rough(**record))
-    if refusals and len(refusals) == len(tried):
-        raise refusals[0]  # no choice is valid: an error of the case
+    for k, each in enumerate(waiting):
+        progress.advance(k, len(waiting))
+        tried += each.result()
+    if all(is_refused(record) for _, record in tried):
+        _refuse_invalid(search, [choice for choice, _ in tried])
     return sorted(tried, key=lambda pair: str(pair[0]))
 
 
+def _refuse_invalid(search: RedesignTask, choices: Sequence[Choice]) -> None:
+    """Refuse a case of which no choice is valid: it is an error of the case.
+
+    Raises
+    ------
+    InputError
+        That of the first choice.
+    """
+    errors: list[InputError] = []
+    for choice in choices:
+        try:
+            search.text(choice)
+        except InputError as error:
+            errors.append(error)
+        else:
+            return
+    if errors:
+        raise errors[0]
+
+
 def _chosen(tried: Sequence[Tried], against: Against) -> list[Choice]:
-    """Choices on the front of the points of the synthesis alone."""
+    """Choices on the front of the judgements by the synthesis alone."""
     rough = [(choice, record) for choice, record in tried if not is_refused(record)]
     feasible = [(choice, record) for choice, record in rough if record["feasible"]]
     size: Literal["cam_radius", "mass"] = "cam_radius" if against == "size" else "mass"
@@ -206,50 +235,35 @@ def _chosen(tried: Sequence[Tried], against: Against) -> list[Choice]:
     return [feasible[k][0] for k in thinned(places, figures, MOST_POINTS)]
 
 
-def _solved_whole(
+def _judged_whole(
     search: RedesignTask, chosen: Sequence[Choice], workers: ProcessPoolExecutor, progress: Progress
-) -> tuple[PointRecord | RefusedPoint, list[Solved]]:
-    """Original case and choices by synthesis and preview, at their worst tolerance corners."""
+) -> tuple[PreviewJudgement | RefusedJudgement, list[Judged]]:
+    """Given case and choices by synthesis and preview, at their worst tolerance corners."""
     progress.stage(f"solve {len(chosen)} points of the front")
-    texts = [search.case.to_toml(), *(search.text(choice) for choice in chosen)]
-    futures = [workers.submit(solved, search.task(text, "whole")) for text in texts]
-    records: list[PointRecord | RefusedPoint] = []
-    for future in futures:
-        records.append(future.result())
-        progress.advance(len(records), len(futures))
+    waiting = [workers.submit(search.whole, choice) for choice in (None, *chosen)]
+    records: list[PreviewJudgement | RefusedJudgement] = []
+    for each in waiting:
+        records.append(each.result())
+        progress.advance(len(records), len(waiting))
     return records[0], list(zip(chosen, records[1:], strict=True))
 
 
-def _conflict_of(
-    search: RedesignTask, workers: ProcessPoolExecutor
-) -> Callable[[Choice | None], ConflictPoint | RefusedPoint]:
-    """Record of the infeasibility of a choice, of the case as it is for None."""
-
-    def conflict(choice: Choice | None) -> ConflictPoint | RefusedPoint:
-        text = search.case.to_toml() if choice is None else search.text(choice)
-        found: ConflictPoint | RefusedPoint
-        found = workers.submit(solved, search.task(text, "conflict")).result()
-        return found
-
-    return conflict
-
-
-def _split(points: Sequence[Solved], against: Against) -> tuple[list[Whole], list[Solved]]:
-    """Points of the front by increasing size, and the other points.
+def _split(judged: Sequence[Judged], against: Against) -> tuple[list[Whole], list[Judged]]:
+    """Points of the front by increasing size, and the other judgements.
 
     No point fails; where one passes, those that lack data are not on the front.
     """
-    whole = [(choice, record) for choice, record in points if not is_refused(record)]
+    whole = [(choice, record) for choice, record in judged if not is_refused(record)]
     best = "pass" if any(record["verdict"] == "pass" for _, record in whole) else "incomplete"
     good = [(choice, record) for choice, record in whole if record["verdict"] == best]
     figures = [(record[AGAINST[against]], record["ripple_left_Nm"]) for _, record in good]
     least = min((record["ripple_before_Nm"] for _, record in good), default=0.0)
     kept = [good[k] for k in front(figures, ALIKE, ALIKE * least)]
-    return kept, [pair for pair in points if pair not in kept]
+    return kept, [pair for pair in judged if pair not in kept]
 
 
-def _why(record: PointRecord | RefusedPoint, front: str) -> str:
-    """Reason why a solved point is not on a front of points of this verdict."""
+def _why(record: PreviewJudgement | RefusedJudgement, front: str) -> str:
+    """Reason why a judged choice is not on a front of points of this verdict."""
     if is_refused(record):
         return record["why"]
     if not record["feasible"]:
@@ -279,12 +293,25 @@ def _written(search: RedesignTask, kept: Sequence[Whole]) -> list[FrontPoint]:
     return records
 
 
-def _tried_record(choice: Choice, record: RoughRecord | RefusedPoint) -> TriedPoint | TriedRefusal:
+def _tried_record(
+    choice: Choice, record: DraftJudgement | RefusedJudgement
+) -> TriedPoint | TriedRefusal:
     if is_refused(record):
         refused: TriedRefusal = {**_named(choice), **record}
         return refused
-    point: TriedPoint = {**_named(choice), **record}
-    return point
+    return {
+        **_named(choice),
+        "feasible": record["feasible"],
+        "ripple_left_share": record["ripple"],
+        "cam_radius_mm": in_unit(record["cam_radius"], "mm"),
+        "mass_g": in_unit(record["mass"], "g"),
+        "limit": record["limit"],
+        "utilisation": record["utilisation"],
+        "prime_radius_mm": in_unit(record["prime_radius"], "mm"),
+        "preload_N": record["preload"],
+        "lift_max_mm": in_unit(record["lift_max"], "mm"),
+        "binding": record["binding"],
+    }
 
 
 def _named(choice: Choice) -> ChoiceRecord:

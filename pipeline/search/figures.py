@@ -1,0 +1,171 @@
+"""Figures of a judged case: of its synthesis alone, and of its preview."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import Verdict, in_order, within_depth
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.limits import KEYWAY_SAFETY, TORQUE_REDUCTION
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.key_strength import keyway_root
+from camwright.pipeline.cycle.hub_history import hub_fatigue
+from camwright.pipeline.follower.camshaft_loads import unbalance
+from camwright.pipeline.records.judgement_record import DraftJudgement, PreviewJudgement, Shortfall
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
+from camwright.pipeline.smoothing.multistart import continued
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.scenario import redrawn
+from camwright.pipeline.smoothing.synthesis_problem import coarsened
+from camwright.pipeline.torque.torque import Torque
+
+_BINDING_USE = 0.99  # utilisation
+# Of the safety of the keyway root: least over the limit, for tolerance corners and error bar.
+_ROOT_SPARE = 1.06
+_COARSE_PROGRESS = 1e-3  # of the engine's ripple: progress at which a coarse search goes on
+
+
+def preview_figures(trial: Trial) -> PreviewJudgement:
+    """Figures of the preview of a case with an engine.
+
+    Where no blocking check fails, the keyway root is judged by finite elements, if its bound does
+    not prove it.
+
+    Raises
+    ------
+    InputError
+        If the case has no engine.
+    """
+    drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
+    rest, torque = turn.torque_after, turn.torque_before
+    if rest is None or torque is None:
+        raise InputError("engine", "missing", "specified: a redesign balances its torque")
+    record = trial.synthesis
+    blocking = [check for check in in_order(within_depth(trial.checks)) if check.blocks]
+    shortfalls = [_shortfall(check) for check in blocking if check.status == "fail"]
+    if not shortfalls:
+        shortfalls = _root_shortfall(trial)
+    left = [check.id for check in blocking if check.status == "not_evaluated"]
+    feasible = record is not None and record["feasible"]
+    before, after = float(np.std(torque)), float(np.std(rest))
+    p0 = max(float(np.max(c.contact.p0)) for c in trial.cycles)
+    return {
+        "feasible": feasible,
+        "verdict": verdict_of(feasible, shortfalls, left),
+        "ripple_before_Nm": before,
+        "ripple_left_Nm": after,
+        "torque_reduction": 1.0 - after / before,
+        "cam_radius_mm": in_unit(float(contour.radius_max().value), "mm"),
+        "mass_g": in_unit(_mass(drawn, contour), "g"),
+        "prime_radius_mm": in_unit(drawn.cam.prime_radius, "mm"),
+        "preload_N": drawn.spring.preload,
+        "spring_rate_N_per_mm": in_unit(drawn.spring.rate, "N/mm"),
+        "lift_max_mm": in_unit(float(trial.lift.highest.value), "mm"),
+        "pressure_angle_max_deg": in_unit(float(contour.pressure_angle_max().value), "deg"),
+        "normal_force_max_N": max(float(c.loads.normal_force.max()) for c in trial.cycles),
+        "p0_max_MPa": in_unit(p0, "MPa") if np.isfinite(p0) else None,
+        "failing": [each["check"] for each in shortfalls],
+        "shortfalls": shortfalls,
+        "open": left,
+        "binding": [] if record is None else [price["limit"] for price in record["prices"]],
+    }
+
+
+def verdict_of(feasible: bool, shortfalls: Collection[Shortfall], left: Collection[str]) -> Verdict:
+    """Verdict of a preview, without the certificate of a sign-off.
+
+    Parameters
+    ----------
+    feasible : bool           the synthesis keeps its limits
+    shortfalls : collection   blocking checks that fail
+    left : collection         ids of those that lack data
+    """
+    if shortfalls or not feasible:
+        return "fail"
+    return "incomplete" if left else "pass"
+
+
+def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> DraftJudgement:
+    """Figures of a case by its synthesis, without its corrections and checks.
+
+    The limit of the ripple is compared with its minimum afterwards: as a constraint it would hide
+    the ripple of an infeasible case.
+
+    Parameters
+    ----------
+    fine : bool   with the splines and cam angles of the case; else with those of a start, whose
+                  fewer splines leave more ripple
+    """
+    every = problem_of(case, torques)
+    problem = replace(every, left_out=frozenset({TORQUE_REDUCTION.id}))
+    coarse = coarsened(problem)
+    design = (
+        continued(problem, approached(coarse))
+        if fine
+        else synthesise(coarse, worth=_COARSE_PROGRESS)
+    )
+    drawn, lift = redrawn(case, design.variables), design.lift()
+    contour = drawn.contour(lift)
+    uses = dict(design.utilisation)
+    if every.ceiling is not None:
+        uses[TORQUE_REDUCTION.id] = design.ripple / every.ceiling
+    limit = max(uses, key=lambda name: uses[name])
+    beyond = uses[limit] > 1.0
+    return {
+        "feasible": not beyond,
+        "ripple": design.ripple,
+        "cam_radius": float(contour.radius_max().value),
+        "mass": _mass(case, contour),
+        "limit": limit if beyond else "",
+        "utilisation": uses[limit] if beyond else 0.0,
+        "prime_radius": drawn.cam.prime_radius,
+        "preload": drawn.spring.preload,
+        "lift_max": float(lift.highest.value),
+        "binding": sorted(
+            (name for name in uses if uses[name] > _BINDING_USE), key=lambda n: -uses[n]
+        ),
+    }
+
+
+def _shortfall(check: Check) -> Shortfall:
+    record = check.as_record()
+    demand, limit, used = (_finite(record[key]) for key in ("demand", "limit", "utilisation"))
+    return {
+        "check": check.id,
+        "title": check.title,
+        "demand": demand,
+        "limit": limit,
+        "unit": check.unit,
+        "utilisation": used,
+    }
+
+
+def _root_shortfall(trial: Trial) -> list[Shortfall]:
+    """Of the keyway root by finite elements, where the preview leaves it to them."""
+    numbers = trial.solution.numbers
+    left = [check for check in trial.checks if check.id == keyway_root.id and check.judged_at]
+    solved = hub_fatigue(trial.contour, trial.cycles, numbers) if left else None
+    least = _ROOT_SPARE * float(numbers.limit(KEYWAY_SAFETY))
+    if solved is None or solved.governing.safety >= least:
+        return []
+    return [
+        _shortfall(replace(check, demand=solved.governing.safety, limit=least)) for check in left
+    ]
+
+
+def _finite(value: object) -> float | None:
+    return value if isinstance(value, float) else None
+
+
+def _mass(case: Case, contour: Contour) -> float:
+    """Mass of cam, follower and half of the spring, kg."""
+    cam, design = case.cam, case.spring.design
+    disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, cam.material.density).mass
+    return float(disc + case.follower.mass + (0.0 if design is None else 0.5 * design.mass))
