@@ -16,13 +16,12 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import in_order, verdict, within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check
-from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.results.verdict_summary import WIDTH, shortened
+from camwright.pipeline.search.change import Change
+from camwright.pipeline.search.judge import WHOLE, Depth, Judge
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
-from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque
 
 Record = dict[str, float | str | list[str] | None]
@@ -36,6 +35,7 @@ _SMOOTHERS = (
     Smoother("harmonic", harmonics=12.0),
     Smoother("smoothing_spline", cutoff=float(np.radians(120.0))),
 )
+_DRAWN = Depth(corners=None, undercut=True)
 _POSITIONS = 720
 RANK = (
     "ranked: fewest failing must-have checks first, then least ripple left; a cam that removes "
@@ -112,15 +112,15 @@ def compared(
         progress.advance(k, len(_SMOOTHERS) + 1)
         words = smoother.width_in_words
         try:
-            contour = case.contour(cam_lift(case, torques, smoother))
-            trial = solve(case, contour, tier=Tier.PREVIEW, torques=torques)
-            record, width = _record(trial), smoother.angular_width
-            yield Compared(smoother.kind, words, trial.lift, record, width)
+            lift = cam_lift(case, torques, smoother)
+            judgement = Judge(case, torques, lift=lift).judged(Change(), _DRAWN)
+            record, width = _record(judgement.trial), smoother.angular_width
+            yield Compared(smoother.kind, words, judgement.trial.lift, record, width)
         except CamError as error:
             yield _without(smoother.kind, words, error, smoother.angular_width)
     progress.advance(len(_SMOOTHERS), len(_SMOOTHERS) + 1)
     try:
-        yield _constrained(case)
+        yield _constrained(case, torques)
     except CamError as error:
         yield _without("constrained", "least ripple within all limits", error)
 
@@ -218,9 +218,10 @@ def _without(kind: str, words: str, error: CamError, width: float | None = None)
     return Compared(kind, words, None, record, width)
 
 
-def _constrained(case: Case) -> Compared:
+def _constrained(case: Case, torques: Mapping[str, Torque]) -> Compared:
     smoothing = case.smoothing.model_copy(update={"kind": "constrained"})
-    trial = preview_case(case.model_copy(update={"smoothing": smoothing}))
+    judge = Judge(case.model_copy(update={"smoothing": smoothing}), torques)
+    trial = judge.judged(Change(), WHOLE).trial
     feasible = trial.synthesis is not None and trial.synthesis["feasible"]
     words = (
         "least ripple within all limits" if feasible else "the synthesis ends outside the limits"
