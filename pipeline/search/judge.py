@@ -87,6 +87,11 @@ class Depth(NamedTuple):
     bounds: bool = True
     cam: Literal["drawn", "synthesised", "draft"] = "drawn"
 
+    @property
+    def kind(self) -> str:
+        """Kind of its stored records."""
+        return f"{self.tier.word}_{self.cam}"
+
 
 DRAFT = Depth(Tier.SCREENING, cam="draft")
 SYNTHESIS = Depth(Tier.SCREENING, cam="synthesised")
@@ -316,7 +321,7 @@ class Judge:
 
             return draft_figures(case, self.torques, fine=depth.cam == "synthesised")
 
-        return self.stored(change, f"{depth.tier.word}_{depth.cam}", record)
+        return self.stored(change, depth.kind, record)
 
     def stored(
         self, change: Applicable, kind: str, record: Callable[[Case], JudgementRecord]

@@ -23,14 +23,18 @@ from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.cycle.machine_envelope import sizes_of
+from camwright.pipeline.records.judgement_record import DraftJudgement
+from camwright.pipeline.search.change import Change
+from camwright.pipeline.search.judge import DRAFT, Judge, judgements
 from camwright.pipeline.search.machine import (
     design_study,
     part_exchange,
     relaxation_search,
     synthesised_points,
 )
-from camwright.pipeline.search.machine.candidate_search import candidates, spring_wire
+from camwright.pipeline.search.machine.candidate_search import Candidate, candidates, spring_wire
 from camwright.pipeline.search.machine.design_case import Machinery, case_text, oils_of
 from camwright.pipeline.search.machine.design_study import _copied, designed
 from camwright.pipeline.search.machine.machine_frame import frame_of
@@ -394,15 +398,8 @@ def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) 
 
 def test_the_next_smaller_parts_follow_the_catalogues(tmp_path: Path) -> None:
     """The hub takes the base circle with it; a smaller roller keeps it."""
-    task = task_in(tmp_path)
-    card = catalogue_of(None).rollers["track_roller_40x16"]
-    frame = frame_of("track_roller_40x16", card, 40.0, 3e3, task.ratio, seats())
-    assert frame is not None
-    point = wound(
-        spring_wire(task, None), np.array([150e3]), np.array([900.0]), np.array([9e-3]), 30.0
-    )[0]
-    prime = 1e-4 * np.ceil(1e4 * frame.least_radius)
-    design = Machinery(task, frame, point, prime, 9e-3, 0.04, oils=oils_of(None))
+    design = machinery_in(tmp_path)
+    task, frame, prime, card = design.task, design.frame, design.prime_radius, design.frame.card
     shelves = part_exchange.Shelves.of(PointStudy(task, tmp_path, "torque.csv", ""))
     smaller = [each for way in part_exchange._WAYS for each in way(design, shelves, 1)]
     by_part: dict[str, list[Any]] = {}
@@ -518,23 +515,39 @@ def test_drafts_in_whose_place_an_offset_fails_are_solved_at_last(
     assert failing == [failed]
 
 
-@pytest.mark.parametrize(("prime", "grown"), [(49.9, 1), (50.0, 2)])
+def machinery_in(folder: Path) -> Machinery:
+    """A design of the table of a folder, its lift and preload as a drawing states them."""
+    task = task_in(folder)
+    card = catalogue_of(None).rollers["track_roller_40x16"]
+    frame = frame_of("track_roller_40x16", card, 40.0, 3e3, task.ratio, seats())
+    assert frame is not None
+    spring = wound(
+        spring_wire(task, None), np.array([150e3]), np.array([900.0]), np.array([9e-3]), 30.0
+    )[0]
+    prime = 1e-4 * np.ceil(1e4 * frame.least_radius)
+    return Machinery(task, frame, spring, prime, 9e-3, 0.04, oils=oils_of(None))
+
+
+@pytest.mark.parametrize(("share", "grown"), [(0.998, False), (1.0, True)])
 def test_a_drafted_cam_grows_where_its_prime_radius_is_the_greatest(
-    monkeypatch: pytest.MonkeyPatch, prime: float, grown: int
+    tmp_path: Path, share: float, grown: bool
 ) -> None:
-    tried: list[float] = []
-
-    def free(_study: object, _candidate: object, growth: float) -> Any:
-        tried.append(growth)
-        return SimpleNamespace(
-            passes=False, use=1.1, figures={"prime_radius_mm": prime},
-            design=SimpleNamespace(prime_radius=0.05),
-        )  # fmt: skip
-
-    monkeypatch.setattr(synthesised_points, "_free", free)
-    study: Any = SimpleNamespace(task=SimpleNamespace(space=None))
-    draft(study, candidate_of(1.1))
-    assert len(tried) == grown
+    """By a judge whose store is filled by hand."""
+    design = machinery_in(tmp_path)
+    study = PointStudy(design.task, tmp_path, "torque.csv", "")
+    for growth, used in ((1.0, 1.1), (1.1, 1.05)):
+        record: DraftJudgement = {
+            "feasible": False, "ripple": 0.1, "cam_radius": 0.04, "mass": 1.0,
+            "limit": "pressure_angle", "utilisation": used, "binding": [], "lift_max": 9e-3,
+            "prime_radius": share * design.prime_radius, "preload": 900.0,
+        }  # fmt: skip
+        drawn = synthesised_points._rounded(design)
+        text = study.text(drawn, synthesised_points.freed(drawn, growth))
+        case = parse_case(text, tmp_path)
+        judge = Judge(case, engine_torques(case), store=judgements(tmp_path))
+        assert judge.stored(Change(), DRAFT.kind, lambda _, each=record: each) == record
+    point = draft(study, Candidate(design, 0.1, 0.04, 0.0, "pressure_angle"))
+    assert point.use == (1.05 if grown else 1.1)
 
 
 @pytest.mark.slow

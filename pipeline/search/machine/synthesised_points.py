@@ -276,16 +276,20 @@ def draft(study: PointStudy, candidate: Candidate) -> Solved:
 def _free(study: PointStudy, candidate: Candidate, growth: float) -> Solved:
     """Draft with the preload and, up to some growth, the prime radius free."""
     design = _rounded(candidate.design)
+    return study.drafted(design, freed(design, growth))
+
+
+def freed(design: Machinery, growth: float) -> str:
+    """Lines of a smoothing with the preload and, up to some growth, the prime radius free."""
     high = growth * design.prime_radius
     low = max(design.frame.least_radius, _SHRUNK * design.prime_radius)
     radii = 1e3 * min(low, 0.999 * high), 1e3 * high
     forces = [share * design.spring.preload for share in _FREE_PRELOAD]
-    smoothing = SYNTHESIS + (
+    return SYNTHESIS + (
         'free = ["initial_energy", "prime_radius", "preload"]\n'
         f'prime_radius_range = ["{radii[0]:.6g} mm", "{radii[1]:.6g} mm"]\n'
         f'preload_range = ["{forces[0]:.6g} N", "{forces[1]:.6g} N"]\n'
     )
-    return study.drafted(design, smoothing)
 
 
 def synthesised(study: PointStudy, point: Solved) -> Solved:
