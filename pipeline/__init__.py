@@ -36,12 +36,10 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `search.parts`       | Pareto front over the catalogues                     |                    |
 | `search.machine`     | from a torque to a case with all parts               | E, J; k, N/m; m    |
 | `studies`            | inspection, line contact of two cylinders            |                    |
-| `studies.papers`     | published values, recomputed                         |                    |
 | `reports.drawing`    | drawing of cam, follower, guides, spring, forces     | mm                 |
 | `reports.painting`   | pixels of a field by VTK                             |                    |
 | `reports`            | report and pictures from a run folder                |                    |
 | `reports.study`      | page of a study                                      |                    |
-| `reports.papers`     | pages of the papers: figures, verdicts               |                    |
 | `reports.comparisons` | pages of comparisons, sizes, inspections            |                    |
 | `studies.batch`      | studies of many designs                              |                    |
 | `commands`           | one function per command                             |                    |

@@ -19,7 +19,6 @@ from typer.core import TyperGroup
 from camwright.geometry.errors import AlteredError, CamError, ResultError
 from camwright.pipeline.commands import (
     check_command,
-    comparison_commands,
     contact_command,
     crown_command,
     design_command,
@@ -29,6 +28,7 @@ from camwright.pipeline.commands import (
     run_command,
     signature_commands,
     size_command,
+    smoother_command,
     study_command,
 )
 from camwright.pipeline.commands.output_streams import open_streams
@@ -76,17 +76,13 @@ for _command in (
     explain_command.explain,
     run_command.report,
     run_command.init,
-    comparison_commands.compare,
+    smoother_command.compare,
     size_command.size,
     crown_command.crown,
     design_command.design,
     redesign_command.redesign,
     study_command.study,
     contact_command.contact,
-    comparison_commands.validate,
-    comparison_commands.papers,
-    comparison_commands.gallery,
-    comparison_commands.compare_mechanisms,
     inspect_command.inspect,
     contact_command.deck,
 ):

@@ -71,10 +71,10 @@ def study_page(title: str, sections: Sequence[ReportSection], lead: str = "") ->
     return page
 
 
-def environment() -> Environment:
-    """Jinja environment of the templates, with all text escaped."""
+def environment(*folders: Path) -> Environment:
+    """Jinja environment of the templates, and of those of `folders`, with all text escaped."""
     made = Environment(
-        loader=FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True,
+        loader=FileSystemLoader([Path(__file__).parent / "templates", *folders]), autoescape=True,
         undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     made.filters["plain"] = plain

@@ -8,7 +8,7 @@
 | `check_command`       | `check` of a run or the preview of a case; `schema`     |
 | `signature_commands`  | `keygen`, `sign`: signatures of the record of a run     |
 | `explain_command`     | `explain`: a key of the case file, or a check           |
-| `comparison_commands` | `compare`, `validate`, `papers`, `gallery` and others   |
+| `smoother_command`    | `compare`: smoothers ranked on a case                   |
 | `contact_command`     | `contact`, `deck`                                       |
 | `inspect_command`     | `inspect`: measured cam                                 |
 | `design_command`      | `design`: a case with all parts from a torque table     |

@@ -1,4 +1,4 @@
-"""Studies besides a run: line contact of two cylinders, inspection, published values, batches.
+"""Studies besides a run: line contact of two cylinders, inspection, batches.
 
 In the order of the calculation:
 
@@ -8,7 +8,6 @@ In the order of the calculation:
 | `finite_length_document` | ends, crown and tilt of this contact          | K, -; N mm; mrad    |
 | `two_cylinders_document` | options, document and text of this contact    | MPa, mm             |
 | `cam_inspection`         | measured cam: fit, cycle, checks              | m; um in the record |
-| `papers`                 | published values, recomputed                  |                     |
 | `batch`                  | studies of many designs                       |                     |
 
 Imported by `commands`.

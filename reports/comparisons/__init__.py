@@ -6,7 +6,6 @@ In the order of use:
 | --------------------- | -------------------------------------------------------------------- |
 | `smoother_page`       | comparison of smoothers                                              |
 | `redesign_page`       | Pareto front of a redesign                                           |
-| `mechanism_figures`   | slider-crank and eccentric cams: friction energy, torque, workspaces |
 | `inspection_pictures` | deviation of a measured cam, normal force and contact pressure       |
 
 Imported by `commands`.

@@ -17,7 +17,7 @@ from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.solution import Solution, is_body, turns_of
 from camwright.pipeline.follower.roller_motion import roller_motion
 from camwright.pipeline.smoothing.required_lift import cam_lift
-from camwright.pipeline.studies.papers.slider_crank_drive import (
+from validation.slider_crank_drive import (
     EccentricDrive,
     HoldingSpring,
     Masses,

@@ -29,11 +29,7 @@ COMMANDS = {
     "deck run --angle 10 --out deck.inp": 0,
     "inspect run measured.csv --jobs 2": 0,
     "crown rig.toml --out crown": 0,
-    "gallery table.toml --out gallery": 0,
-    "papers p15-cams --out papers": 0,
-    "validate --out papers": 0,
     "compare table.toml --out compare": 0,
-    "compare-mechanisms {cases}/papers/mechanisms.toml --out mechanisms": 0,
     "redesign {cases}/gx120.toml --out redesign --jobs 2": 0,
     "design table_torque.csv --speed 1500rpm --out design.toml": 0,
 }

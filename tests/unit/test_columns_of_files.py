@@ -17,9 +17,9 @@ from camwright.pipeline.engine.speed_trace import Filter
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
 from camwright.pipeline.search.machine.torque_task import _cycle
 from camwright.pipeline.studies.cam_inspection import read_measured
-from camwright.pipeline.studies.papers.friction_identification import read_decay
 from camwright.pipeline.torque.angle_trace import read_trace
 from camwright.pipeline.torque.press_torque import Press, press_torque
+from validation.friction_identification import read_decay
 
 FDAQ = Path(__file__).parents[1] / "data" / "strangers" / "09-pressure-fdaq"
 DEGREES = np.arange(720.0)

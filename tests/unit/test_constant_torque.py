@@ -25,7 +25,6 @@ COMMANDS = {
     "check": ("check", "const.toml"),
     "run": ("run", "const.toml", "--out", "run", "--depth", "preview"),
     "redesign": ("redesign", "const.toml", "--out", "redesigned.toml"),
-    "gallery": ("gallery", "const.toml", "--out", "page"),
 }
 
 

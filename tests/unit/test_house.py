@@ -16,6 +16,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("geometry", "meshes", "pipeline", "reports")
+BESIDE = "validation"
+"""Package of the checkout that is not installed, under its own import name."""
 # Lowest first; a module imports only from its own package and from those above it in this list.
 ORDER = (
     "geometry",
@@ -44,13 +46,13 @@ ORDER = (
     "pipeline.search.parts",
     "pipeline.search.machine",
     "pipeline.studies",
-    "pipeline.studies.papers",
     "reports.drawing",
     "reports.painting",
     "reports",
     "reports.study",
-    "reports.papers",
     "reports.comparisons",
+    "validation.pages",
+    "validation",
     "pipeline.studies.batch",
     "pipeline.commands",
     "pipeline.cli",
@@ -61,16 +63,17 @@ RANK = {name: place for place, name in enumerate(ORDER)} | {
     "pipeline.case.cards": ORDER.index("pipeline.case"),
     "pipeline.search": ORDER.index("pipeline"),
     "pipeline.search.remedies": ORDER.index("pipeline"),
-    "pipeline.studies.papers": ORDER.index("pipeline.studies"),
 }
-NAMED_AS_TEXT = re.compile(r"(?:camwright\.)?(?:geometry|meshes|pipeline|reports)(?:\.[a-z_0-9]+)+")
+NAMED_AS_TEXT = re.compile(
+    r"(?:camwright\.)?(?:geometry|meshes|pipeline|reports|validation)(?:\.[a-z_0-9]+)+"
+)
 
 
 @cache
 def modules() -> dict[str, Path]:
     """Files by dotted name, without the import name before it."""
     found = {}
-    for folder in FOLDERS:
+    for folder in (*FOLDERS, BESIDE):
         for path in sorted((ROOT / folder).rglob("*.py")):
             parts = path.relative_to(ROOT).with_suffix("").parts
             found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
@@ -129,10 +132,16 @@ def test_reports_read_results_and_draw_nothing_else() -> None:
     assert sorted(other) == []
 
 
-def test_the_comparison_commands_alone_import_the_papers() -> None:
-    papers = "pipeline.studies.papers"
-    others = {(n, t) for n, t, _ in imports() if package(t) == papers and package(n) != papers}
-    assert {name for name, _ in others} == {"pipeline.commands.comparison_commands"}
+def test_nothing_that_is_installed_imports_the_validation() -> None:
+    """It lies beside the packages of the wheel and reads them, all but the commands."""
+    inside = {(n, t) for n, t, _ in imports() if not _beside(n) and _beside(t)}
+    assert sorted(inside) == []
+    upward = {(n, t) for n, t, _ in imports() if _beside(n) and t.startswith("pipeline.commands")}
+    assert sorted(upward) == []
+
+
+def _beside(name: str) -> bool:
+    return name.split(".")[0] == BESIDE
 
 
 def test_no_circle_of_modules() -> None:
@@ -179,14 +188,15 @@ def test_the_table_of_the_pipeline_is_the_order_of_the_packages() -> None:
     flat = {p.stem for p in modules()["pipeline"].parent.glob("*.py")} - {"__init__", "cli"}
     rows = re.findall(r"^\| `([\w.]+)`", text, re.MULTILINE)
     assert flat < set(rows)
-    packages = [name.removeprefix("pipeline.") for name in ORDER if name != "pipeline"]
+    listed = [name for name in ORDER if name != "pipeline" and not _beside(name)]
+    packages = [name.removeprefix("pipeline.") for name in listed]
     assert [row for row in rows if row not in flat] == packages
 
 
 def test_every_module_named_as_text_is_there() -> None:
     """A name in a string or a docstring that no longer resolves guards nothing."""
     wrong = []
-    places = [ROOT / "tests", ROOT / "benchmarks", *(ROOT / folder for folder in FOLDERS)]
+    places = [ROOT / name for name in ("tests", "benchmarks", *FOLDERS, BESIDE)]
     for path in sorted(file for place in places for file in place.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -330,13 +340,13 @@ NAME_CHECKS = {
     "pipeline.search.parts.part_search": "figure of a judgement",
     "pipeline.search.parts.redesign_study": "figure of a judgement",
     "pipeline.smoothing.problem_setup": _FREE,
-    "pipeline.studies.papers.figures_2015_valve": "word of a title",
-    "pipeline.studies.papers.petrescu_2015": "figure of the record of a paper",
     "reports.analysis_sheet": _DRAWN,
     "reports.arrangement_data": _DRAWN,
     "reports.part_figures": _DRAWN,
     "reports.picture_list": _DRAWN,
     "reports.report_content": "figure of the record of a trial",
+    "validation.figures_2015_valve": "word of a title",
+    "validation.petrescu_2015": "figure of the record of a paper",
 }
 """Modules in which the id of a check is a string besides its declaration, and what it names."""
 

@@ -5,8 +5,8 @@ import pytest
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.follower_height import face_height
-from camwright.pipeline.studies.papers import speed_reconstruction
-from camwright.pipeline.studies.papers.balancing_cam import (
+from validation import speed_reconstruction
+from validation.balancing_cam import (
     FOLLOWER_2025,
     POSITIONS,
     PRIME_RADIUS,
@@ -14,7 +14,7 @@ from camwright.pipeline.studies.papers.balancing_cam import (
     TWELVE_VALUES,
     designed_pitch,
 )
-from camwright.pipeline.studies.papers.follower_contours import (
+from validation.follower_contours import (
     FACE_FRICTION,
     ROLLER_RADIUS,
     WIDTH,

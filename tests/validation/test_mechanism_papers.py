@@ -1,9 +1,9 @@
-"""Rows of the valve cams and of the eccentric cam, as `camwright validate` tells them."""
+"""Rows of the valve cams and of the eccentric cam, as `python -m validation values` tells them."""
 
 import pytest
 
-from camwright.pipeline.studies.papers import petrescu_2015, slider_crank_2024
-from camwright.pipeline.studies.papers.published_figures import targets
+from validation import petrescu_2015, slider_crank_2024
+from validation.published_figures import targets
 
 
 @pytest.fixture(scope="module")

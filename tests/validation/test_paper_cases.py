@@ -1,4 +1,4 @@
-"""The papers' studies as cases: what the case files say is what `camwright validate` runs."""
+"""The papers' studies as cases: the case files say what `python -m validation values` runs."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from camwright.pipeline.cycle.solution import turns_of
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
-from camwright.pipeline.studies.papers import cardoso_2024, cardoso_2025
-from camwright.pipeline.studies.papers.balancing_cam import (
+from validation import cardoso_2024, cardoso_2025
+from validation.balancing_cam import (
     FOLLOWER_2025,
     PRIME_RADIUS,
     RATIO,
     TWELVE_VALUES,
 )
-from camwright.pipeline.studies.papers.paper_engines import (
+from validation.paper_engines import (
     EFFECTIVE_INERTIA,
     ENGINE_800,
     GX120,

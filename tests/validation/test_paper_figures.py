@@ -1,4 +1,4 @@
-"""`camwright papers`: the data behind the figures, and the page that shows them."""
+"""`python -m validation figures`: the data behind the figures, and the page that shows them."""
 
 import json
 import re
@@ -11,8 +11,8 @@ import pytest
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import json_text
 from camwright.pipeline.engine.crankshaft import speed_statistics
-from camwright.pipeline.studies.papers import FIGURES, PAPERS, figures, speed_reconstruction
-from camwright.pipeline.studies.papers.modelled_runs import (
+from validation import speed_reconstruction
+from validation.modelled_runs import (
     RIG_SPEED,
     RUNS,
     WHEEL,
@@ -20,11 +20,12 @@ from camwright.pipeline.studies.papers.modelled_runs import (
     scattered,
     ten_runs,
 )
-from camwright.pipeline.studies.papers.paper_figure import Beside, PaperCurve, beside
-from camwright.pipeline.studies.papers.petrescu_2015 import SETS
-from camwright.pipeline.studies.papers.published_figures import targets
-from camwright.reports.papers.paper_chart import Chart
-from camwright.reports.papers.papers_page import page
+from validation.pages.figures_page import page
+from validation.pages.paper_chart import Chart
+from validation.paper_figure import Beside, PaperCurve, beside
+from validation.paper_studies import FIGURES, PAPERS, figures
+from validation.petrescu_2015 import SETS
+from validation.published_figures import targets
 
 UNIT = re.compile(r".+, (-|[A-Za-z\u00b0\u03c9²/% 1]+)$")
 FULL = {121.0: 0, 242.0: 1, 363.0: 2}
@@ -89,7 +90,7 @@ def test_every_figure_has_title_units_caption_and_figure_number(document):
                 assert len(one["x"]) == len(one["y"]) > 1, (name, one["label"])
 
 
-def test_published_values_are_those_of_validate(document):
+def test_published_values_are_those_of_the_values(document):
     known = targets()
     rows = [value for figure in document["figures"] for value in figure["values"] if value["row"]]
     words = {"C24-02", "E24-14", "E24-18"}  # statements, told in other words
@@ -106,7 +107,7 @@ def test_published_values_are_those_of_validate(document):
 
 
 @pytest.mark.slow
-def test_computed_values_are_those_of_validate(document):
+def test_computed_values_are_those_of_the_values(document):
     """The same definition by another path: to round-off, the mean of a rise to its points."""
     outcomes = {}
     for paper, module in PAPERS.items():
@@ -491,7 +492,7 @@ def test_the_page_is_whole_and_follows_the_theme(document):
     assert "<script" not in text
     for figure in some:
         assert f'id="{figure["name"]}"' in text
-        assert f"camwright papers {figure['name']}" in text
+        assert f"python -m validation figures {figure['name']}" in text
         for value in figure["values"]:
             assert value["row"].replace("-", "\N{NON-BREAKING HYPHEN}") in text
     style = text[text.index("</style>") :]

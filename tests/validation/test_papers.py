@@ -1,4 +1,4 @@
-"""`camwright validate`: every published figure has a verdict, and the verdicts are these."""
+"""`python -m validation values`: every published figure has a verdict, and this one."""
 
 import json
 from typing import get_args
@@ -8,9 +8,11 @@ import pytest
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import json_text
-from camwright.pipeline.studies.papers import PAPERS, speed_reconstruction, validate
-from camwright.pipeline.studies.papers.balancing_cam import FOLLOWER_2025, balanced
-from camwright.pipeline.studies.papers.published_figures import (
+from validation import speed_reconstruction
+from validation.balancing_cam import FOLLOWER_2025, balanced
+from validation.pages.values_page import page
+from validation.paper_studies import PAPERS, values
+from validation.published_figures import (
     NOT_COMPUTED,
     Basis,
     FigureOutcome,
@@ -22,12 +24,11 @@ from camwright.pipeline.studies.papers.published_figures import (
     row_record,
     targets,
 )
-from camwright.reports.papers.validation_page import page
 
 
 @pytest.fixture(scope="module")
 def document():
-    return validate()
+    return values()
 
 
 def row(document, name):

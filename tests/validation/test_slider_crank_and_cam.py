@@ -12,14 +12,14 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.studies.papers.friction_identification import (
+from validation.friction_identification import (
     Pendulum,
     from_pendulum,
     from_run_down,
     read_decay,
 )
-from camwright.pipeline.studies.papers.mechanism_sizes import workspace
-from camwright.pipeline.studies.papers.slider_crank_drive import (
+from validation.mechanism_sizes import workspace
+from validation.slider_crank_drive import (
     DryFriction,
     EccentricDrive,
     HoldingSpring,
