@@ -1,6 +1,6 @@
 """Contact of the signed GX120 cam by CalculiX beside the certificate: python benchmarks/calculix.py
 
-At three cam angles CalculiX solves the contact pair that ``camwright deck --contact`` writes, with
+At three cam angles CalculiX solves the contact pair of ``camwright contact deck --contact`` with
 two penalties; its results at an infinite penalty, since the effect of a penalty is inverse to it,
 and their differences from those of the certificate are printed. Beyond 0.3 % (force: 1e-4) the exit
 code is 1. Without CalculiX (Debian: calculix-ccx) nothing is done.

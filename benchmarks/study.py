@@ -83,7 +83,7 @@ def studied(folder: Path, depth: str, count: int, jobs: int) -> Cost:
     """Cost of a study, all in."""
     name = f"{depth}_{count}_{jobs}"
     (folder / f"{name}.toml").write_text(STUDY.format(depth=depth, count=count))
-    arguments = ["study", f"{name}.toml", "--out", name, "--jobs", str(jobs)]
+    arguments = ["study", "run", f"{name}.toml", "--out", name, "--jobs", str(jobs)]
     start, busy = time.perf_counter(), cpu_of_all()
     peaks: dict[int, float] = {}
     spent: dict[int, float] = {}

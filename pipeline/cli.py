@@ -1,6 +1,6 @@
 """Command line of `camwright`: parses arguments, runs a command, returns its exit code.
 
-Each command imports its heavy modules itself, so that ``--version`` is fast.
+A command is imported when it is run, so that ``--version`` and ``--help`` are fast.
 """
 
 from __future__ import annotations
@@ -11,25 +11,17 @@ import signal
 import sys
 import time
 import traceback
-from typing import Annotated, Any, NoReturn
+from collections.abc import Sequence
+from typing import NoReturn
 
-import typer
-from typer.core import TyperGroup
-
-from camwright.geometry.errors import AlteredError, CamError, ResultError
-from camwright.pipeline.commands import (
-    check_command,
-    contact_command,
-    crown_command,
-    design_command,
-    explain_command,
-    inspect_command,
-    redesign_command,
-    run_command,
-    signature_commands,
-    size_command,
-    smoother_command,
-    study_command,
+from camwright.geometry.errors import AlteredError, CamError, InputError
+from camwright.pipeline.commands.arguments import help_of, option_named, read_arguments
+from camwright.pipeline.commands.command_tree import (
+    GROUPS,
+    TREE,
+    refuse_former,
+    split_path,
+    tree_text,
 )
 from camwright.pipeline.commands.output_streams import open_streams
 from camwright.pipeline.commands.terminal import (
@@ -38,7 +30,7 @@ from camwright.pipeline.commands.terminal import (
     INTERRUPTED,
     PASSED,
     say,
-    stdout,
+    show_text,
     tell,
 )
 
@@ -48,58 +40,13 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 # Pydantic would search all installed packages for plugins, and uses none here.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
-
-class _Commands(TyperGroup):
-    """The commands; the parser would end with code 1, that of FAIL, after a broken pipe."""
-
-    def invoke(self, ctx: Any) -> Any:
-        try:
-            return super().invoke(ctx)
-        except BrokenPipeError as error:  # not of the output: see `output_streams`
-            raise ResultError("a process or pipe that was written to has ended") from error
-
-
-app = typer.Typer(
-    name="camwright",
-    cls=_Commands,
-    help="Design a torque-balancing cam from the engine torque and check it.",
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
-for _command in (
-    run_command.run,
-    check_command.check,
-    check_command.schema,
-    signature_commands.keygen,
-    signature_commands.sign,
-    explain_command.explain,
-    run_command.report,
-    run_command.init,
-    smoother_command.compare,
-    size_command.size,
-    crown_command.crown,
-    design_command.design,
-    redesign_command.redesign,
-    study_command.study,
-    contact_command.contact,
-    inspect_command.inspect,
-    contact_command.deck,
-):
-    app.command()(_command)
-
 _SIGNAL = 128  # plus the number of a signal: the exit code after it
 _END = (signal.SIGTERM, signal.SIGHUP)  # beside the keyboard interrupt
 _ONCE_S = (
     2.0  # a terminal that closes sends its signal twice: the second does not stop the clean-up
 )
 _COLLECT_AFTER = 50_000  # new objects
-_RESUMED_BY = {
-    "run": "; run the command again with --resume to resume",
-    "study": "; run the command again with --resume to resume",
-    "redesign": "; run the command again to resume",
-    "design": "; run the command again to resume",
-}
+_HELP = ("--help", "-h")
 
 
 def main() -> NoReturn:
@@ -109,7 +56,7 @@ def main() -> NoReturn:
     ``nohup``, stays ignored.
     """
     open_streams()
-    arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
+    words = [word for word in sys.argv[1:] if word != "--debug"]
     received: dict[int, float] = {}
 
     def interrupt(number: int, _: object) -> None:
@@ -125,10 +72,8 @@ def main() -> NoReturn:
     # Arrays go by their counts of references; the search for cycles costs 6 % of a short command.
     gc.set_threshold(_COLLECT_AFTER)
     try:
-        code = app(args=arguments, standalone_mode=False)
-    except typer.Exit as leaving:
-        code = leaving.exit_code
-    except (KeyboardInterrupt, typer.Abort):
+        code = run_line(words)
+    except KeyboardInterrupt:
         code = INTERRUPTED
     except Exception as error:  # noqa: BLE001 - every error ends in a message and its exit code
         if "--debug" in sys.argv:
@@ -138,8 +83,8 @@ def main() -> NoReturn:
             say(line)
         say("; ".join((last, *getattr(error, "__notes__", ()))))
         code = ALTERED if isinstance(error, AlteredError) else ERROR
-    if code == INTERRUPTED:  # returned or raised by the parser
-        say("interrupted" + _RESUMED_BY.get(arguments[0] if arguments else "", ""))
+    if code == INTERRUPTED:
+        say("; ".join(filter(None, ("interrupted", _resumed(words)))))
         code = _SIGNAL + next(iter(received)) if received else INTERRUPTED
         # Python remembers an interrupt that has passed an `exec` of text, as where a dataclass is
         # made, and would end `python -m` by SIGINT whatever the code; the next one forgets it.
@@ -150,7 +95,47 @@ def main() -> NoReturn:
         say(_describe(error))
         code = ERROR
     gc.freeze()  # the interpreter would search all objects for cycles once more as it ends
-    sys.exit(code if isinstance(code, int) else PASSED)
+    sys.exit(code)
+
+
+def run_line(words: Sequence[str]) -> int:
+    """Run the command of a line, or print help, version or completion; its exit code.
+
+    Raises
+    ------
+    CamError
+        If a word is refused, or by the command.
+    """
+    if not words or words[0] in _HELP:
+        show_text(tree_text())
+        return PASSED
+    if words[0] in _ROOT:
+        _ROOT[words[0]]()
+        return PASSED
+    if words[0] in GROUPS and (len(words) == 1 or words[1] in _HELP):
+        show_text(tree_text(words[0]))
+        return PASSED
+    path, texts = split_path(words)
+    command = TREE[path].command
+    if any(text in _HELP for text in texts):
+        show_text(help_of(path, command))
+        return PASSED
+    try:
+        values = read_arguments(command, texts)
+    except InputError:
+        if path == words[0]:  # an option that is a command of its own now
+            refuse_former(words)
+        raise
+    try:
+        return command(**values)
+    except InputError as error:
+        raise option_named(error, command, texts) from error
+
+
+def _resumed(words: Sequence[str]) -> str:
+    """How the command of a line is resumed; "" where it starts anew."""
+    paths = (" ".join(words[:count]) for count in (1, 2))
+    return next((TREE[path].resumed for path in paths if path in TREE), "")
 
 
 def _described(error: Exception) -> tuple[str, ...]:
@@ -161,11 +146,8 @@ def _described(error: Exception) -> tuple[str, ...]:
 
 
 def _describe(error: Exception) -> str:
-    usage = getattr(
-        error, "format_message", None
-    )  # of the parser, whose class has no stable module
-    if usage is not None:
-        return _one_line(f"{usage()} (--help shows the usage)")
+    if isinstance(error, BrokenPipeError):  # not of the output: see `output_streams`
+        return "a process or pipe that was written to has ended"
     if isinstance(error, OSError):
         place = f"{error.filename}: " if error.filename else ""
         return _one_line(f"{place}{error.strerror or error}")
@@ -177,28 +159,29 @@ def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def _version(wanted: bool) -> None:
-    if wanted:
-        import importlib.metadata
+def _version() -> None:
+    import importlib.metadata
 
-        stdout.print(f"camwright {importlib.metadata.version('camwright')}")
-        raise typer.Exit
+    show_text(f"camwright {importlib.metadata.version('camwright')}")
 
 
-@app.callback(invoke_without_command=True)
-def _root(
-    context: typer.Context,
-    version: Annotated[  # noqa: ARG001 - evaluated by its callback
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
-    ] = False,
-    debug: Annotated[  # noqa: ARG001 - evaluated by `main`
-        bool, typer.Option("--debug", help="Show the traceback of an unexpected error.")
-    ] = False,
-) -> None:
-    """Design a torque-balancing cam from the engine torque and check it."""
-    if context.invoked_subcommand is None:
-        stdout.print(context.get_help(), markup=False)
+def _show_completion() -> None:
+    from camwright.pipeline.commands.completion import bash_script
 
+    show_text(bash_script())
+
+
+def _install_completion() -> None:
+    from camwright.pipeline.commands.completion import install
+
+    show_text(f"completion of bash: {install()}, read by the next shell")
+
+
+_ROOT = {
+    "--version": _version,
+    "--show-completion": _show_completion,
+    "--install-completion": _install_completion,
+}
 
 if __name__ == "__main__":
     main()

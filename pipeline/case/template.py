@@ -1,4 +1,4 @@
-"""First case of each kind, complete and commented, as written by `camwright init`.
+"""First case of each kind, complete and commented, as written by `camwright new`.
 
 The kinds differ at the source alone: a cylinder model, a measurement on the engine of that model,
 the torque of another machine, or a lift. The mechanism is the same.

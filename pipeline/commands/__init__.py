@@ -1,21 +1,26 @@
-"""Commands of the command line: arguments in, exit code out; `cli` registers them.
+"""Commands of the command line: arguments in, exit code out; `cli` runs them.
 
-| module                | responsibility                                          |
-| --------------------- | ------------------------------------------------------- |
-| `output_streams`      | output streams whose reader may leave before the end    |
-| `terminal`            | exit codes, output streams, progress, text of a verdict |
-| `run_command`         | `run`, `report`, `init`                                 |
-| `check_command`       | `check` of a run or the preview of a case; `schema`     |
-| `signature_commands`  | `keygen`, `sign`: signatures of the record of a run     |
-| `explain_command`     | `explain`: a key of the case file, or a check           |
-| `smoother_command`    | `compare`: smoothers ranked on a case                   |
-| `contact_command`     | `contact`, `deck`                                       |
-| `inspect_command`     | `inspect`: measured cam                                 |
-| `design_command`      | `design`: a case with all parts from a torque table     |
-| `redesign_command`    | `redesign`: search of the catalogues                    |
-| `crown_command`       | `crown`: least crown of cam or follower                 |
-| `size_command`        | `size`: keys that a case leaves open                    |
-| `study_command`       | `study`: many designs on a cluster; answers and page    |
+| module                | responsibility                                               |
+| --------------------- | ------------------------------------------------------------ |
+| `arguments`           | arguments and options from the signature of a command; help  |
+| `output_streams`      | output streams whose reader may leave before the end         |
+| `terminal`            | exit codes, output streams, progress, text of a verdict      |
+| `command_tree`        | commands by their words; the tree on a screen; former words  |
+| `completion`          | completion by bash                                           |
+| `new_command`         | `new`: a first case                                          |
+| `check_command`       | `check` of a run or the preview of a case; `design remedies` |
+| `run_command`         | `run`: a case to a run folder                                |
+| `report_command`      | `report`: page, figures and sheets of a run                  |
+| `explain_command`     | `explain`: a key, a check or a record                        |
+| `inspect_command`     | `inspect`: measured cam                                      |
+| `machine_command`     | `design machine`: a case with all parts from a torque table  |
+| `parts_command`       | `design parts`: search of the catalogues                     |
+| `sizes_command`       | `design sizes`: keys that a case leaves open                 |
+| `crown_command`       | `design crown`: crown of cam or follower                     |
+| `smoother_command`    | `design smoother`: smoothers ranked on a case                |
+| `contact_command`     | `contact cylinders`, `contact deck`                          |
+| `study_command`       | `study run`, `study report`: many designs                    |
+| `signature_commands`  | `sign key`, `sign run`: signatures of the record of a run    |
 
 Imports every other package.
 """

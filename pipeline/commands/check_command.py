@@ -1,4 +1,4 @@
-"""Commands `check`, verdict of a run or preview of a case, and `schema` of their records."""
+"""Commands `check`, verdict of a run or preview of a case, and `design remedies`."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-import typer
-
 from camwright.geometry.errors import CamError, InputError, ResultError
+from camwright.pipeline.base.verdict import FAIL_ON
+from camwright.pipeline.commands.arguments import Words
 from camwright.pipeline.commands.terminal import (
     ALTERED,
     ERROR,
@@ -17,6 +17,7 @@ from camwright.pipeline.commands.terminal import (
     FAILED,
     INCOMPLETE,
     PASSED,
+    JsonOption,
     page_of,
     progress_shown,
     say,
@@ -37,90 +38,60 @@ if TYPE_CHECKING:
     from camwright.pipeline.results.signatures import Signature
     from camwright.pipeline.results.signing_keys import TrustedKey
 
+OnlyChecks = Annotated[list[str] | None, Words('Check id or pattern such as "guide_*".', "CHECK")]
+WholeOption = Annotated[bool, Words("Print every check, also those that pass.", typed="--all")]
 SEVERITY = (PASSED, INCOMPLETE, FAILED, ALTERED, ERROR)
 """Exit codes, from the best to the worst."""
 
 
 def check(
-    targets: Annotated[
-        list[Path], typer.Argument(metavar="DIR|CASE...", help="Run folders or case files.")
-    ],
-    as_json: Annotated[bool, typer.Option("--json", help="Print the checks as JSON.")] = False,
-    junit: Annotated[
-        Path | None, typer.Option("--junit", metavar="FILE", help="Write the checks as JUnit XML.")
-    ] = None,
+    targets: Annotated[list[Path], Words("Run folders or case files.", "RUN|CASE")],
+    *,
+    as_json: JsonOption = False,
+    junit: Annotated[Path | None, Words("Write the checks as JUnit XML.")] = None,
     baseline: Annotated[
-        Path | None,
-        typer.Option(
-            "--baseline", metavar="DIR", help="Compare with the checks of an earlier run."
-        ),
+        Path | None, Words("Compare with the checks of an earlier run.", "RUN")
     ] = None,
-    only: Annotated[
-        list[str] | None, typer.Option("--only", help='Check ids or patterns such as "guide_*".')
-    ] = None,
+    only: OnlyChecks = None,
     fail_on: Annotated[
         str,
-        typer.Option(
-            "--fail-on",
-            help="Checks that decide the exit code: must (required), open (also optional ones "
-            "without data), any (also optional ones that fail), never.",
+        Words(
+            "Checks that decide the exit code: must (required), open (also optional ones without "
+            "data), any (also optional ones that fail), never; default: must.",
+            "LEVEL",
+            choices=FAIL_ON,
         ),
     ] = "must",
-    whole: Annotated[
-        bool, typer.Option("--all", help="Print every check, also those that pass.")
-    ] = False,
-    missing: Annotated[
-        bool,
-        typer.Option("--missing", help="Print only the missing data, as TOML to be pasted."),
-    ] = False,
-    remedies: Annotated[
-        bool,
-        typer.Option(
-            "--remedies",
-            help="Seek a small change of a case that cures each failed check; of a run those "
-            "recorded are printed in any event.",
-        ),
-    ] = False,
+    whole: WholeOption = False,
+    missing: Annotated[bool, Words("Print only the missing data, as TOML to be pasted.")] = False,
     verify_record: Annotated[
-        bool,
-        typer.Option(
-            "--verify-record", help="Verify the signatures of the run; every file must be signed."
-        ),
+        bool, Words("Verify the signatures of the run; every file must be signed.")
     ] = False,
     trusted: Annotated[
         Path | None,
-        typer.Option(
-            "--trusted",
-            metavar="FILE",
-            help="Public keys whose signatures are valid; default: those of this user.",
-        ),
+        Words("Public keys whose signatures are valid; default: those of this user."),
     ] = None,
     recompute: Annotated[
         bool,
-        typer.Option(
-            "--recompute",
-            help="Compute a run again from its case and lift, and compare every number and file.",
-        ),
+        Words("Compute a run again from its case and lift, and compare every number and file."),
     ] = False,
     angles: Annotated[
         int | None,
-        typer.Option(
-            "--angles",
-            help="Cam angles, drawn at random, at which --recompute solves "
-            "both bodies in full; default: 8.",
+        Words(
+            "Cam angles, drawn at random, at which --recompute solves both bodies in full; "
+            "default: 8."
         ),
     ] = None,
-    seed: Annotated[
-        int | None, typer.Option("--seed", help="Of these angles; default: drawn anew.")
-    ] = None,
+    seed: Annotated[int | None, Words("Of these angles; default: drawn anew.")] = None,
 ) -> int:
     """Print failures, missing data and verdict of a run, or of a preview of a case.
 
-    Of several runs and cases a table. A preview has a screen, no verdict.
-    Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing) or OPEN: a preview, or a
-    run below the certified depth, never passes; 4: the run is not as recorded in signoff.json, with
-    --verify-record also unsigned or signed by an untrusted key, with --recompute not what its case
-    gives. Of several the worst: error, 4, FAIL, INCOMPLETE.
+    Of several runs and cases a table. A preview has a screen, no verdict: it never passes, but is
+    open (exit code 3), as is a run below the certified depth. Exit code 4: the run is not as
+    recorded in signoff.json, with --verify-record also unsigned or signed by an untrusted key, with
+    --recompute not what its case gives. Of several the worst: error, 4, FAIL, INCOMPLETE.
+
+    Example: camwright check pump.toml
     """
     from camwright.pipeline.base.verdict import failing
 
@@ -137,11 +108,11 @@ def check(
         if record.faults or (recompute and not _recomputed(targets[0], angles, seed)):
             return ALTERED
         early = show_lines if not (as_json or missing) else _unshown
-        one = _judged(targets[0], patterns, fail_on, baseline, remedies=remedies, early=early)
+        one = _judged(targets[0], patterns, fail_on, baseline, early=early)
         one.document.update(record.entries)
         judged, signatures = [one], record.signatures or ()
     else:
-        _refuse_for_several(len(targets), remedies, baseline, missing, recompute)
+        _refuse_for_several(len(targets), baseline, missing, recompute)
         judged = [_of_several(each, patterns, fail_on, keys) for each in targets]
     if junit is not None:
         _write_junit(junit, judged)
@@ -167,16 +138,35 @@ def _require_option(option: str, stated: bool, details: Mapping[str, Path | int 
             raise InputError(name, str(value), f"stated with {option}")
 
 
-def _refuse_for_several(
-    count: int, remedies: bool, baseline: Path | None, missing: bool, recompute: bool
-) -> None:
+def remedies(
+    target: Annotated[Path, Words("Run folder or case file.", "RUN|CASE")],
+    *,
+    only: OnlyChecks = None,
+    whole: WholeOption = False,
+    as_json: JsonOption = False,
+) -> int:
+    """Seek a small change of a case that cures each failed check.
+
+    The smallest change of one key, or of two that belong together, with its side effects, proven
+    in the preview. Of a run those that it has recorded. The exit code is that of check.
+
+    Example: camwright design remedies pump.toml
+    """
+    record = _recorded(target, None)
+    if record.faults:
+        return ALTERED
+    early = _unshown if as_json else show_lines
+    judged = _judged(target, only or [], "must", None, remedies=True, early=early)
+    if as_json:
+        show_json(judged.document)
+    else:
+        _show_one(target, judged.document, (), whole)
+    return judged.code
+
+
+def _refuse_for_several(count: int, baseline: Path | None, missing: bool, recompute: bool) -> None:
     """Refuse the options that serve one run or case."""
-    options = {
-        "--remedies": remedies,
-        "--baseline": baseline,
-        "--missing": missing,
-        "--recompute": recompute,
-    }
+    options = {"--baseline": baseline, "--missing": missing, "--recompute": recompute}
     for option, value in options.items():
         if value:
             raise InputError(option, f"{count} targets", "stated with one run or case alone")
@@ -220,23 +210,6 @@ def _show_overview(judged: Sequence[_Judged]) -> None:
     from camwright.pipeline.results.check_report import overview
 
     stdout.print(overview(each.row for each in judged))
-
-
-def schema(
-    name: Annotated[
-        str,
-        typer.Argument(
-            metavar="NAME",
-            help="run, trial, checks, check (of check --json), signoff, corners, crown, size, "
-            "redesign, design, inspect, study or live.",
-        ),
-    ],
-) -> int:
-    """Print the JSON Schema of a record, or of the output of a command with --json."""
-    from camwright.pipeline.results.record_schemas import record_schema
-
-    show_json(record_schema(name))
-    return PASSED
 
 
 def _case_of(target: Path) -> Path:

@@ -1,80 +1,42 @@
-"""Commands `contact` (two cylinders) and `deck` (contact of a run for another solver)."""
+"""Commands `contact cylinders` and `contact deck`: a contact here, or for another solver."""
 
 from __future__ import annotations
 
 import math
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from camwright.geometry.errors import InputError
+from camwright.pipeline.commands.arguments import Words
 from camwright.pipeline.commands.terminal import (
     PASSED,
-    DirArgument,
+    JsonOption,
     NoCacheOption,
+    RunArgument,
     progress_shown,
     show_json,
     stdout,
     use_cache,
 )
+from camwright.pipeline.studies.finite_length_document import LengthOptions
+from camwright.pipeline.studies.two_cylinders_document import ContactOptions, lines, solved
 
 
-def contact(
-    r1: Annotated[str, typer.Option(help="Radius of body 1, mm; inf: flat, negative: concave.")],
-    r2: Annotated[str, typer.Option(help="Radius of body 2, mm.")],
-    e1: Annotated[str, typer.Option(help='Young\'s modulus of body 1, such as "210 GPa".')],
-    nu1: Annotated[float, typer.Option(help="Poisson ratio of body 1.")],
-    e2: Annotated[
-        str | None, typer.Option(help="Young's modulus of body 2; default: of body 1.")
-    ] = None,
-    nu2: Annotated[
-        float | None, typer.Option(help="Poisson ratio of body 2; default: of body 1.")
-    ] = None,
-    line_load: Annotated[str | None, typer.Option(help="Line load, N/mm.")] = None,
-    load: Annotated[str | None, typer.Option(help="Normal force, N; needs --width.")] = None,
-    width: Annotated[str | None, typer.Option(help="Width of the contact, mm.")] = None,
-    friction: Annotated[float, typer.Option(help="Friction coefficient of full sliding.")] = 0.0,
-    approach: Annotated[
-        bool, typer.Option("--approach", help="Compute the approach of the centres.")
-    ] = False,
-    depth1: Annotated[
-        str | None, typer.Option(help="Depth of the reference point in body 1, mm.")
-    ] = None,
-    depth2: Annotated[
-        str | None, typer.Option(help="Depth of the reference point in body 2, mm.")
-    ] = None,
-    length1: Annotated[str | None, typer.Option(help="Length of body 1, mm.")] = None,
-    length2: Annotated[str | None, typer.Option(help="Length of body 2, mm.")] = None,
-    end1: Annotated[
-        str | None, typer.Option(help="Ends of body 1: sharp, chamfer:0.3, radius:0.3 (mm).")
-    ] = None,
-    end2: Annotated[str | None, typer.Option(help="Ends of body 2.")] = None,
-    crown: Annotated[
-        str | None,
-        typer.Option(
-            help='johns-gohar:"200 N/mm", lundberg:"200 N/mm", iso16281, circular:500 or a '
-            "CSV file of y_mm and drop_um."
-        ),
-    ] = None,
-    tilt: Annotated[
-        str | None, typer.Option(help="Tilt of the bases, mrad; closes the gap at y > 0.")
-    ] = None,
-    moment: Annotated[
-        str | None, typer.Option(help="Moment about the middle, N mm, instead of the tilt.")
-    ] = None,
-    mean_length: Annotated[
-        str | None, typer.Option(help="Length of the mean pressure at the ends, mm; 0.1.")
-    ] = None,
+def cylinders(
+    *,
+    options: ContactOptions,
+    lengths: LengthOptions,
+    approach: Annotated[bool, Words("Compute the approach of the centres.")] = False,
     field: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE.vtu",
-            help="Write the stress of both bodies; with lengths, the pressure on the contact.",
+        Words(
+            "Write the stress of both bodies; with lengths, the pressure on the contact.",
+            "FILE.vtu",
         ),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
+    as_json: JsonOption = False,
     no_cache: NoCacheOption = False,
 ) -> int:
     """Solve the line contact of two cylinders.
@@ -82,18 +44,14 @@ def contact(
     By Hertz and by finite elements with an error bar; with lengths, the pressure along the line
     over that of plane strain, too. Quantities may have a unit, such as "12.5 mm", "210 GPa",
     "80 kN/m".
-    """
-    from camwright.pipeline.studies.finite_length_document import LengthOptions
-    from camwright.pipeline.studies.two_cylinders_document import ContactOptions, lines, solved
 
+    Example: camwright contact cylinders --r1 20 --r2 "60 mm" --e1 "210 GPa" --nu1 0.3
+    --line-load "200 N/mm"
+    """
     use_cache(not no_cache)
-    lengths = LengthOptions(length1, length2, end1, end2, crown, tilt, moment, mean_length)
-    options = ContactOptions(
-        r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2, lengths
-    )
     with progress_shown() as progress:
         progress.stage("contact")
-        document = solved(options, with_approach=approach, field=field)
+        document = solved(replace(options, lengths=lengths), with_approach=approach, field=field)
     if as_json:
         show_json(document)
     else:
@@ -103,22 +61,23 @@ def contact(
 
 
 def deck(
-    folder: DirArgument,
-    angle: Annotated[str, typer.Option(help="Cam angle, deg.")],
+    folder: RunArgument,
+    *,
+    angle: Annotated[str, Words("Cam angle, deg.", "ANGLE")],
     load_case: Annotated[
-        str | None, typer.Option("--load-case", help="Name of the load case; default: the first.")
+        str | None, Words("Name of the load case; default: the first.", "NAME")
     ] = None,
-    contact: Annotated[
-        bool, typer.Option("--contact", help="Write a contact pair, which CalculiX solves itself.")
-    ] = False,
+    contact: Annotated[bool, Words("Write a contact pair, which CalculiX solves itself.")] = False,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE.inp", help="File of the deck.")
+        Path | None, Words("File of the deck; default: in exports/ of the run.", "FILE.inp")
     ] = None,
 ) -> int:
     """Write both bodies at one cam angle as an input deck.
 
     With the contact pressure of the run as nodal forces, for CalculiX and Abaqus; with --contact
-    as a contact pair of which CalculiX finds the pressure. Exit code 4: the run is not as recorded.
+    as a contact pair of which CalculiX finds the pressure.
+
+    Example: camwright contact deck runs/pump --angle 75
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results import contact_deck as decks

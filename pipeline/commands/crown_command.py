@@ -1,79 +1,78 @@
-"""Command `crown`: the crown that keeps the axial pressure of a case within a ratio."""
+"""Command `design crown`: the crown that keeps the axial pressure of a case within a ratio."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
-from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.commands.arguments import Words
 from camwright.pipeline.commands.terminal import (
+    FAILED,
     PASSED,
     CaseArgument,
+    JsonOption,
     progress_shown,
+    say,
     show_json,
     stdout,
 )
 
-_OPTIONS = ("ratio", "on", "kind", "tolerance")
+
+@dataclass(frozen=True)
+class CrownOptions:
+    """Options of a crown, as of `cw.crown`."""
+
+    ratio: float = 1.1
+    """Greatest axial pressure over the greatest of plane strain; default: 1.1."""
+    on: str | None = None
+    """Body to crown: cam, roller or face; default: the follower."""
+    kind: str = "johns_gohar"
+    """johns_gohar, lundberg, circular, or table: relief of the ends, straight between; default:
+    johns_gohar."""
+    tolerance: str = "2 um"
+    """Tolerance of the drop at the ends, for the sensitivity; default: 2 um."""
 
 
 def crown(
     case: CaseArgument,
-    ratio: Annotated[
-        float,
-        typer.Option(help="Greatest axial pressure over the greatest of plane strain."),
-    ] = 1.1,
-    on: Annotated[
-        str | None, typer.Option(help="Body to crown: cam, roller or face; default: the follower.")
-    ] = None,
-    kind: Annotated[
-        str,
-        typer.Option(
-            help="johns-gohar, lundberg, circular, or table: relief of the ends, straight between."
-        ),
-    ] = "johns-gohar",
-    tolerance: Annotated[
-        str, typer.Option(help="Tolerance of the drop at the ends, um, for the sensitivity.")
-    ] = "2 um",
+    *,
+    options: CrownOptions,
     out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out", metavar="DIR", help="Write case text, drop table, record and picture."
-        ),
+        Path | None, Words("Folder for case text, drop table, record and picture.", "DIR")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
+    as_json: JsonOption = False,
 ) -> int:
     """Find the crown in the middle of those that keep the axial pressure within a ratio.
 
     Over all load cases and cam angles, aligned and at the greatest tilt of each. The crown is
     printed as TOML to be pasted into CASE, with its cost at the centre and in life, and with the
-    pressure at other tilts and at the tolerance of the drop. An impossible ratio is refused with
-    the least that can be reached.
+    pressure at other tilts and at the tolerance of the drop. Where no crown keeps the ratio, the
+    least that can be reached is named, with exit code 1.
+
+    Example: camwright design crown pump.toml --ratio 1.3 --kind circular --out pump_crown
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.base.files import json_text, write_atomic
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.search.crown import crown_design
     from camwright.pipeline.search.crown.crown_record import crown_lines, crown_record
+    from camwright.pipeline.search.crown.least_crown import NoCrownError
     from camwright.reports.figure_svg import png_of
 
     if out is not None and out.exists() and any(out.iterdir()):
         raise ResultError(f"{out}: exists already and is not empty, not overwritten")
-    deviation = units.parse(tolerance, "um", "--tolerance")
+    deviation = units.parse(options.tolerance, "um", "tolerance")
     try:
         with progress_shown() as progress:
             design = crown_design.crown(
-                read_case(case), ratio, on=on, kind=kind.replace("-", "_"), tolerance=deviation,
-                progress=progress,
+                read_case(case), options.ratio, on=options.on, kind=options.kind.replace("-", "_"),
+                tolerance=deviation, progress=progress,
             )  # fmt: skip
-    except InputError as error:
-        if error.field not in _OPTIONS:
-            raise
-        limit = error.limit.replace("_", "-") if error.field == "kind" else error.limit
-        value = kind if error.field == "kind" else error.value
-        raise InputError(f"--{error.field}", value, limit) from None
+    except NoCrownError as error:
+        say(str(error))
+        return FAILED
     record = crown_record(design)
     if as_json:
         show_json(record)

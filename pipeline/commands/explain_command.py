@@ -1,4 +1,4 @@
-"""Command `explain`: a key of the case file, or a check, in words."""
+"""Command `explain`: a key of the case file or a check in words, or the schema of a record."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import difflib
 from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from camwright.geometry.errors import InputError
-from camwright.pipeline.commands.terminal import PASSED, WIDTH, stdout
+from camwright.pipeline.commands.arguments import Words
+from camwright.pipeline.commands.terminal import PASSED, WIDTH, show_json, stdout
+from camwright.pipeline.results.record_schemas import NAMES, record_schema
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -23,21 +23,29 @@ CLOSEST = 6
 
 def explain(
     words: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="KEY...", help="Keys or tables of a case file, or check ids."),
+        list[str] | None, Words("Keys or tables of a case file, or checks.", "WORD")
     ] = None,
+    *,
     sources: Annotated[
-        bool,
-        typer.Option("--sources", help="List the values of the program that are to be confirmed."),
+        bool, Words("List the values of the program that are to be confirmed.")
     ] = False,
+    schema: Annotated[
+        str | None,
+        Words("Print the JSON Schema of a record alone.", "RECORD", choices=tuple(NAMES)),
+    ] = None,
 ) -> int:
     """Explain keys of the case file, such as guides.a.wall, tables such as spring, and checks.
 
     Of a key meaning, unit, range, default, example, source of the value and what uses it; of a
     check formula, limit, source, load cases and the values on which it rests.
+
+    Example: camwright explain guides.a.wall jam_index
     """
+    if schema is not None:
+        show_json(record_schema(schema))
+        return PASSED
     if not words and not sources:
-        raise InputError("KEY", "missing", "a key, a table, a check, or --sources")
+        raise InputError("WORD", "missing", "a key, a table, a check, --sources or --schema")
     texts = [_explained(word) for word in words or ()]
     texts += [_open_sources()] if sources else []
     stdout.print("\n\n".join(texts), markup=False)
@@ -65,7 +73,7 @@ def _explained(word: str) -> str:
     if not parts:
         if missing := missing_kinds("", word):
             return "\n".join(_text(f"{word}: {kind.sentence}", ()) for kind in missing)
-        raise InputError("KEY", word, f"a key or table of a case file, or a check{_closest(word)}")
+        raise InputError("WORD", word, f"a key or table of a case file, or a check{_closest(word)}")
     return "\n\n".join(parts)
 
 

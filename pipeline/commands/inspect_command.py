@@ -6,12 +6,13 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from camwright.geometry.errors import InputError
+from camwright.pipeline.commands.arguments import Words
 from camwright.pipeline.commands.terminal import (
     EXIT_CODE,
-    DirArgument,
+    JobsOption,
+    JsonOption,
+    RunArgument,
     progress_shown,
     show_json,
     stdout,
@@ -19,31 +20,26 @@ from camwright.pipeline.commands.terminal import (
 
 
 def inspect(
-    folder: DirArgument,
-    measured: Annotated[
-        Path, typer.Argument(metavar="MEASURED", help="Measured surface points or lift (CSV).")
-    ],
+    folder: RunArgument,
+    measured: Annotated[Path, Words("Measured surface points or lift (CSV).", "CSV")],
+    *,
     tolerance: Annotated[
         str | None,
-        typer.Option(help="Width of the tolerance zone, um; default: of the inspection sheet."),
+        Words("Width of the tolerance zone, um; default: of the inspection sheet.", "WIDTH"),
     ] = None,
-    keep_phase: Annotated[
-        bool, typer.Option("--keep-phase", help="Keep the measured angle to the keyway in the run.")
-    ] = False,
-    jobs: Annotated[
-        int | None, typer.Option(help="Number of processes of the certificate.")
-    ] = None,
+    keep_phase: Annotated[bool, Words("Keep the measured angle to the keyway in the run.")] = False,
+    jobs: JobsOption = None,
     out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder to write; default: inspection/ of DIR."),
+        Path | None, Words("Folder to write; default: inspection/ of the run.", "DIR")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
+    as_json: JsonOption = False,
 ) -> int:
-    """Check a measured cam against its drawing.
+    """Check a measured cam against the drawing of its run.
 
     Fits the measured points, or the surface below a measured lift, to the contour, solves the
-    measured cam and checks it. Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are
-    missing), 4: the run is not as recorded.
+    measured cam and checks it.
+
+    Example: camwright inspect runs/pump measured.csv --tolerance "20 um"
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results.drawn_cam import drawn_cam

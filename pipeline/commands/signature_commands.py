@@ -1,30 +1,32 @@
-"""Commands `keygen` and `sign`: signatures of the record of a run."""
+"""Commands `sign key` and `sign run`: signatures of the record of a run."""
 
 from __future__ import annotations
 
 import sys
+from getpass import getpass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from camwright.geometry.errors import InputError
-from camwright.pipeline.commands.terminal import ALTERED, PASSED, DirArgument, say, stdout
+from camwright.pipeline.commands.arguments import Words
+from camwright.pipeline.commands.terminal import ALTERED, PASSED, RunArgument, say, stdout
+from camwright.pipeline.results.signing_keys import ROLES
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 
-def keygen(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Private key to write.")],
-    owner: Annotated[
-        str, typer.Option("--owner", help="Owner, stated in the public key FILE.pub.")
-    ] = "",
+def key(
+    file: Annotated[Path, Words("Private key to write.", "FILE")],
+    *,
+    owner: Annotated[str, Words("Owner, stated in the public key FILE.pub.", "NAME")] = "",
 ) -> int:
     """Make an Ed25519 key: FILE (private, PEM) and FILE.pub (public, OpenSSH).
 
     The public key is added to the keys that this user trusts. Keys of ssh-keygen -t ed25519, also
     with a passphrase, and of openssl genpkey -algorithm ed25519 serve as well.
+
+    Example: camwright sign key office.pem --owner "A. Meyer"
     """
     from camwright.pipeline.results import signing_keys
 
@@ -38,17 +40,17 @@ def keygen(
 
 
 def sign(
-    folder: DirArgument,
-    key: Annotated[
-        Path, typer.Option("--key", metavar="FILE", help="Private Ed25519 key, PEM or OpenSSH.")
-    ],
-    role: Annotated[str, typer.Option("--role", help="prepared, checked or approved.")],
-    name: Annotated[str, typer.Option("--name", help="Name of the signer.")],
+    folder: RunArgument,
+    *,
+    private: Annotated[Path, Words("Private Ed25519 key, PEM or OpenSSH.", "FILE", "--key")],
+    role: Annotated[str, Words("What the signer did.", "ROLE", choices=ROLES)],
+    name: Annotated[str, Words("Name of the signer.", "NAME")],
 ) -> int:
     """Sign the record of a run in a role; the run must be as recorded.
 
-    Adds a line to signoff.intoto.jsonl and writes no other file. Exit code 0: signed, 4: the run
-    differs from its record, 2: error.
+    Adds a line to signoff.intoto.jsonl and writes no other file.
+
+    Example: camwright sign run runs/pump --key office.pem --role approved --name "A. Meyer"
     """
     from camwright.pipeline.base.progress import utc
     from camwright.pipeline.results import signatures, signoff
@@ -62,7 +64,7 @@ def sign(
         for each in differences:
             say(f"{folder / str(each)}")
         return ALTERED
-    made = signatures.sign(folder, _private_key(key), role, name, utc())
+    made = signatures.sign(folder, _private_key(private), role, name, utc())
     stdout.print(f"verdict: {read_verdict(folder)['verdict_line']}", markup=False)
     stdout.print(f"signed: {made.words}", markup=False)
     return PASSED
@@ -78,5 +80,5 @@ def _private_key(file: Path) -> Ed25519PrivateKey:
         if not sys.stdin.isatty():
             limit = "not encrypted, or signed with at a terminal, which reads its passphrase"
             raise InputError("--key", str(file), limit) from None
-    secret = typer.prompt(f"passphrase of {file}", hide_input=True, err=True)
-    return read_private_key(file, str(secret).encode())
+    secret = getpass(f"passphrase of {file}: ", stream=sys.stderr)
+    return read_private_key(file, secret.encode())

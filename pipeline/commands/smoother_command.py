@@ -1,12 +1,11 @@
-"""Command `compare`: smoothers ranked on a case."""
+"""Command `design smoother`: smoothers ranked on a case."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
+from camwright.pipeline.commands.arguments import Words
 from camwright.pipeline.commands.terminal import (
     PASSED,
     CaseArgument,
@@ -15,15 +14,18 @@ from camwright.pipeline.commands.terminal import (
 )
 
 
-def compare(
+def smoother(
     case: CaseArgument,
+    *,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder for table, figure and page.")
+        Path | None, Words("Folder for table, figure and page; default: none.", "DIR")
     ] = None,
 ) -> int:
-    """Rank the smoothers on a case by closed forms.
+    """Rank the smoothers of the lift on a case by closed forms.
 
     The recommended one first; then residual torque, contact pressure and failing checks of each.
+
+    Example: camwright design smoother pump.toml --out smoothers
     """
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.case.load_case_torque import engine_torques

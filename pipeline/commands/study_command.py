@@ -1,64 +1,59 @@
-"""Command `study`: many designs on a cluster, one dataset; answers and page of it."""
+"""Commands `study run` and `study report`: many designs, one dataset; answers and page."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from camwright.geometry.errors import InputError
-from camwright.pipeline.commands.terminal import PASSED, progress_shown, stdout
+from camwright.pipeline.commands.arguments import Words
+from camwright.pipeline.commands.terminal import (
+    PASSED,
+    JobsOption,
+    ResumeOption,
+    progress_shown,
+    stdout,
+)
+from camwright.pipeline.records.forms import DEPTHS
 
 if TYPE_CHECKING:
     from camwright.pipeline.studies.batch.study_file import Study
 
 JOBS_MAX = 256
-REPORT = "report"
 
 
-def study(
-    files: Annotated[
-        list[Path],
-        typer.Argument(
-            metavar="FILE... | report DIR",
-            help="Study file, or case files; or report and the folder of a study.",
-        ),
-    ],
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Study folder to write.")
-    ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(help="Number of processes; default: number of cores, at most 4.")
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Running Dask scheduler to use."),
-    ] = None,
+def report(folder: Annotated[Path, Words("Study folder.", "DIR")]) -> int:
+    """Write answers and page of a study folder again; nothing is solved.
+
+    Example: camwright study report runs/roller
+    """
+    stdout.print(f"page: {write_study_report(folder)}", markup=False)
+    return PASSED
+
+
+def run(
+    files: Annotated[list[Path], Words("Study file, or case files as designs.", "FILE")],
+    *,
+    out: Annotated[Path, Words("Study folder to write.", "DIR")],
+    jobs: JobsOption = None,
+    scheduler: Annotated[str | None, Words("Running Dask scheduler to use.", "ADDRESS")] = None,
     depth: Annotated[
         str | None,
-        typer.Option("--depth", help="Depth for case files; a study file states its own."),
+        Words("Depth for case files; a study file states its own.", "DEPTH", choices=DEPTHS),
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Complete the study in DIR.")] = False,
+    resume: ResumeOption = False,
 ) -> int:
     """Solve the designs of a study file, or case files as designs, into one dataset.
 
-    `camwright study report DIR` writes answers and page of a study folder again; nothing is solved.
+    Factors, sampling, depth and questions stand in the study file; the answers and their page
+    follow the dataset. Needs the extra camwright[study].
+
+    Example: camwright study run studies/roller.toml --out runs/roller
     """
-    if files[0] == Path(REPORT):
-        if len(files) != 2:
-            raise InputError("study report", len(files) - 1, "one study folder")
-        stdout.print(f"page: {write_study_report(files[1])}", markup=False)
-        return PASSED
-    if out is None:
-        raise InputError("--out", "missing", "the study folder to write")
     from camwright.pipeline.base.worker_processes import workers_for
     from camwright.pipeline.studies.batch.study_file import chosen_study
     from camwright.pipeline.studies.batch.study_run import run_study
     from camwright.pipeline.studies.batch.task_scheduler import require_address
 
-    if jobs is not None and not 1 <= jobs <= JOBS_MAX:
-        raise InputError("--jobs", jobs, f">= 1 and <= {JOBS_MAX}")
     if scheduler is not None:
         require_address(scheduler)
     chosen, text, folder = chosen_study(files, depth)

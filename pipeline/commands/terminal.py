@@ -1,26 +1,35 @@
-"""Shared parts of the commands: exit codes, streams, progress, verdict text."""
+"""Shared parts of the commands: exit codes, options, streams, progress, verdict text."""
 
 from __future__ import annotations
 
 import json
 import sys
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
-import typer
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 
 from camwright.pipeline.base.printed_text import with_escapes
 from camwright.pipeline.base.progress import Bars, Lines, Progress
+from camwright.pipeline.commands.arguments import Words
 
 if TYPE_CHECKING:
     from camwright.pipeline.results.verdict_summary import Places
 
-PASSED, FAILED, ERROR, INCOMPLETE, ALTERED, INTERRUPTED = 0, 1, 2, 3, 4, 130
+EXIT_CODES: Mapping[int, str] = {
+    0: "passes or done",
+    1: "fails, or none passes",
+    2: "error",
+    3: "data missing",
+    4: "not as recorded",
+    130: "interrupted",
+}
+"""Exit codes of all commands; after a signal 128 and its number."""
+PASSED, FAILED, ERROR, INCOMPLETE, ALTERED, INTERRUPTED = EXIT_CODES
 EXIT_CODE = {"pass": PASSED, "incomplete": INCOMPLETE, "fail": FAILED}
 """Exit code by verdict."""
 
@@ -66,9 +75,18 @@ _ON_TERMINAL = sys.stdout is not None and sys.stdout.isatty()  # None: closed
 stdout = _Output(highlight=False, soft_wrap=True, width=None if _ON_TERMINAL else WIDTH)
 stderr = _Console(stderr=True, highlight=False, soft_wrap=True)
 
-CaseArgument = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
-DirArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Run folder.")]
-NoCacheOption = Annotated[bool, typer.Option("--no-cache", help="Do not use the disk cache.")]
+CaseArgument = Annotated[Path, Words("Case file (TOML).", "CASE")]
+RunArgument = Annotated[Path, Words("Run folder.", "RUN")]
+JobsOption = Annotated[
+    int | None,
+    Words("Number of processes; default: number of cores, at most 4.", bounds=(1, 256)),
+]
+JsonOption = Annotated[bool, Words("Print the record as JSON.", typed="--json")]
+NoCacheOption = Annotated[bool, Words("Do not use the disk cache.")]
+PngOption = Annotated[bool, Words("Write the figures as PNG files as well.")]
+ResumeOption = Annotated[
+    bool, Words("Resume what was interrupted; what is solved is not solved again.")
+]
 
 
 def say(text: str) -> None:

@@ -15,23 +15,23 @@ class DesignOptions(TypedDict):
     """Options of a design, numbers in SI or text with a unit."""
 
     speed: NotRequired[Number]
-    """Speed of the shaft."""
+    """Speed of the shaft, such as "1500 rpm"; required."""
     speeds: NotRequired[str | tuple[Number, Number]]
-    """Least and greatest speed of the shaft."""
+    """Range of speeds of the shaft, such as "800..3600 rpm"; default: that speed."""
     overspeed: NotRequired[Number]
-    """Greatest speed that the parts bear."""
+    """Greatest speed that the parts bear; default: 1.2 times the greatest of these."""
     cycle: NotRequired[Number]
-    """Angle of a cycle."""
+    """Shaft angle of a cycle of the torque, such as "360 deg"; default: of the table."""
     ratio: NotRequired[Number]
-    """Shaft turns per cam turn."""
+    """Shaft turns per cam turn, 2 or "3:2"; default: one cycle per cam turn."""
     space: NotRequired[Number]
-    """From the far side of the cam to the top of the roller."""
+    """From the far side of the cam to the top of the roller at full lift; default: any."""
     life: NotRequired[Number]
-    """Life of the parts."""
+    """Life of the parts; default: "2000 h"."""
     ambient: NotRequired[Number]
-    """Temperature of the surroundings."""
+    """Temperature of the surroundings; default: "40 degC"."""
     remove: NotRequired[Number]
-    """Share of the torque ripple to remove."""
+    """Share of the torque ripple to remove; default: 50%."""
 
 
 FromTo = TypedDict(

@@ -39,7 +39,7 @@ OURS = re.compile(
 """Names of the files and folders of an unsigned run."""
 
 _BY_OTHERS = ("inspection/", "exports/")
-"""Folders of a run that `inspect` and `deck` write."""
+"""Folders of a run that `inspect` and `contact deck` write."""
 
 
 def absolute(out: Path) -> Path:
@@ -158,7 +158,7 @@ def of_the_user(run: Path) -> list[str]:
 def kept_by_nothing(out: Path) -> list[str]:
     """Recorded files that a new run in the same folder would lose: added or changed ones.
 
-    Those of `inspect` and `deck`, and those that were changed since they were recorded.
+    Those of `inspect` and `contact deck`, and those that were changed since they were recorded.
     """
     known = _hashes_of(out)
     return [

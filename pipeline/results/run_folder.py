@@ -121,7 +121,7 @@ class RunFolder:
     depth : Tier    of the run
     resume : bool   continue an interrupted run
     replace : bool  take the place of a run of an earlier version of the case as well, and of files
-                    that were changed or that `inspect` or `deck` wrote
+                    that were changed or that `inspect` or `contact deck` wrote
 
     Raises
     ------
@@ -360,7 +360,8 @@ def _refuse_other_runs(home: OwnedFolder, case: Case, *, replace: bool) -> None:
 def _refuse_to_delete(out: Path, *, replace: bool) -> None:
     """Refuse to delete a run with files that no command wrote.
 
-    Those that were changed, or that `inspect` or `deck` wrote, are deleted where it is replaced.
+    Those that were changed, or that `inspect` or `contact deck` wrote, are deleted where it is
+    replaced.
     """
     if not (out / signoff.NAME).is_file():
         reason = f"holds no {signoff.NAME}, which lists the files of a run"

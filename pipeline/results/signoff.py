@@ -37,7 +37,7 @@ COMPLETE = f"{AMENDMENT}/complete"
 """Folder of files on their way into a finished run; see `folder_exchange.staged`."""
 
 _ADDED = "was added since the sign-off"
-_BY = "`camwright report`, `inspect`, `deck` or `sign`"
+_BY = "`camwright report`, `inspect`, `contact deck` or `sign run`"
 _HALF_MOVED = f"an interrupted {_BY} has not moved all its files into place: run it again"
 _INCOMPLETE = f"belongs to {_BY}, which is running or was interrupted; run again, it removes this"
 _DRAWN = (".html", ".pdf", ".png", ".xlsx")

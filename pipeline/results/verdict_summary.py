@@ -260,11 +260,18 @@ def _listed(row: Mapping[str, Any], titles: Iterable[tuple[str, tuple[str, ...],
 
 
 def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
-    """Lines on the next step after an open screen; none otherwise."""
+    """Next step: remedies of a failure that has none, the missing data, the deeper solution."""
+    checks = records_of(within_depth(of_records(document["checks"])))
+    failed = failures(checks)
+    if failed and not any(check.get("remedy") for check in failed):
+        return [f"next: camwright design remedies {places.case}"]
     if document["screen"] != OPEN:
         return []
     if document["binding"]:
-        return ["so far no check fails; the missing data above decide what is left"]
+        lines = ["so far no check fails; the missing data above decide what is left"]
+        if missing_keys(checks):
+            lines.append(f"next: camwright check {places.case} --missing")
+        return lines
     so_far = "all is well so far: every check that a preview can judge passes"
     if document["depth"] != PREVIEW:
         so_far = f"all is well so far: every check at the depth {document['depth']} passes"

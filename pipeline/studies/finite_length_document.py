@@ -1,4 +1,4 @@
-"""Body ends, crown and tilt in `camwright contact`: from options to a document."""
+"""Body ends, crown and tilt in `contact cylinders`: from options to a document."""
 
 from __future__ import annotations
 
@@ -61,14 +61,23 @@ def quantity(text: str, unit: str, option: str) -> float:
 class LengthOptions:
     """Options of the bodies' lengths as text; numbers without unit in mm, N/mm, mrad, N mm."""
 
-    length_1: str | None = None
-    length_2: str | None = None
-    end_1: str | None = None
-    end_2: str | None = None
+    length1: str | None = None
+    """Length of body 1, mm."""
+    length2: str | None = None
+    """Length of body 2, mm."""
+    end1: str | None = None
+    """Ends of body 1: sharp, chamfer:0.3, radius:0.3 (mm)."""
+    end2: str | None = None
+    """Ends of body 2."""
     crown: str | None = None
+    """johns-gohar:"200 N/mm", lundberg:"200 N/mm", iso16281, circular:500 or a CSV file of y_mm
+    and drop_um."""
     tilt: str | None = None
+    """Tilt of the bases, mrad; closes the gap at y > 0."""
     moment: str | None = None
+    """Moment about the middle, N mm, instead of the tilt."""
     mean_length: str | None = None
+    """Length of the mean pressure at the ends, mm; default: 0.1."""
 
     @property
     def stated(self) -> bool:
@@ -105,13 +114,13 @@ class LengthOptions:
         """Lengths of both bodies, m."""
         first, second = (
             self._positive(text, "mm", option)
-            for text, option in ((self.length_1, "--length1"), (self.length_2, "--length2"))
+            for text, option in ((self.length1, "--length1"), (self.length2, "--length2"))
         )
         return first, second
 
     def ends(self) -> tuple[BodyEnd, BodyEnd]:
         """Ends of both bodies."""
-        return self._end(self.end_1, "--end1"), self._end(self.end_2, "--end2")
+        return self._end(self.end1, "--end1"), self._end(self.end2, "--end2")
 
     def contact_length(self) -> float:
         """Length on which both bodies are without ends, m."""

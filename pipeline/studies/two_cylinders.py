@@ -273,13 +273,13 @@ def approach(pair: TwoCylinders, depths: tuple[float | None, float | None]) -> f
         unit = pair.line_load / (np.pi * body.plane_strain_modulus)
         if depth is not None:
             if not depth > half_width:
-                raise InputError(f"depth_{number}", depth, "> the half-width")
+                raise InputError(f"depth{number}", depth, "> the half-width")
             nu = body.poisson
             total += unit * (2 * np.log(2 * depth / half_width) - nu / (1 - nu))
         elif 0 < radius < np.inf:
             total += unit * (2 * np.log(4 * radius / half_width) - 1)
         else:
-            raise InputError(f"depth_{number}", "missing", "specified for a flat or concave body")
+            raise InputError(f"depth{number}", "missing", "specified for a flat or concave body")
     return float(total)
 
 

@@ -1,4 +1,4 @@
-"""Command `camwright contact`: line contact of two cylinders, from options to a document."""
+"""Command `contact cylinders`: line contact of two cylinders, from options to a document."""
 
 from __future__ import annotations
 
@@ -56,17 +56,29 @@ class ContactOptions:
     unit of a modulus is plausible."""
 
     r1: str
+    """Radius of body 1, mm; inf: flat, negative: concave."""
     r2: str
+    """Radius of body 2, mm."""
     e1: str
-    e2: str | None
+    """Young's modulus of body 1, such as "210 GPa"."""
     nu1: float
-    nu2: float | None
+    """Poisson ratio of body 1."""
+    e2: str | None = None
+    """Young's modulus of body 2; default: of body 1."""
+    nu2: float | None = None
+    """Poisson ratio of body 2; default: of body 1."""
     line_load: str | None = None
+    """Line load, N/mm."""
     load: str | None = None
+    """Normal force, N; needs --width, or --length1 and --length2."""
     width: str | None = None
+    """Width of the contact, mm."""
     friction: float = 0.0
-    depth_1: str | None = None
-    depth_2: str | None = None
+    """Friction coefficient of full sliding; default: 0."""
+    depth1: str | None = None
+    """Depth of the reference point in body 1, mm."""
+    depth2: str | None = None
+    """Depth of the reference point in body 2, mm."""
     lengths: LengthOptions = dataclasses.field(default_factory=LengthOptions)
 
     def pair(self) -> TwoCylinders:
@@ -103,7 +115,7 @@ class ContactOptions:
         """Depths of the reference points of the approach, m; None: the centre."""
         first, second = (
             None if text is None else quantity(text, "mm", name)
-            for text, name in ((self.depth_1, "--depth1"), (self.depth_2, "--depth2"))
+            for text, name in ((self.depth1, "--depth1"), (self.depth2, "--depth2"))
         )
         return first, second
 

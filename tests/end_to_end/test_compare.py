@@ -1,4 +1,4 @@
-"""`camwright compare`: every smoother on one case."""
+"""`camwright design smoother`: every smoother on one case."""
 
 import csv
 import subprocess
@@ -53,7 +53,7 @@ def one_at_a_time(folder):
 @pytest.mark.parametrize("case", [one_at_a_time, pytest.param(whole, marks=pytest.mark.slow)])
 def test_compare_tabulates_and_draws(tmp_path, case):
     done = subprocess.run(
-        [sys.executable, "-m", "camwright", "compare", str(case(tmp_path)),
+        [sys.executable, "-m", "camwright", "design", "smoother", str(case(tmp_path)),
          "--out", str(tmp_path)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip

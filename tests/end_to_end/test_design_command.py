@@ -1,4 +1,4 @@
-"""`camwright design`: torque tables to cases that pass, or to a relaxation that does, as printed.
+"""`camwright design machine`: tables to cases that pass, or a relaxation that does, as printed.
 
 The tables are of six machines that the search was not tuned on, see `torque_tables`. Each is
 designed once; a run by finite elements is without page and stress fields, on which no verdict
@@ -19,7 +19,8 @@ from torque_tables import MACHINES, write_table
 
 from camwright.pipeline.base.progress import SILENT
 from camwright.pipeline.base.worker_processes import crew
-from camwright.pipeline.commands.design_command import design
+from camwright.pipeline.cli import run_line
+from camwright.pipeline.commands.machine_command import machine
 from camwright.pipeline.commands.run_command import run
 from camwright.pipeline.commands.terminal import EXIT_CODE, FAILED, PASSED
 from camwright.pipeline.results.run_folder import versions
@@ -42,7 +43,7 @@ def designed(tmp_path_factory: pytest.TempPathFactory) -> Designed:
         if name not in known:
             out = folder / f"{name}.toml"
             table = write_table(folder, name)
-            known[name] = design(table, MACHINES[name].speed, out), out
+            known[name] = machine(table, options={"speed": MACHINES[name].speed}, out=out), out
         return known[name]
 
     return made
@@ -57,19 +58,16 @@ def record_of(out: Path) -> dict[str, Any]:
 
 def passes_by_finite_elements(case: Path) -> bool:
     folder = case.parent / "runs" / case.stem
-    run(case, folder, no_report=True, fields="none", replace=folder.exists())
+    run(case, out=folder, no_report=True, fields="none", replace=folder.exists())
     return EXIT_CODE[read_verdict(folder)["verdict"]] == PASSED
 
 
 def passes_as_printed(command: str) -> bool:
     """Whether a command line of `design` finds a case, and that passes by finite elements."""
     words = shlex.split(command)
-    assert words[:2] == ["camwright", "design"]
-    options = {name[2:]: text for name, text in zip(words[3::2], words[4::2], strict=True)}
-    speed, out = options.pop("speed"), Path(options.pop("out"))
-    return design(Path(words[2]), speed, out, **options) == PASSED and passes_by_finite_elements(
-        out
-    )
+    assert words[:3] == ["camwright", "design", "machine"]
+    out = Path(words[-1])
+    return run_line(words[1:]) == PASSED and passes_by_finite_elements(out)
 
 
 def passes_by_closed_forms(out: Path, name: str, options: dict[str, str]) -> bool:
@@ -124,14 +122,17 @@ def test_a_pump_passes_by_finite_elements(designed: Designed) -> None:
     assert (folder / "design.png").read_bytes().startswith(b"\x89PNG")
     assert 'overspeed = { text = "assumed' in text
     table, speed = out.with_suffix(".csv"), MACHINES["pump"].speed
-    assert design(table, speed, out, run=True) == PASSED  # from the cached points
+    assert (
+        machine(table, options={"speed": speed}, out=out, and_run=True) == PASSED
+    )  # from the cached points
     assert record_of(out) == document
     assert out.read_text(encoding="utf-8") == text
 
 
 def test_too_small_a_space_names_one_that_passes(tmp_path: Path) -> None:
     table, out = write_table(tmp_path, "pump"), tmp_path / "small.toml"
-    assert design(table, MACHINES["pump"].speed, out, space="70 mm") == FAILED
+    options = {"speed": MACHINES["pump"].speed, "space": "70 mm"}
+    assert machine(table, options=options, out=out) == FAILED
     relaxations = record_of(out)["conflict"]["relaxations"]
     wider = next(each for each in relaxations if each["option"] == "--space")
     assert passes_as_printed(wider["command"])

@@ -11,7 +11,7 @@ from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.template import KINDS
 from camwright.pipeline.commands.check_command import check
-from camwright.pipeline.commands.run_command import init
+from camwright.pipeline.commands.new_command import new
 from camwright.pipeline.commands.terminal import INCOMPLETE, PASSED
 from camwright.pipeline.results.run_reader import read_run
 from camwright.pipeline.run import run_case
@@ -25,7 +25,7 @@ PREVIEWED = ("torque", "harmonics", "compressor", "pump")
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in PREVIEWED])
 def test_a_first_case_passes(tmp_path, monkeypatch, kind):
     monkeypatch.chdir(tmp_path)
-    assert init("first", kind) == PASSED
+    assert new("first", kind=kind) == PASSED
     run_case(read_case(Path("first.toml")), Path("run"), progress=Silent())
     run = read_run(Path("run"))
     assert run.verdict == "pass"
@@ -43,7 +43,7 @@ def test_without_a_datum_it_is_incomplete_until_the_printed_block_is_pasted(
     tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
-    assert init("first", "eccentric") == PASSED
+    assert new("first", kind="eccentric") == PASSED
     path = tmp_path / "first.toml"
     text, count = re.subn(r"^roller_life = .*\n", "", path.read_text(), flags=re.MULTILINE)
     assert count == 1

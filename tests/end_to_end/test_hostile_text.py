@@ -173,10 +173,13 @@ def test_no_name_of_a_file_steers_the_terminal(
     absent = folder / "absent"
     for words in (
         ["check", absent], ["check", folder / "case.toml"], ["check", folder], ["run", absent],
-        ["report", folder], ["sign", folder], ["inspect", folder, table], ["deck", folder],
-        ["size", absent], ["study", absent], ["redesign", absent], ["crown", absent],
-        ["design", table, "--speed", "100 rpm", "--out", folder / "made.toml"],
-        ["keygen", keys], ["keygen", keys], [name], ["check", f"--{name}"],
+        ["report", folder], ["sign", folder], ["sign", "run", folder],
+        ["inspect", folder, table], ["contact", "deck", folder], ["deck", folder],
+        ["design", "sizes", absent], ["study", "run", absent, "--out", absent],
+        ["design", "parts", absent], ["design", "crown", absent], ["size", absent],
+        ["design", "machine", table, "--speed", "100 rpm", "--out", folder / "made.toml"],
+        ["sign", "key", keys], ["sign", "key", keys], [name], ["design", name],
+        ["check", f"--{name}"], ["check", absent, absent, "--seed", name],
     ):  # fmt: skip
         _, out, err = command(*words)
         assert out or err, words
@@ -190,12 +193,12 @@ def test_no_line_of_a_data_file_or_study_steers_the_terminal(
     for header, row in ((f"{RAW}a,{RAW}b", "1,2"), ("crank_angle_deg,torque_Nm", f"1,2{RAW}")):
         table.write_text(f"{header}\n{row}\n" * 2, encoding="utf-8")
         code, out, err = command(
-            "design", table, "--speed", "100 rpm", "--out", tmp_path / "made.toml"
+            "design", "machine", table, "--speed", "100 rpm", "--out", tmp_path / "made.toml"
         )
         assert code == 2
         assert_steers_nothing(out, err)
     study.write_text(f"{json.dumps(WRITTEN)} = 1\n", encoding="utf-8")
-    code, out, err = command("study", study)
+    code, out, err = command("study", "run", study, "--out", tmp_path / "out")
     assert code == 2
     assert_steers_nothing(out, err)
 

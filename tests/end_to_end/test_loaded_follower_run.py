@@ -68,7 +68,7 @@ def test_a_run_is_judged_by_the_checks_of_its_spring(
 ) -> None:
     """Of all three only the checks of the spring at hand; the page shows its force."""
     folder = tmp_path / "run"
-    assert run(case_on(tmp_path, spring, load), folder, jobs=1) == PASSED
+    assert run(case_on(tmp_path, spring, load), out=folder, jobs=1) == PASSED
     verdict = json.loads((folder / "run.json").read_text(encoding="utf-8"))["verdict"]
     assert verdict == ("fail" if failing else "pass")
     records = json.loads((folder / "trial_1" / "6_checks.json").read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""`camwright redesign`: a front of cases that are what it says of them, kept and used again."""
+"""`camwright design parts`: a front of cases that are what it says of them, kept and used again."""
 
 import json
 import subprocess
@@ -21,7 +21,7 @@ from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.cards.substitution import Choice
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.case_writer import to_toml
-from camwright.pipeline.commands.redesign_command import redesign
+from camwright.pipeline.commands.parts_command import parts
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.search.parts import part_search, redesign_study
 from camwright.reports.comparisons import redesign_page as page
@@ -156,7 +156,7 @@ def test_without_a_result_limit_and_way_are_named_and_no_file_is(
     assert text.count('cam_radius = "90 mm"') == 1
     path = tmp_path / "tight.toml"
     path.write_text(text.replace('cam_radius = "90 mm"', 'cam_radius = "48 mm"'), encoding="utf-8")
-    code = redesign(path, tmp_path / "out", "size", 1, as_json=False)
+    code = parts(path, out=tmp_path / "out", jobs=1)
     shown = capsys.readouterr().out
     assert code == 1
     assert "no choice of the catalogues keeps all limits" in shown
@@ -192,7 +192,7 @@ def test_a_judgement_of_a_worker_is_that_of_this_process(done, case_file, tmp_pa
 
 def test_the_next_command_names_case_and_run_folder(done, case_file, capsys):
     out, document = done
-    redesign(case_file, out, "size", 1, as_json=False)
+    parts(case_file, out=out, jobs=1)
     shown = " ".join(capsys.readouterr().out.split())
     first = document["points"][0]["file"]
     command = f"next: camwright run {out / first} --out runs/{Path(first).stem}"
@@ -278,7 +278,7 @@ def test_refuses_what_cannot_be_redesigned(case_file, tmp_path):
 def test_an_error_is_one_line(tmp_path):
     case = str(CASES / "gx120.toml")
     done = subprocess.run(
-        [sys.executable, "-m", "camwright", "redesign", case, "--jobs", "0"],
+        [sys.executable, "-m", "camwright", "design", "parts", case, "--jobs", "0"],
         capture_output=True, text=True, check=False, cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 2

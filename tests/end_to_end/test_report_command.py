@@ -17,7 +17,7 @@ import pytest
 import report_fixture
 
 from camwright.geometry.errors import AlteredError, InputError, ResultError
-from camwright.pipeline.cli import PASSED, app
+from camwright.pipeline.cli import PASSED, run_line
 from camwright.pipeline.results import signoff
 from camwright.reports import documents, figure_svg, page, sections
 from camwright.reports import pdf as printing
@@ -85,7 +85,7 @@ def test_a_run_whose_case_was_edited_is_not_drawn_again(run: Path) -> None:
 
 
 def report(*arguments: object) -> object:
-    return app(args=["report", *map(str, arguments)], standalone_mode=False)
+    return run_line(["report", *map(str, arguments)])
 
 
 def test_a_report_that_fails_leaves_the_run_as_it_was(

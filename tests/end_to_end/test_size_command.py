@@ -1,4 +1,4 @@
-"""`camwright size`: complete cases that keep the limits by which they are sized."""
+"""`camwright design sizes`: complete cases that keep the limits by which they are sized."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from camwright.pipeline.case.case import Case as ReadCase
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.given_lift import given_lift, motion_of
 from camwright.pipeline.case.template import first_case
-from camwright.pipeline.commands.size_command import size
+from camwright.pipeline.commands.sizes_command import sizes
 from camwright.pipeline.commands.terminal import INCOMPLETE, PASSED
 from camwright.pipeline.search.sizes.open_case import GAPS, OpenCase, parse_open_case
 from camwright.pipeline.search.sizes.shapes import RollerShapes, shapes_of
@@ -117,7 +117,7 @@ def test_published_size_of_a_flat_face(law: str, base: float, width: float) -> N
 def test_a_steep_cam_is_sized_whole(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, out = tmp_path / "open.toml", tmp_path / "sized.toml"
     path.write_text("# kept\n" + tomli_w.dumps(steep()), encoding="utf-8")
-    assert size(path, None, "0 mm", out, None, as_json=False) == PASSED
+    assert sizes(path, out=out) == PASSED
     shown = capsys.readouterr().out
     assert "spring: " in shown and "active coils" in shown and f"case: {out}" in shown
     assert out.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
@@ -132,7 +132,7 @@ def test_a_steep_cam_is_sized_whole(tmp_path: Path, capsys: pytest.CaptureFixtur
         assert checks[name].status == "pass", name
     assert checks["curvature_ratio"].utilisation == pytest.approx(1.0, abs=1e-3)
     with pytest.raises(ResultError, match="exists already"):
-        size(path, None, "0 mm", out, None, as_json=False)
+        sizes(path, out=out)
 
 
 @pytest.mark.slow
@@ -185,10 +185,10 @@ def test_a_flat_face_is_sized(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     source = tmp_path / "face.toml"
     source.write_text(tomli_w.dumps(case), encoding="utf-8")
     free, chart = ["cam.prime_radius", "follower.face.width"], tmp_path / "face.svg"
-    code = size(CASES / "papers" / "petrescu_c.toml", free, "0 mm", None, None, as_json=False)
+    code = sizes(CASES / "papers" / "petrescu_c.toml", free=free)
     assert code == INCOMPLETE
     assert "the case lacks\n  limits.target_life, follower.face.end" in capsys.readouterr().out
-    assert size(source, free, "0 mm", None, chart, as_json=True) == PASSED
+    assert sizes(source, free=free, chart=chart, as_json=True) == PASSED
     record = json.loads(capsys.readouterr().out)
     assert schema_errors("size", record) == []
     assert record["smallest"]["undercut_factor_min"] == pytest.approx(0.3, abs=1e-9)
@@ -238,7 +238,7 @@ def test_refuses_a_constrained_synthesis() -> None:
 
 def test_refuses_a_picture_of_another_kind(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--chart"):
-        size(CASES / "gx120.toml", None, "0 mm", None, tmp_path / "chart.jpg", as_json=False)
+        sizes(CASES / "gx120.toml", chart=tmp_path / "chart.jpg")
 
 
 def test_a_roller_that_no_cam_carries() -> None:

@@ -1,4 +1,4 @@
-"""`camwright study`: the same bytes whatever the processes, after kills, on a running cluster."""
+"""`camwright study run`: the same bytes by any processes, after kills, on a running cluster."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from record_validation import schema_errors
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import file_hashes
-from camwright.pipeline.cli import app
+from camwright.pipeline.cli import run_line
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_reader import read_run, read_verdict
 from camwright.pipeline.studies.batch import study_run
@@ -59,7 +59,7 @@ count = {count}
 
 
 def command(*arguments: str) -> list[str]:
-    return [sys.executable, "-m", "camwright", "study", *arguments]
+    return [sys.executable, "-m", "camwright", "study", "run", *arguments]
 
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -341,9 +341,8 @@ def test_a_lost_scheduler_is_one_line_and_resumed(folder: Path, address: str) ->
 )  # fmt: skip
 def test_text_that_is_no_address_is_refused(tmp_path: Path, address: str) -> None:
     with pytest.raises(InputError, match=r"--scheduler = .*must be tcp://HOST:PORT") as refused:
-        app(
-            args=["study", "none.toml", "--out", str(tmp_path / "out"), "--scheduler", address],
-            standalone_mode=False,
+        run_line(
+            ["study", "run", "none.toml", "--out", str(tmp_path / "out"), "--scheduler", address]
         )
     assert len(str(refused.value)) < 200 and "\n" not in str(refused.value)
     assert not (tmp_path / "out").exists()
@@ -361,7 +360,7 @@ def test_a_refused_study_writes_nothing(
     before = sorted(tmp_path.rglob("*"))
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError, match="case") as refused:
-        app(args=["study", "study.toml", "--out", out], standalone_mode=False)
+        run_line(["study", "run", "study.toml", "--out", out])
     assert "root" not in str(refused.value)
     assert sorted(tmp_path.rglob("*")) == before
 
@@ -417,7 +416,7 @@ def test_a_file_in_the_way_is_refused(tmp_path: Path, monkeypatch: pytest.Monkey
     (tmp_path / "file").write_text("mine")
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ResultError, match="file: is not a folder"):
-        app(args=["study", "study.toml", "--out", "file"], standalone_mode=False)
+        run_line(["study", "run", "study.toml", "--out", "file"])
     assert (tmp_path / "file").read_text() == "mine"
 
 

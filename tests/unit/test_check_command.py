@@ -349,8 +349,8 @@ def test_what_binds_is_told_apart_from_what_nobody_can_judge():
 
 
 def test_remedies_are_those_of_one_case(command: Command, tmp_path: Path) -> None:
-    code, _, err = command("check", tmp_path / "a.toml", tmp_path / "b.toml", "--remedies")
-    assert code == 2 and "--remedies = 2 targets, must be stated with one run or case alone" in err
+    code, _, err = command("check", tmp_path / "a.toml", tmp_path / "b.toml", "--missing")
+    assert code == 2 and "--missing = 2 targets, must be stated with one run or case alone" in err
 
 
 def test_recorded_remedies_of_a_run_are_printed(command: Command, tmp_path: Path) -> None:

@@ -199,7 +199,7 @@ def test_replace_takes_an_earlier_version_of_the_case_only(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "Missing"),
+        ((), "--out = missing"),
         (("--out", "run", "--positions", "3"), "solver.positions = 3, must be >= 36"),
         (("--out", "run", "--positions", "x"), "--positions"),
         (("--out", "run", "--jobs", "0"), "--jobs = 0, must be >= 1 and <= 256"),
@@ -293,7 +293,7 @@ def test_a_signal_while_a_dataclass_is_made_has_the_same_code(tmp_path: Path) ->
         "from camwright.pipeline import cli\n"
         "def invoke(*_):\n"
         "    exec('import os, signal; os.kill(os.getpid(), signal.SIGTERM)')\n"
-        "cli._Commands.invoke = invoke\n"
+        "cli.run_line = invoke\n"
         "sys.argv = ['camwright', 'explain', 'spring']\n"
         "cli.main()\n"
     )
@@ -371,7 +371,7 @@ def test_init_writes_case_and_data_and_names_the_next_command(
     ):
         for file in tmp_path.iterdir():
             file.unlink()
-        code, text, _ = command("init", "first.toml", "--kind", kind)
+        code, text, _ = command("new", "first.toml", "--kind", kind)
         assert code == 0
         assert sorted(file.name for file in tmp_path.iterdir()) == files
         wrote, after = text.splitlines()
@@ -386,7 +386,7 @@ def test_init_does_not_overwrite(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / file).write_text("as it was")
-    code, _, err = command("init", "first", "--kind", "table")
+    code, _, err = command("new", "first", "--kind", "table")
     assert code == 2
     assert is_one_line(err) and file in err
     assert [each.name for each in tmp_path.iterdir()] == [file]
@@ -400,12 +400,12 @@ def test_init_does_not_overwrite(
         (("first", "--kind", "guess"), "--kind = guess, must be one of: cylinder, table"),
     ],
 )
-def test_init_refuses(
+def test_new_refuses(
     arguments: tuple[str, ...], message: str,
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command,
 ) -> None:  # fmt: skip
     monkeypatch.chdir(tmp_path)
-    code, _, err = command("init", *arguments)
+    code, _, err = command("new", *arguments)
     assert code == 2
     assert is_one_line(err) and message in err
     assert not [*tmp_path.iterdir(), *tmp_path.parent.glob("other*")]
@@ -495,11 +495,11 @@ def test_redesign_exits_by_its_points(
     document["without_result"] = None
     monkeypatch.setattr(redesign_study, "redesign", lambda *_: document)
     monkeypatch.setattr(redesign_page, "write", lambda *_: Path("page.html"))
-    found, out, _ = command("redesign", case_file)
+    found, out, _ = command("design", "parts", case_file)
     assert found == code
     assert ("missing data of these points: shaft" in out) == (code == 3)
     document |= {"points": [], "without_result": {"lines": ["excluded most by cam_radius"]}}
-    code, out, _ = command("redesign", case_file)
+    code, out, _ = command("design", "parts", case_file)
     assert code == 1
     assert "excluded most by cam_radius" in out
 

@@ -24,7 +24,7 @@ REFUSED = (
 COMMANDS = {
     "check": ("check", "const.toml"),
     "run": ("run", "const.toml", "--out", "run", "--depth", "preview"),
-    "redesign": ("redesign", "const.toml", "--out", "redesigned.toml"),
+    "parts": ("design", "parts", "const.toml", "--out", "redesigned.toml"),
 }
 
 
@@ -79,7 +79,9 @@ def _round(folder):
 
 
 def test_a_design_from_its_table_is_refused_by_its_column(folder, command):
-    code, _, errors = command("design", "d.csv", "--speed", "1500 rpm", "--out", "case.toml")
+    code, _, errors = command(
+        "design", "machine", "d.csv", "--speed", "1500 rpm", "--out", "case.toml"
+    )
     assert code == 2
     assert "d.csv, torque_Nm = constant, 5 N m, must be a torque that varies" in errors
 

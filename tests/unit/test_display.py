@@ -289,7 +289,7 @@ def test_keys_of_a_case_in_a_data_frame(made: SimpleNamespace) -> None:
 
 @pytest.mark.slow
 def test_a_sizing(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "camwright", "init", "feed", "--kind", "lift"]
+    command = [sys.executable, "-m", "camwright", "new", "feed", "--kind", "lift"]
     subprocess.run(command, cwd=tmp_path, check=True)
     sizing = cw.size(tmp_path / "feed.toml", ["cam.prime_radius", "cam.offset"])
     assert f"verdict={sizing.verdict}, cam.prime_radius=" in repr(sizing)

@@ -67,7 +67,7 @@ def test_a_table_lists_its_keys_and_tables(capsys):
      ("limits.overspeeed", "limits.overspeed")],
 )  # fmt: skip
 def test_a_misspelt_word_is_refused_with_the_closest(word, closest):
-    with pytest.raises(InputError, match=f"KEY = {word}, must be .*did you mean .*{closest}"):
+    with pytest.raises(InputError, match=f"WORD = {word}, must be .*did you mean .*{closest}"):
         explain([word])
 
 
@@ -118,7 +118,7 @@ def test_keys_and_sources_are_explained_together(capsys):
 
 
 def test_nothing_to_explain_is_refused():
-    with pytest.raises(InputError, match="a key, a table, a check, or --sources"):
+    with pytest.raises(InputError, match="a key, a table, a check, --sources or --schema"):
         explain()
 
 

@@ -28,8 +28,8 @@ Command = Callable[..., tuple[int, str, str]]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 OPTIONAL = {"cvxopt", "pypardiso"}
 """Libraries that make the program faster, and without which it does the same."""
-REQUIRED_BY_THEM = {"vtkmodules", "click", "PIL", "pydantic_core", "markupsafe"}
-"""Modules of what pyvista, typer, matplotlib, pydantic and jinja2 require."""
+REQUIRED_BY_THEM = {"vtkmodules", "PIL", "pydantic_core", "markupsafe"}
+"""Modules of what pyvista, matplotlib, pydantic and jinja2 require."""
 INSTALLED_AS = {
     "scikit-fem": "skfem",
     "scikit_fem": "skfem",
@@ -82,10 +82,10 @@ def test_a_study_names_its_extra(
     monkeypatch.chdir(ROOT)
     out = tmp_path / "out"
     for arguments in (
-        ("studies/roller.toml", "--out", out),
-        ("studies/roller.toml", "--out", out, "--resume"),
-        ("studies/roller.toml", "--out", out, "--scheduler", "127.0.0.1:8786"),
-        ("cases/gx120.toml", "--out", out),
+        ("run", "studies/roller.toml", "--out", out),
+        ("run", "studies/roller.toml", "--out", out, "--resume"),
+        ("run", "studies/roller.toml", "--out", out, "--scheduler", "127.0.0.1:8786"),
+        ("run", "cases/gx120.toml", "--out", out),
         ("report", out),
     ):
         code, text, errors = command("study", *arguments)
@@ -165,9 +165,9 @@ def test_a_plain_installation_of_the_wheel(tmp_path: Path) -> None:
         )  # fmt: skip
         return done.returncode, done.stderr
 
-    code, errors = said("study", "studies/roller.toml", "--out", "out")
+    code, errors = said("study", "run", "studies/roller.toml", "--out", "out")
     assert code == 2 and STUDY in errors
-    assert said("init", "demo", "--kind", "eccentric")[0] == 0
+    assert said("new", "demo", "--kind", "eccentric")[0] == 0
     assert said("check", "demo.toml")[0] == 3
     code, errors = said("run", "demo.toml", "--out", "run", "--depth", "cycle", "--positions", "36")
     assert code == 0, errors

@@ -1,4 +1,4 @@
-"""`camwright contact` with lengths: options, document, text, field; both tiers at coarse cells."""
+"""`contact cylinders` with lengths: options, document, text, field; both tiers at coarse cells."""
 
 from functools import partial
 
@@ -18,11 +18,11 @@ FACTORS = ("centre", "greatest", "end1_mean", "end2_mean")
 
 
 def options(line_load="200", load=None, width=None, depths=("2", "2"), **lengths):
-    both = {"length_1": "2", "length_2": "2"} | lengths
+    both = {"length1": "2", "length2": "2"} | lengths
     return ContactOptions(
-        *("8", "20", "210 GPa", None, 0.3, None, line_load, load, width),
-        depth_1=depths[0],
-        depth_2=depths[1],
+        *("8", "20", "210 GPa", 0.3, None, None, line_load, load, width),
+        depth1=depths[0],
+        depth2=depths[1],
         lengths=LengthOptions(**both),
     )
 
@@ -65,7 +65,7 @@ def test_document_text_and_field_of_a_tilted_contact(coarse, tmp_path):
 
 
 def test_a_force_is_that_of_the_whole_contact(coarse):
-    by_load = solved(options(line_load=None, load="400", end_1="chamfer:0.2"))
+    by_load = solved(options(line_load=None, load="400", end1="chamfer:0.2"))
     assert by_load["line_load_N_per_mm"] == pytest.approx(250.0)
     record = by_load["finite_length"][1]
     assert record["greatest_is_singular"]
@@ -75,7 +75,7 @@ def test_a_force_is_that_of_the_whole_contact(coarse):
 
 
 def test_a_rounded_end_has_a_bounded_peak(coarse):
-    finite = options(end_1="radius:0.1").lengths.finite_pair(options().pair(), (2e-3, 2e-3))
+    finite = options(end1="radius:0.1").lengths.finite_pair(options().pair(), (2e-3, 2e-3))
     assert not finite.has_singular_end
     assert finite.contact_length == pytest.approx(1.8e-3)
     beyond = np.array([0.0, 0.9e-3, 0.95e-3, 1.0e-3])
@@ -125,13 +125,13 @@ def test_table_of_drop(tmp_path):
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ({"length_2": None}, "--length2 = missing"),
-        ({"length_1": "-3"}, "--length1 = -3"),
-        ({"length_1": "nan"}, "--length1"),
-        ({"end_1": "round"}, "--end1 = round"),
-        ({"end_1": "chamfer"}, "--end1 = chamfer,"),
-        ({"end_2": "chamfer:1"}, "--end2 = 1 mm"),
-        ({"end_2": "radius:x"}, "--end2 = x"),
+        ({"length2": None}, "--length2 = missing"),
+        ({"length1": "-3"}, "--length1 = -3"),
+        ({"length1": "nan"}, "--length1"),
+        ({"end1": "round"}, "--end1 = round"),
+        ({"end1": "chamfer"}, "--end1 = chamfer,"),
+        ({"end2": "chamfer:1"}, "--end2 = 1 mm"),
+        ({"end2": "radius:x"}, "--end2 = x"),
         ({"crown": "cube"}, "--crown = cube"),
         ({"crown": "circular:0"}, "--crown = 0"),
         ({"crown": "circular:0.9"}, "--crown: crown.radius"),

@@ -13,7 +13,7 @@ from camwright.pipeline.base.tables import Table
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.checks.solution_verification import RESIDUALS
-from camwright.pipeline.commands.run_command import report
+from camwright.pipeline.commands.report_command import report
 from camwright.pipeline.commands.terminal import FAILED, PASSED
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.hand_check.hand_sheet import Sheet, SheetRun

@@ -253,8 +253,8 @@ def test_a_finished_run_is_whole_after_a_kill_before_every_change(
         if code == ALTERED:
             half += 1
             assert errors.splitlines() == [
-                f"camwright: {out}/.amendment: an interrupted `camwright report`, `inspect`, `deck`"
-                " or `sign` has not moved all its files into place: run it again"
+                f"camwright: {out}/.amendment: an interrupted `camwright report`, `inspect`, "
+                "`contact deck` or `sign run` has not moved all its files into place: run it again"
             ]
         else:
             assert code == PASSED
@@ -365,9 +365,9 @@ method = "grid"
         "run case.toml --depth preview --out disk/new",
         pytest.param("run case.toml --out disk/run --replace", marks=pytest.mark.slow),
         "report disk/run",
-        "deck disk/run --angle 10",
-        "sign disk/run --key key --role checked --name A",
-        "study study.toml --jobs 1 --out disk/study",
+        "contact deck disk/run --angle 10",
+        "sign run disk/run --key key --role checked --name A",
+        "study run study.toml --jobs 1 --out disk/study",
         "check disk/run",
     ],
 )

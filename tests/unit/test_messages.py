@@ -202,16 +202,18 @@ def test_an_undercut_is_called_so() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ("contact --r1 -5 --r2 8",
+        ("contact cylinders --r1 -5 --r2 8",
          "--r1 = -5 mm, must be < -8 mm: concave and wider than --r2 = 8 mm"),
-        ("contact --r1 10 --r2 -0.8cm",
+        ("contact cylinders --r1 10 --r2 -0.8cm",
          "--r2 = -0.8cm, must be < -10 mm: concave and wider than --r1 = 10 mm"),
-        ("contact --r1 -5 --r2 inf",
+        ("contact cylinders --r1 -5 --r2 inf",
          "--r1 = -5 mm, must be > 0, as the other body is flat or concave"),
         ("check no_such_case.toml", "no_such_case.toml: no such case file or run folder"),
         ("run no_such_case.toml --out x", "case = no_such_case.toml, must be an existing file"),
-        ("deck run --angle 400", "--angle = 400 deg, must be >= 0 and <= 360 deg, one cam turn"),
-        ("deck run --angle -1rad", "--angle = -1rad, must be >= 0 and <= 360 deg, one cam turn"),
+        ("contact deck run --angle 400",
+         "--angle = 400 deg, must be >= 0 and <= 360 deg, one cam turn"),
+        ("contact deck run --angle -1rad",
+         "--angle = -1rad, must be >= 0 and <= 360 deg, one cam turn"),
     ],
 )  # fmt: skip
 def test_commands_refuse_in_the_words_of_their_options(
@@ -223,7 +225,7 @@ def test_commands_refuse_in_the_words_of_their_options(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     words = arguments.split()
-    if words[0] == "contact":
+    if words[1] == "cylinders":
         words += ["--e1", "210000", "--nu1", "0.3", "--line-load", "100"]
     code, _, err = command(*words)
     assert code == 2

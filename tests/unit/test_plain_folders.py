@@ -52,8 +52,8 @@ COMMANDS = (
     ("check", "--recompute"),
     ("check", "--verify-record", "--trusted", "{keys}"),
     ("report",),
-    ("sign", "--key", "{key}", "--role", "checked", "--name", "A"),
-    ("deck", "--angle", "10"),
+    ("sign run", "--key", "{key}", "--role", "checked", "--name", "A"),
+    ("contact deck", "--angle", "10"),
     ("inspect", "{points}"),
 )
 
@@ -109,7 +109,7 @@ def refused(run: Path, home: Path, odd: str, line: tuple[str, ...], command: Com
         (run / place).parent.mkdir(parents=True, exist_ok=True)
         make(run / place, home)
         before = contents(run) | contents(home)
-        code, said, errors = command(name, run, *options)
+        code, said, errors = command(*name.split(), run, *options)
         assert (code, said) == (ALTERED, "")
         assert errors.strip().endswith(f"{run / place}: is {kind}; only files and folders are read")
         assert contents(run) | contents(home) == before
@@ -139,9 +139,9 @@ def test_a_file_outside_is_not_overwritten_by_files_on_their_way(
     write_atomic(run / ".amendment" / "complete" / "keys" / "letter.txt", "forged")
     for name, *options in (
         ("report",),
-        ("sign", "--key", home / "key", "--role", "checked", "--name", "A"),
+        ("sign run", "--key", home / "key", "--role", "checked", "--name", "A"),
     ):
-        code, _, errors = command(name, run, *options)
+        code, _, errors = command(*name.split(), run, *options)
         assert code == ALTERED
         assert "keys: is a link" in errors
         assert (home / "letter.txt").read_text() == "private"
@@ -154,7 +154,7 @@ def test_a_signed_file_in_place_of_which_there_is_a_link_is_not_accepted(
 ) -> None:
     run = write_run(tmp_path / "run")
     key = home / "key"
-    assert command("sign", run, "--key", key, "--role", "checked", "--name", "A")[0] == 0
+    assert command("sign", "run", run, "--key", key, "--role", "checked", "--name", "A")[0] == 0
     verify = ("check", run, "--verify-record", "--trusted", f"{key}.pub")
     assert command(*verify)[0] == 0
     table = run / "trial_1" / "5_cycle.csv"

@@ -102,7 +102,7 @@ def test_an_unknown_schema_is_refused() -> None:
 
 
 def test_the_command_prints_a_schema(command: Callable[..., tuple[int, str, str]]) -> None:
-    code, out, _ = command("schema", "signoff")
+    code, out, _ = command("explain", "--schema", "signoff")
     assert code == 0
     assert json.loads(out) == record_schema("signoff")
 
@@ -113,9 +113,9 @@ def test_the_documentation_lists_every_schema(command: Callable[..., tuple[int, 
     (row,) = [
         line
         for line in (root / "README.md").read_text(encoding="utf-8").splitlines()
-        if line.startswith("| `camwright schema NAME`")
+        if line.startswith("| `camwright explain WORD...`")
     ]
-    _, shown, _ = command("schema", "--help")
+    _, shown, _ = command("explain", "--help")
     for name in NAMES:
         assert f"| `{name}` |\n" in table
         assert f"`{name}`" in row

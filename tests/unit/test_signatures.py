@@ -268,17 +268,19 @@ def test_a_new_key_is_written_trusted_and_never_overwritten(
     no_own_keys: Path,
 ) -> None:
     run, key = write_run(tmp_path / "run"), tmp_path / "key"
-    assert command("keygen", key, "--owner", "A. Meyer")[0] == 0
+    assert command("sign", "key", key, "--owner", "A. Meyer")[0] == 0
     assert key.stat().st_mode & 0o777 == 0o600
     assert no_own_keys.read_text() == (tmp_path / "key.pub").read_text()
-    code, out, _ = command("sign", run, "--key", key, "--role", "approved", "--name", "A. Meyer")
+    code, out, _ = command(
+        "sign", "run", run, "--key", key, "--role", "approved", "--name", "A. Meyer"
+    )
     assert code == 0
     assert "verdict: PASS" in out and "signed: approved by A. Meyer, 2" in out
     code, out, _ = command("check", run, "--verify-record")
     assert code == 0
     assert "signed: approved by A. Meyer, 2" in out
     before = key.read_bytes()
-    code, _, err = command("keygen", key)
+    code, _, err = command("sign", "key", key)
     assert code == 2 and "exists already, not overwritten" in err
     assert key.read_bytes() == before
     no_own_keys.unlink()
@@ -507,7 +509,7 @@ def test_a_signed_run_is_not_written_into(run: Path, command: Command) -> None:
         yield from ((str(p), p.read_bytes()) for p in sorted(run.rglob("*")) if p.is_file())
 
     before = list(files())
-    for arguments in (("report", run), ("deck", run, "--angle", "10")):
+    for arguments in (("report", run), ("contact", "deck", run, "--angle", "10")):
         code, _, err = command(*arguments)
         assert code == 2
         assert f"{run}: is signed, nothing more is written into it" in err or "lacks" in err
@@ -518,9 +520,9 @@ def test_a_signed_run_is_not_written_into(run: Path, command: Command) -> None:
 
 def test_a_changed_run_is_not_signed(tmp_path: Path, command: Command) -> None:
     run, key = write_run(tmp_path / "run"), tmp_path / "key"
-    assert command("keygen", key)[0] == 0
+    assert command("sign", "key", key)[0] == 0
     edited("trial_1/5_cycle.csv")(run)
-    code, _, err = command("sign", run, "--key", key, "--role", "checked", "--name", "A")
+    code, _, err = command("sign", "run", run, "--key", key, "--role", "checked", "--name", "A")
     assert (code, err) == (
         4,
         f"camwright: {run}/trial_1/5_cycle.csv: was changed since the sign-off\n",

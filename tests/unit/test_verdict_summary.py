@@ -220,7 +220,7 @@ def test_a_reason_or_need_shared_by_many_checks_stands_once() -> None:
 
 
 def test_an_open_screen_is_followed_by_the_next_step() -> None:
-    opened = {"screen": "open", "depth": "preview", "binding": []}
+    opened: dict[str, Any] = {"screen": "open", "depth": "preview", "binding": [], "checks": []}
     assert next_lines(opened, Places("runs/x", "x.toml")) == [
         "all is well so far: every check that a preview can judge passes. OPEN, as deeper ones "
         "need finite elements;",
@@ -230,6 +230,16 @@ def test_an_open_screen_is_followed_by_the_next_step() -> None:
     assert "missing data" in next_lines(lacking, Places("", "x.toml"))[0]
     assert next_lines(opened | {"screen": "fail"}, Places("", "x.toml")) == []
     assert next_lines(opened | {"screen": None}, Places("", "x.toml")) == []
+    lacking["checks"] = [check("not_evaluated", missing=["shaft"])]
+    assert next_lines(lacking, Places("", "x.toml"))[-1] == "next: camwright check x.toml --missing"
+
+
+def test_a_failure_without_a_remedy_is_followed_by_the_command_that_seeks_one() -> None:
+    failed: dict[str, Any] = {"screen": "fail", "depth": "preview", "binding": ["grip"]}
+    failed["checks"] = [check("fail")]
+    assert next_lines(failed, Places("", "x.toml")) == ["next: camwright design remedies x.toml"]
+    failed["checks"] = [check("fail", remedy="spring.rate 20 kN/m instead of 10 kN/m")]
+    assert next_lines(failed, Places("", "x.toml")) == []
 
 
 def test_figures_of_a_load_case_without_loads_are_left_out() -> None:

@@ -260,7 +260,7 @@ def test_a_part_measured_by_its_lift_is_the_part_measured_on_its_surface(
 
 
 def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
-    from camwright.pipeline.cli import app
+    from camwright.pipeline.cli import run_line
     from camwright.pipeline.commands.terminal import EXIT_CODE
 
     folder, _, made = run
@@ -269,7 +269,7 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     rows = "".join(f"{a!r},{b!r}\n" for a, b in zip(x.tolist(), y.tolist(), strict=True))
     table.write_text("x_mm,y_mm\n" + rows, encoding="utf-8")
     arguments = ["inspect", str(folder), str(table), "--jobs", "1", "--tolerance", "20 um"]
-    code = app(args=arguments, standalone_mode=False)
+    code = run_line(arguments)
     record = json.loads((folder / FOLDER / "inspection.json").read_text(encoding="utf-8"))
     assert schema_errors("inspect", record) == []
     assert code == EXIT_CODE[record["verdict"]]

@@ -307,12 +307,16 @@ class LeastCrown:
         return float(self.problem.ratios(made, self.rows).max())
 
 
+class NoCrownError(InputError):
+    """No crown keeps a ratio; the message has the least one that is reached."""
+
+
 def least_crown(problem: CrownProblem, ratio: float) -> LeastCrown:
     """Crown of least drop over all families that keeps the ratio at every state.
 
     Raises
     ------
-    InputError
+    NoCrownError
         If no crown keeps it, naming the least ratio that one reaches.
     """
     if not 0 < ratio < np.inf:
@@ -326,7 +330,7 @@ def least_crown(problem: CrownProblem, ratio: float) -> LeastCrown:
     reached = np.ceil(lowest.ratio * 1e4) / 1e4
     by = f"a drop of {shown(lowest.drop, 'um', 3)} at its ends" if lowest.load else "no crown"
     kind = lowest.family.kind
-    raise InputError("ratio", ratio, f">= {reached:.4f}, the least of kind {kind}: by {by}")
+    raise NoCrownError("ratio", ratio, f">= {reached:.4f}, the least of kind {kind}: by {by}")
 
 
 def middle_crown(least: LeastCrown, ratio: float) -> LeastCrown:

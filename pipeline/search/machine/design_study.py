@@ -1,4 +1,4 @@
-"""Command `camwright design`: from a torque to a case file with all parts, and its front."""
+"""Command `design machine`: from a torque to a case file with all parts, and its front."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from math import inf
 from pathlib import Path
 
 import numpy as np
+from typing_extensions import Unpack
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError, ResultError
@@ -29,6 +30,7 @@ from camwright.pipeline.records.design_document import (
     DesignDocument,
     DesignDrawing,
     DesignFigures,
+    DesignOptions,
     DesignPointRecord,
     RelaxationRecord,
     TorqueRecord,
@@ -62,23 +64,16 @@ def design_from_torque(
     torque: str | Path,
     out: str | Path,
     *,
-    speed: str | float,
-    speeds: str | tuple[str | float, str | float] | None = None,
-    overspeed: str | float | None = None,
-    cycle: str | float | None = None,
-    ratio: str | float | None = None,
-    space: str | float | None = None,
-    life: str | float | None = None,
-    ambient: str | float | None = None,
-    remove: str | float | None = None,
     progress: Progress = SILENT,
+    **options: Unpack[DesignOptions],
 ) -> DesignDocument:
-    """Case file of a torque table, as `camwright design`; options as of `task_of`.
+    """Case file of a torque table, as `camwright design machine`.
 
     Parameters
     ----------
     torque : path   CSV: shaft angle and torque of one cycle
     out : path      case file to write; the points are in the folder ``NAME_design``
+    options         see `DesignOptions`; ``speed`` is required
 
     Returns
     -------
@@ -89,11 +84,7 @@ def design_from_torque(
     CamError
         If an option or the torque is refused.
     """
-    task = task_of(
-        torque, speed=speed, speeds=speeds, overspeed=overspeed, cycle=cycle, ratio=ratio,
-        space=space, life=life, ambient=ambient, remove=remove,
-    )  # fmt: skip
-    return designed(task, Path(out), progress)
+    return designed(task_of(torque, **options), Path(out), progress)
 
 
 def points_folder(out: Path) -> Path:

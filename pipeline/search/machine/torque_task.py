@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import cast
 
 import numpy as np
+from typing_extensions import Unpack
 
 from camwright.geometry.arrays import FULL_TURN, Array, readonly
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.source import Source
-from camwright.pipeline.records.design_document import DesignOptions, Number
+from camwright.pipeline.records.design_document import DesignOptions
 from camwright.pipeline.torque.angle_trace import guard_order
 from camwright.pipeline.torque.period import Period
 from camwright.pipeline.torque.tabled_torque import TabledTorqueFile, tabled_torque
@@ -101,7 +102,7 @@ class DesignTask:
         ----------
         out : Path   case file
         """
-        words = ["camwright", "design", str(self.file)]
+        words = ["camwright", "design", "machine", str(self.file)]
         for name, value in self.options.items():
             words += [f"--{name}", _words(name, value)]
         return shlex.join([*words, "--out", str(out)])
@@ -139,78 +140,47 @@ def _words(name: str, value: object) -> str:
     return units.format(value, _UNITS.get(name, "rpm"))
 
 
-def task_of(
-    torque: str | Path,
-    *,
-    speed: Number,
-    speeds: str | tuple[Number, Number] | None = None,
-    overspeed: Number | None = None,
-    cycle: Number | None = None,
-    ratio: Number | None = None,
-    space: Number | None = None,
-    life: Number | None = None,
-    ambient: Number | None = None,
-    remove: Number | None = None,
-) -> DesignTask:
+def task_of(torque: str | Path, **options: Unpack[DesignOptions]) -> DesignTask:
     """Task of a torque table; numbers in SI, or text with a unit.
 
     Parameters
     ----------
-    torque : path        CSV: a column of shaft angle, one of torque, with their units
-    speed : speed        of the shaft, rad/s or such as ``"1500 rpm"``
-    speeds : pair        least and greatest speed; text: ``"800..3600 rpm"``
-    overspeed : speed    None: 1.2 times the greatest speed
-    cycle : angle        of the torque, of the shaft; None: that of the table, whole turns
-    ratio : float        shaft turns per cam turn; None: one cycle per cam turn
-    space : length       from the far side of the cam to the top of the roller at maximum lift;
-                         None: not limited
-    life, ambient        None: 2000 h, 40 degC
-    remove : share       of the torque ripple to be removed; None: 50 %
+    torque : path   CSV: a column of shaft angle, one of torque, with their units
+    options         see `DesignOptions`; None: not given
 
     Raises
     ------
     InputError
-        If a value cannot be read or is out of its bounds, or the table is no torque of a cycle: no
-        file, no units, constant, not periodic, rows too coarse for its waves.
+        Naming the option, if a value is missing, cannot be read or is out of its bounds, or the
+        table is no torque of a cycle: no file, no units, constant, not periodic, rows too coarse
+        for its waves.
     """
+    if unknown := options.keys() - {"speed", *NAMES}:
+        raise InputError(min(unknown), "unknown", f"one of: speed, {', '.join(NAMES)}")
+    given = cast(
+        DesignOptions, {name: value for name, value in options.items() if value is not None}
+    )
+    if "speed" not in given:
+        raise InputError("speed", "missing", 'stated: speed of the shaft, such as "1500 rpm"')
     path = Path(torque)
-    running = _number(speed, "rpm", "--speed", above=0.0)
-    least, most = _range(speeds, running)
+    running = _number(given["speed"], "rpm", "speed", above=0.0)
+    least, most = _range(given.get("speeds"), running)
     fastest = _OVER * most
-    if overspeed is not None:
-        fastest = _number(overspeed, "rpm", "--overspeed", at_least=most)
-    angle = _cycle(path, cycle)
-    period = _period(angle, None if ratio is None else _turns(ratio))
-    share = _REMOVE if remove is None else _share(remove)
+    if "overspeed" in given:
+        fastest = _number(given["overspeed"], "rpm", "overspeed", at_least=most)
+    angle = _cycle(path, given.get("cycle"))
     return DesignTask(
         file=path,
         demand=_demand(path, angle),
         speed=running,
         speeds=(least, most),
         overspeed=fastest,
-        period=period,
-        space=None if space is None else _number(space, "mm", "--space", above=0.0),
-        life=_number(_LIFE if life is None else life, "h", "--life", above=0.0),
-        ambient=_number(_AMBIENT if ambient is None else ambient, "K", "--ambient", above=0.0),
-        remove=share,
-        options=_given(
-            speed=speed,
-            speeds=speeds,
-            overspeed=overspeed,
-            cycle=cycle,
-            ratio=ratio,
-            space=space,
-            life=life,
-            ambient=ambient,
-            remove=remove,
-        ),
-    )
-
-
-def _given(**options: str | float | tuple[Number, Number] | None) -> DesignOptions:
-    """The options that are not None."""
-    return cast(
-        DesignOptions, {name: value for name, value in options.items() if value is not None}
+        period=_period(angle, _turns(given["ratio"]) if "ratio" in given else None),
+        space=_number(given["space"], "mm", "space", above=0.0) if "space" in given else None,
+        life=_number(given.get("life", _LIFE), "h", "life", above=0.0),
+        ambient=_number(given.get("ambient", _AMBIENT), "K", "ambient", above=0.0),
+        remove=_share(given["remove"]) if "remove" in given else _REMOVE,
+        options=given,
     )
 
 
@@ -238,13 +208,13 @@ def _range(
     if isinstance(speeds, str):
         least, dots, most = speeds.partition("..")
         if not dots:
-            raise InputError("--speeds", speeds, "two speeds, such as 800..3600 rpm")
+            raise InputError("speeds", speeds, "two speeds, such as 800..3600 rpm")
         unit = most.strip().lstrip("+-.0123456789eE").strip()
         speeds = (least if any(c.isalpha() for c in least) else f"{least.strip()} {unit}", most)
-    low, high = (_number(each, "rpm", "--speeds", above=0.0) for each in speeds)
+    low, high = (_number(each, "rpm", "speeds", above=0.0) for each in speeds)
     if not low <= running * (1.0 + 1e-12) or not running <= high * (1.0 + 1e-12):
         shown = f"{units.shown(low, 'rpm')} to {units.shown(high, 'rpm')}"
-        raise InputError("--speeds", shown, f"about --speed = {units.shown(running, 'rpm')}")
+        raise InputError("speeds", shown, f"about speed = {units.shown(running, 'rpm')}")
     return low, high
 
 
@@ -253,16 +223,16 @@ def _share(value: str | float) -> float:
     try:
         share = 0.01 * float(text[:-1]) if text.endswith("%") else float(text)
     except ValueError:
-        raise InputError("--remove", text[:40], "a share, such as 60% or 0.6") from None
+        raise InputError("remove", text[:40], "a share, such as 60% or 0.6") from None
     if not 0.0 < share < 1.0:
-        raise InputError("--remove", text, "> 0 % and < 100 %")
+        raise InputError("remove", text, "> 0 % and < 100 %")
     return share
 
 
 def _cycle(path: Path, cycle: str | float | None) -> float:
     """Angle of the cycle, rad; that of the table where it is not given."""
     if cycle is not None:
-        return _number(cycle, "deg", "--cycle", above=0.0)
+        return _number(cycle, "deg", "cycle", above=0.0)
     text = trace_text(path, "angle_deg,torque_Nm")
     at, factor = angle_column(text.name, text.header)
     written = text.numbers((at,))[:, 0]
@@ -274,7 +244,7 @@ def _cycle(path: Path, cycle: str | float | None) -> float:
         turns = max(round(whole / FULL_TURN), 1)
         if abs(whole / FULL_TURN - turns) <= _WHOLE_TURNS:
             return turns * FULL_TURN
-    limit = "whole turns of the shaft, or the angle of the cycle as --cycle"
+    limit = "whole turns of the shaft, or the angle of the cycle as option cycle"
     raise InputError(f"{text.name} span", f"{np.degrees(span):.6g} deg", limit)
 
 
@@ -285,7 +255,7 @@ def _turns(ratio: str | float) -> float:
     try:
         value = float(above) / float(below) if colon else float(above)
     except (ValueError, ZeroDivisionError):
-        raise InputError("--ratio", text[:40], 'a number or "3:2"') from None
+        raise InputError("ratio", text[:40], 'a number or "3:2"') from None
     return value
 
 
@@ -296,7 +266,7 @@ def _period(cycle: float, ratio: float | None) -> Period:
     try:
         return Period(cycle, ratio)
     except InputError as error:
-        raise InputError("--ratio", error.value, error.limit) from None
+        raise InputError("ratio", error.value, error.limit) from None
 
 
 def _demand(path: Path, cycle: float) -> TorqueDemand:

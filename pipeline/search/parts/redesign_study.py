@@ -1,4 +1,4 @@
-"""Command `camwright redesign`: Pareto front of cases over the catalogues."""
+"""Command `design parts`: Pareto front of cases over the catalogues."""
 
 from __future__ import annotations
 

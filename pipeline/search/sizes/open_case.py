@@ -38,7 +38,7 @@ GAPS = tuple(_PROVISIONAL)
 
 HUB_WALL = 1.1
 """Least radius of a roller over that of its hub, where the bearing has no ring."""
-_HEAD = "\n# Values of the keys that the case left open, by camwright size.\n"
+_HEAD = "\n# Values of the keys that the case left open, by camwright design sizes.\n"
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,54 +1,55 @@
-"""Command `redesign`: search of the catalogues for rollers, springs and bushes of a case."""
+"""Command `design parts`: search of the catalogues for rollers, springs and bushes of a case."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any, get_args
 
-import typer
-
-from camwright.geometry.errors import InputError
+from camwright.pipeline.commands.arguments import Words
 from camwright.pipeline.commands.terminal import (
     FAILED,
     INCOMPLETE,
     PASSED,
     CaseArgument,
+    JobsOption,
+    JsonOption,
     progress_shown,
     show_json,
     stdout,
 )
-
-if TYPE_CHECKING:
-    from camwright.pipeline.records.redesign_document import RedesignDocument
+from camwright.pipeline.records.redesign_document import Against, RedesignDocument
 
 
-def redesign(
+def parts(
     case: CaseArgument,
+    *,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder for the points.")
+        Path | None, Words("Folder for the points; default: CASE_redesign.", "DIR")
     ] = None,
     against: Annotated[
-        str, typer.Option("--against", help="Second objective besides torque ripple: size or mass.")
+        str,
+        Words(
+            "Second objective besides torque ripple; default: size.",
+            "OBJECTIVE",
+            choices=get_args(Against),
+        ),
     ] = "size",
-    jobs: Annotated[
-        int | None, typer.Option(help="Number of processes; default: number of cores, at most 4.")
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
+    jobs: JobsOption = None,
+    as_json: JsonOption = False,
 ) -> int:
-    """Search the catalogues for the parts of a case.
+    """Search the catalogues for rollers, springs and bushes of a case.
 
-    Pareto front of torque ripple and size (or mass) over rollers, springs and bushes, with the cam
-    synthesised for each. Exit code 0: the points of the front pass in the preview, 1: every choice
-    fails, 2: error, 3: the points lack data. Solved points are cached in DIR; run the command again
-    to resume.
+    Pareto front of torque ripple and size (or mass), with the cam synthesised for each choice.
+    Exit code 3: points within all limits lack data. Solved points are cached in DIR; run the
+    command again to resume.
+
+    Example: camwright design parts pump.toml --against mass
     """
     from camwright.pipeline.search.parts.redesign_study import RECORD
     from camwright.pipeline.search.parts.redesign_study import redesign as searched
     from camwright.reports.comparisons import redesign_page as page
 
-    if jobs is not None and not 1 <= jobs <= 256:
-        raise InputError("--jobs", jobs, ">= 1 and <= 256")
     with progress_shown() as progress:
         folder = Path(f"{case.stem}_redesign") if out is None else out
         document = searched(case, folder, against, jobs, progress)

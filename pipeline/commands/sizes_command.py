@@ -1,16 +1,16 @@
-"""Command `size`: base radius, offset, roller, face and spring that a case leaves open."""
+"""Command `design sizes`: base radius, offset, roller, face and spring that a case leaves open."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.commands.arguments import Words
 from camwright.pipeline.commands.terminal import (
     EXIT_CODE,
     CaseArgument,
+    JsonOption,
     progress_shown,
     show_json,
     stdout,
@@ -19,42 +19,32 @@ from camwright.pipeline.commands.terminal import (
 _PICTURES = (".png", ".svg")
 
 
-def size(
+def sizes(
     case: CaseArgument,
+    *,
     free: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--free",
-            metavar="KEY",
-            help="A key whose value in CASE is not kept but found; may be repeated.",
-        ),
+        list[str] | None, Words("A key whose value in CASE is not kept but found.", "KEY")
     ] = None,
     least_radius: Annotated[
-        str,
-        typer.Option("--least-radius", help="Least convex radius of the contour, mm."),
+        str, Words("Least convex radius of the contour, mm; default: 0 mm.", "RADIUS")
     ] = "0 mm",
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="SIZED.toml", help="Write the complete case.")
-    ] = None,
+    out: Annotated[Path | None, Words("Complete case to write.", "CASE")] = None,
     chart: Annotated[
-        Path | None,
-        typer.Option(
-            "--chart",
-            metavar="FILE",
-            help="Chart as .png or .svg; default with --out: beside it, .png.",
-        ),
+        Path | None, Words("Chart as .png or .svg; default with --out: beside it, .png.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
+    as_json: JsonOption = False,
 ) -> int:
-    """Size a cam: smallest base radius, its offset, roller, face and spring within the limits.
+    """Find base radius, offset, roller, face and spring that a case leaves open.
 
     CASE may leave out cam.prime_radius, cam.offset, roller.radius, follower.face.width, spring.rate
-    and spring.preload; those left out are found, the others kept. Exit code 0: the checks that they
-    decide pass in the preview, 1: no size passes, 2: error, 3: data are missing.
+    and spring.preload; those left out are found, as small as the limits allow, the others kept.
+    The exit code is that of the checks that they decide, in the preview.
+
+    Example: camwright design sizes feed.toml --free cam.prime_radius --out feed_sized.toml
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.search.sizes.size_record import size_lines, size_record
-    from camwright.pipeline.search.sizes.sizing import size as sizes
+    from camwright.pipeline.search.sizes.sizing import size
     from camwright.reports.figure_svg import write_figure
 
     if chart is not None and chart.suffix not in _PICTURES:
@@ -65,7 +55,7 @@ def size(
     if not least >= 0.0:
         raise InputError("--least-radius", least_radius, ">= 0 mm")
     with progress_shown() as progress:
-        sizing = sizes(case, free or (), least_radius=least, progress=progress)
+        sizing = size(case, free or (), least_radius=least, progress=progress)
     record = size_record(sizing)
     if as_json:
         show_json(record)

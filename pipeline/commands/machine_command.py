@@ -1,81 +1,55 @@
-"""Command `design`: from a torque table to a case file with all parts."""
+"""Command `design machine`: from a torque table to a case file with all parts."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
-import typer
-
+from camwright.pipeline.commands.arguments import Words
 from camwright.pipeline.commands.terminal import (
     EXIT_CODE,
     FAILED,
     PASSED,
+    JsonOption,
     progress_shown,
     show_json,
     stdout,
 )
+from camwright.pipeline.records.design_document import (
+    ChosenDesign,
+    DesignDocument,
+    DesignOptions,
+    ExchangesRecord,
+)
 
-if TYPE_CHECKING:
-    from camwright.pipeline.records.design_document import (
-        ChosenDesign,
-        DesignDocument,
-        ExchangesRecord,
-    )
 
-
-def design(
-    torque: Annotated[
-        Path, typer.Argument(metavar="TORQUE", help="CSV: shaft angle and torque of one cycle.")
-    ],
-    speed: Annotated[str, typer.Option(help='Speed of the shaft, such as "1500 rpm".')],
-    out: Annotated[Path, typer.Option("--out", metavar="CASE", help="Case file to write.")],
-    speeds: Annotated[
-        str | None, typer.Option(help='Range of speeds, such as "800..3600 rpm".')
-    ] = None,
-    overspeed: Annotated[
-        str | None, typer.Option(help="Greatest speed; default: 1.2 times the greatest of these.")
-    ] = None,
-    cycle: Annotated[
-        str | None, typer.Option(help='Angle of a cycle, "360 deg"; default: of the table.')
-    ] = None,
-    ratio: Annotated[
-        str | None,
-        typer.Option(help='Shaft turns per cam turn, 2 or "3:2"; default: one cycle a cam turn.'),
-    ] = None,
-    space: Annotated[
-        str | None,
-        typer.Option(help="From the cam's far side to the top of the roller; default: any."),
-    ] = None,
-    life: Annotated[str | None, typer.Option(help='Life; default: "2000 h".')] = None,
-    ambient: Annotated[
-        str | None, typer.Option(help='Temperature of the surroundings; default: "40 degC".')
-    ] = None,
-    remove: Annotated[
-        str | None, typer.Option(help="Share of the torque ripple to remove; default: 50%.")
-    ] = None,
-    run: Annotated[bool, typer.Option("--run", help="Run the chosen case.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
+def machine(
+    torque: Annotated[Path, Words("CSV: shaft angle and torque of one cycle.", "TORQUE")],
+    *,
+    options: DesignOptions,
+    out: Annotated[Path, Words("Case file to write.", "CASE")],
+    and_run: Annotated[bool, Words("Run the chosen case.", typed="--run")] = False,
+    as_json: JsonOption = False,
 ) -> int:
-    """Design a cam with all its parts for a torque.
+    """Design a cam with all its parts for the torque of a machine.
 
     Spring, preload, base circle, roller, guides, shaft and key from the catalogues, the lift by
     the constrained synthesis. Writes the smallest of the solved cases that pass by closed forms,
     its parts exchanged for the next smaller of their catalogues until none passes, the front of
     ripple against size in CASE_design, and a picture of the choice. Where the search finds none,
     the limits in conflict and relaxations that pass. What is not given is assumed, and marked so.
-    Exit code 0: a case passes, 1: none found, 2: error; with --run that of the verdict. Solved
-    points are cached in CASE_design/solved; run the same command again to resume. The table, and
-    cards.toml and springs.toml beside it, are copied beside the case.
+
+    With --run the exit code is that of the verdict. Solved points are cached in CASE_design/solved;
+    run the same command again to resume. The table, and cards.toml and springs.toml beside it, are
+    copied beside the case.
+
+    Example: camwright design machine pump.csv --speed "1500 rpm" --out pump.toml
     """
     from camwright.pipeline.search.machine.design_study import PICTURE, designed, points_folder
     from camwright.pipeline.search.machine.torque_task import task_of
     from camwright.reports.study import design_picture
 
-    task = task_of(
-        torque, speed=speed, speeds=speeds, overspeed=overspeed, cycle=cycle, ratio=ratio,
-        space=space, life=life, ambient=ambient, remove=remove,
-    )  # fmt: skip
+    task = task_of(torque, **options)
     with progress_shown() as progress:
         document = designed(task, out, progress)
     picture = design_picture.write(points_folder(out) / PICTURE, document)
@@ -86,7 +60,7 @@ def design(
         stdout.print(f"picture: {picture}", markup=False)
     if document["chosen"] is None:
         return FAILED
-    return _run(out) if run else PASSED
+    return _run(out) if and_run else PASSED
 
 
 def _whole(point: ChosenDesign) -> str:
@@ -162,5 +136,5 @@ def _run(case: Path) -> int:
     from camwright.pipeline.results.run_reader import read_verdict
 
     folder = case.absolute().parent / "runs" / case.stem
-    run(case, folder, replace=folder.exists())
+    run(case, out=folder, replace=folder.exists())
     return EXIT_CODE[read_verdict(folder)["verdict"]]

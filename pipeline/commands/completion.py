@@ -1,0 +1,60 @@
+"""Completion of the command line by bash: commands, options and words of options."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.commands.arguments import Argument, arguments_of
+from camwright.pipeline.commands.command_tree import GROUPS, ROOT_OPTIONS, TREE
+
+_SCRIPT = """\
+# Completion of camwright by bash; made by camwright --show-completion.
+_camwright() {
+    local current="${COMP_WORDS[COMP_CWORD]}" before="${COMP_WORDS[COMP_CWORD - 1]}" words=""
+    case "${COMP_WORDS[*]:1:COMP_CWORD - 1} " in
+        " ") words="@FIRST@" ;;
+@CASES@
+    esac
+    COMPREPLY=()
+    [[ -n "$words" ]] && COMPREPLY=($(compgen -W "$words" -- "$current"))
+}
+complete -o default -F _camwright camwright
+"""
+"""Without words the shell offers files."""
+
+
+def bash_script() -> str:
+    """The script that bash reads."""
+    first = dict.fromkeys(path.split()[0] for path in TREE)
+    cases = []
+    for path, entry in TREE.items():
+        options = [each for each in arguments_of(entry.command) if each.is_option]
+        cases.append(f'        "{path} "*) {_words_of(options)} ;;')
+    for group in GROUPS:
+        seconds = [path.split()[1] for path in TREE if path.startswith(f"{group} ")]
+        cases.append(f'        "{group} ") words="{" ".join(seconds)}" ;;')
+    text = _SCRIPT.replace("@FIRST@", " ".join((*first, *ROOT_OPTIONS)))
+    return text.replace("@CASES@", "\n".join(cases)).rstrip("\n")
+
+
+def _words_of(options: Sequence[Argument]) -> str:
+    """Words after a command: those of the option before, else the options once a - is typed."""
+    cases = [
+        f'{each.typed}) words="{" ".join(each.words.choices)}" ;;'
+        for each in options
+        if each.words.choices
+    ]
+    names = " ".join((*(each.typed for each in options), "--help"))
+    cases.append(f'*) [[ "$current" == -* ]] && words="{names}" ;;')
+    return f'case "$before" in {" ".join(cases)} esac'
+
+
+def install() -> Path:
+    """Write the script where bash looks for it, and return its path."""
+    home = os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share"
+    return write_atomic(
+        Path(home) / "bash-completion" / "completions" / "camwright", bash_script() + "\n"
+    )
