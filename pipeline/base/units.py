@@ -1,15 +1,16 @@
-"""Unit strings to SI and back: "12.5 mm" <-> 0.0125. The one module that names pint.
+"""Unit strings to SI and back: "12.5 mm" <-> 0.0125.
 
 Numbers are converted in decimal arithmetic and rounded once, so that "42 mm" is exactly 0.042
 and a value that was written out is read back bit for bit. The plane angle counts as a dimension
 of its own here: otherwise "25 Hz" would pass for 25 rad/s.
 
-The common units stand in a table, `_COMMON`; pint, whose start takes longer than a preview, reads
-all others.
+Units stand in a table, `_UNITS`, with exact factors; a unit string is one of them, a power, a
+product or a quotient, read from left to right.
 """
 
 from __future__ import annotations
 
+import difflib
 import re
 from decimal import ROUND_CEILING, Decimal, InvalidOperation
 from functools import lru_cache
@@ -19,9 +20,6 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 from camwright.geometry.errors import InputError
 
 if TYPE_CHECKING:
-    from pint import UnitRegistry
-    from pint.facets.plain import PlainUnit
-
     from camwright.geometry.arrays import Array, Value
 
 _Temperature = TypeVar("_Temperature", float, "Array", "Value")
@@ -34,64 +32,70 @@ _FRACTION = re.compile(  # of an inch, also mixed: 7/16, 1 3/8, 1-3/8
     r"\s*([+-]?)(?:([0-9]{1,6})(?:\s+|\s*-\s*))?([0-9]{1,6})\s*/\s*([0-9]{1,6})\s*([A-Za-z].*?)\s*",
     re.DOTALL,
 )
-_TERM = r"[A-Za-zµμ°Å%]+(?:\s*(?:\^|\*\*)?\s*-?[1-9]|[²³])?"
+_TERM = r"[A-Za-zµμ°%]+(?:\^?-?[1-9]|[²³])?"
 _UNIT = re.compile(rf"(?:1\s*/\s*)?{_TERM}(?:\s*[*·/ ]\s*{_TERM})*")
-_IMPLIED_POWER = re.compile(r"(?<=[A-Za-zµμ])(-?[1-9])")
-_ANGLES = (  # endings, since prefixes go before them
-    *("radian", "degree", "turn", "arcminute", "arcsecond", "grade"),
-    *("revolutions_per_minute", "revolutions_per_second"),
-)
-_LONGEST_TEXT = 80  # characters of a number with its unit
+_POWER = re.compile(r"\s*(?:\^|\*\*)\s*")
+_PARTS = re.compile(r"([*·/])|([A-Za-zµμ°%]+)(?:\^?(-?[1-9])|([²³]))?")
+_LONGEST_TEXT = 80
 
 
-class _Common(NamedTuple):
-    """Coherent SI value of one unit, its powers of kg, m, s, K and rad, and that of its zero."""
+class _Unit(NamedTuple):
+    """SI value of one unit, its powers of kg, m, s, K, rad and byte, and the value of its zero."""
 
     size: Decimal
-    powers: tuple[int, int, int, int, int]
+    powers: tuple[int, ...]
     zero: Decimal = Decimal(0)
 
 
-def _common(size: str, *powers: int) -> _Common:
-    kg, m, s, kelvin, rad = (*powers, *(0,) * (5 - len(powers)))
-    return _Common(Decimal(size), (kg, m, s, kelvin, rad))
+def _padded(powers: tuple[int, ...]) -> tuple[int, ...]:
+    return (*powers, *(0,) * (_DIMENSIONS - len(powers)))
 
 
+_DIMENSIONS = 6
 _TURN = 2 * Decimal("3.14159265358979323846264338327950288")
-_COMMON = {
-    "kg": _common("1", 1),
-    "g": _common("1e-3", 1),
-    "mg": _common("1e-6", 1),
-    "m": _common("1", 0, 1),
-    "cm": _common("1e-2", 0, 1),
-    "mm": _common("1e-3", 0, 1),
-    "um": _common("1e-6", 0, 1),
-    "s": _common("1", 0, 0, 1),
-    "ms": _common("1e-3", 0, 0, 1),
-    "min": _common("60", 0, 0, 1),
-    "h": _common("3600", 0, 0, 1),
-    "Hz": _common("1", 0, 0, -1),
-    "K": _common("1", 0, 0, 0, 1),
-    "rad": _common("1", 0, 0, 0, 0, 1),
-    "mrad": _common("1e-3", 0, 0, 0, 0, 1),
-    "deg": _Common(_TURN / 360, (0, 0, 0, 0, 1)),
-    "rpm": _Common(_TURN / 60, (0, 0, -1, 0, 1)),
-    "N": _common("1", 1, 1, -2),
-    "kN": _common("1e3", 1, 1, -2),
-    "Pa": _common("1", 1, -1, -2),
-    "kPa": _common("1e3", 1, -1, -2),
-    "MPa": _common("1e6", 1, -1, -2),
-    "GPa": _common("1e9", 1, -1, -2),
-    "mPa": _common("1e-3", 1, -1, -2),
-    "bar": _common("1e5", 1, -1, -2),
-    "J": _common("1", 1, 2, -2),
-    "kJ": _common("1e3", 1, 2, -2),
-    "MJ": _common("1e6", 1, 2, -2),
-    "W": _common("1", 1, 2, -3),
-    "kW": _common("1e3", 1, 2, -3),
-    "percent": _common("1e-2"),
+_INCH, _POUND, _GRAVITY = Decimal("0.0254"), Decimal("0.45359237"), Decimal("9.80665")
+_FAHRENHEIT = Decimal(5) / 9
+_ZERO_CELSIUS = Decimal("273.15")
+_PREFIXES = {
+    "": 0, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "d": -1, "da": 1, "h": 2, "k": 3,
+    "M": 6, "G": 9,
+}  # fmt: skip
+_COHERENT = {  # with prefixes
+    "m": (0, 1), "s": (0, 0, 1), "rad": (0, 0, 0, 0, 1), "N": (1, 1, -2), "Pa": (1, -1, -2),
+    "J": (1, 2, -2), "W": (1, 2, -3), "Hz": (0, 0, -1),
+}  # fmt: skip
+_OTHER: tuple[tuple[str, Decimal | float | str, tuple[int, ...]], ...] = (
+    ("g", "1e-3", (1,)), ("kg", 1, (1,)), ("mg", "1e-6", (1,)), ("t", 1000, (1,)),
+    ("lb", _POUND, (1,)), ("oz", _POUND / 16, (1,)),
+    ("in inch inches", _INCH, (0, 1)), ("ft", 12 * _INCH, (0, 1)),
+    ("min minute minutes", 60, (0, 0, 1)), ("h hour hours", 3600, (0, 0, 1)),
+    ("d day days", 86400, (0, 0, 1)), ("K", 1, (0, 0, 0, 1)),
+    ("deg degree degrees °", _TURN / 360, (0, 0, 0, 0, 1)),
+    ("turn turns rev", _TURN, (0, 0, 0, 0, 1)),
+    ("rpm", _TURN / 60, (0, 0, -1, 0, 1)), ("rps", _TURN, (0, 0, -1, 0, 1)),
+    ("kgf kp", _GRAVITY, (1, 1, -2)), ("lbf", _POUND * _GRAVITY, (1, 1, -2)),
+    ("bar", 100_000, (1, -1, -2)), ("mbar", 100, (1, -1, -2)), ("atm", 101_325, (1, -1, -2)),
+    ("psi", _POUND * _GRAVITY / _INCH**2, (1, -1, -2)),
+    ("ksi", 1000 * _POUND * _GRAVITY / _INCH**2, (1, -1, -2)),
+    ("hp", 550 * 12 * _INCH * _POUND * _GRAVITY, (1, 2, -3)), ("PS", 75 * _GRAVITY, (1, 2, -3)),
+    ("cP", "1e-3", (1, -1, -1)), ("cSt", "1e-6", (0, 2, -1)), ("percent %", "1e-2", ()),
+    ("kB", 1e3, (0, 0, 0, 0, 0, 1)), ("MB", 1e6, (0, 0, 0, 0, 0, 1)),
+    ("GB", 1e9, (0, 0, 0, 0, 0, 1)),
+)  # fmt: skip
+_UNITS = {
+    prefix + name: _Unit(Decimal(1).scaleb(power), _padded(powers))
+    for name, powers in _COHERENT.items()
+    for prefix, power in _PREFIXES.items()
+} | {
+    name: _Unit(Decimal(size), _padded(powers))
+    for names, size, powers in _OTHER
+    for name in names.split()
 }
-"""Units read without pint. Reciprocals, products and powers of them are, too."""
+_ALONE = dict.fromkeys(("degC", "°C"), _UNITS["K"]._replace(zero=_ZERO_CELSIUS)) | dict.fromkeys(
+    ("degF", "°F"),
+    _UNITS["K"]._replace(size=_FAHRENHEIT, zero=_ZERO_CELSIUS - 32 * _FAHRENHEIT),
+)
+"""Units with a zero of their own, which stand alone."""
 _SPEEDS = {
     **dict.fromkeys(("1/min", "/min", "min^-1", "min**-1", "min-1", "min⁻¹"), "rpm"),
     **dict.fromkeys(("RPM", "Rpm", "r/min", "rev/min", "U/min"), "rpm"),
@@ -112,98 +116,47 @@ _ACCEPTED = {
     "s": "s, ms, min or h",
 }
 """Units that a refusal names, by one of their dimension."""
-_CELSIUS, _ZERO_CELSIUS = "degC", Decimal("273.15")
-"""Unit with a zero of its own, K, read without pint where it stands alone."""
-_COMMON_TERM = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)?(-?[1-9]))?")
-_BETWEEN = re.compile(r"\s*(?<!\*)([*/])(?!\*)\s*|\s+")
 
 
 @lru_cache(maxsize=512)
-def _from_table(text: str) -> _Common | None:
-    """Unit composed of those of the table, from left to right as pint does; None otherwise."""
-    if text == _CELSIUS:
-        return _COMMON["K"]._replace(zero=_ZERO_CELSIUS)
+def _unit(text: str) -> _Unit:
+    """The unit of a text; ValueError if it is none."""
+    if text in _ALONE:
+        return _ALONE[text]
+    text = _POWER.sub("^", text)
     if text and (len(text) > _LONGEST_TEXT or not _UNIT.fullmatch(text)):
-        return None
-    size, powers, sign = Decimal(1), [0] * 5, 1
-    if text.startswith("1"):
-        sign, text = -1, text.partition("/")[2].lstrip()
-    for word in filter(None, _BETWEEN.split(text)):
-        if word in ("*", "/"):
-            sign = 1 if word == "*" else -1
-            continue
-        term = _COMMON_TERM.fullmatch(word)
-        unit = _COMMON.get(term.group(1)) if term else None
-        if term is None or unit is None:
-            return None
-        power = sign * int(term.group(2) or 1)
-        size *= unit.size**power
-        powers = [sum_ + power * each for sum_, each in zip(powers, unit.powers, strict=True)]
-        sign = 1
-    kg, m, s, kelvin, rad = powers
-    return _Common(size, (kg, m, s, kelvin, rad))
-
-
-@lru_cache(maxsize=1)
-def _registry() -> UnitRegistry[Decimal]:
-    import pint  # half a second, and only a case file with uncommon units needs it
-
-    return pint.UnitRegistry(non_int_type=Decimal)
-
-
-@lru_cache(maxsize=512)
-def _unit(text: str) -> PlainUnit:
-    """The pint unit of `text`; ValueError if it is none."""
-    if not text:
-        return _registry().dimensionless
-    if len(text) > _LONGEST_TEXT or not _UNIT.fullmatch(text):
         raise ValueError(text)
-    spelled = _IMPLIED_POWER.sub(r"**\1", text.replace("^", "**")).replace("****", "**")
-    try:
-        return _registry().Unit(spelled)
-    except Exception as error:  # pint's parser lets tokenizer errors through
-        raise ValueError(text) from error
+    size, powers, sign = Decimal(1), [0] * _DIMENSIONS, 1
+    for between, word, power, raised in _PARTS.findall(text):
+        if between:
+            sign = -1 if between == "/" else 1
+            continue
+        if word not in _UNITS:
+            raise ValueError(word)
+        unit, count = _UNITS[word], sign * int(power or {"²": 2, "³": 3}.get(raised, 1))
+        size *= unit.size**count
+        powers = [total + count * each for total, each in zip(powers, unit.powers, strict=True)]
+        sign = 1
+    return _Unit(size, tuple(powers))
 
 
-@lru_cache(maxsize=512)
-def _si_unit(text: str) -> PlainUnit:
-    """The coherent SI unit of the same dimension as `text`, the angle in rad."""
-    unit = _unit(text)
-    return _registry().Quantity(Decimal(1), unit).to_base_units().units
-
-
-def _to_si(number: Decimal, unit: str, wanted: str) -> Decimal:
-    known = _from_table(unit)
-    if known is not None:
-        return number * known.size + known.zero
-    converted: Decimal = _registry().Quantity(number, _unit(unit)).to(_si_unit(wanted)).magnitude
-    return converted
+def _to_si(number: Decimal, unit: str) -> Decimal:
+    return number * _unit(unit).size + _unit(unit).zero
 
 
 def _from_si(number: Decimal, unit: str) -> Decimal:
-    known = _from_table(unit)
-    if known is not None:
-        return (number - known.zero) / known.size
-    converted: Decimal = _registry().Quantity(number, _si_unit(unit)).to(_unit(unit)).magnitude
-    return converted
+    return (number - _unit(unit).zero) / _unit(unit).size
 
 
 def same_dimension(unit: str, other: str) -> bool:
-    """Whether two units measure the same quantity."""
-    first, second = _from_table(unit), _from_table(other)
-    if first is not None and second is not None:
-        return first.powers == second.powers
-    one, two = _unit(unit), _unit(other)
-    return bool(one.dimensionality == two.dimensionality and _angle(one) == _angle(two))
+    """Whether two units measure the same quantity; ValueError if one is unknown."""
+    return _unit(unit).powers == _unit(other).powers
 
 
-def _angle(unit: PlainUnit) -> int:
-    """Power of the plane angle in a unit; pint treats the angle as a pure number."""
-    from pint.util import to_units_container
-
-    powers = to_units_container(unit).items()
-    angles = [power for name, power in powers if name.endswith(_ANGLES)]
-    return int(sum(float(power) for power in angles if isinstance(power, (int, float, Decimal))))
+def _closest(stated: str) -> str:
+    """The unit that is written most alike, in words; "" without one."""
+    alike = difflib.get_close_matches(stated, [*_UNITS, *_ALONE], n=1)
+    return f"; did you mean {alike[0]}?" if alike else ""
 
 
 def _spelled(stated: str, unit: str) -> str:
@@ -261,14 +214,14 @@ def parse(text: object, unit: str, field: str) -> float:
         stated = _spelled(stated, unit)
         known = same_dimension(stated, unit)
     except ValueError:
-        limit = f"in a known unit, such as {unit}{_accepted(unit)}"
+        limit = f"in a known unit, such as {unit}{_accepted(unit)}{_closest(stated)}"
         if re.match(r"[,'][0-9]", stated):
             limit = f"written with a decimal point and without separators, such as 1500.5 {unit}"
         raise InputError(field, text, limit) from None
     if not known:
         raise InputError(field, text, f"in a unit of the dimension of {unit}{_accepted(unit)}")
     try:
-        value = float(_to_si(number, stated, unit))
+        value = float(_to_si(number, stated))
     except (InvalidOperation, OverflowError, ValueError):
         value = float("nan")
     if not isfinite(value):
@@ -279,7 +232,7 @@ def parse(text: object, unit: str, field: str) -> float:
 @lru_cache(maxsize=512)
 def factor(unit: str) -> float:
     """SI value of one `unit`: ``factor("mm")`` is 0.001; not for offset units such as degC."""
-    return float(_to_si(Decimal(1), unit, unit))
+    return float(_to_si(Decimal(1), unit))
 
 
 def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.format
@@ -289,7 +242,7 @@ def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.forma
     exact = _from_si(Decimal(value), unit)
     # 18 digits hold any float.
     numbers = (Decimal(f"{exact:.{digits}g}") for digits in range(1, 19))
-    shortest = next(n for n in numbers if float(_to_si(n, unit, unit)) == value)
+    shortest = next(n for n in numbers if float(_to_si(n, unit)) == value)
     return f"{_plain(shortest)} {unit}"
 
 

@@ -440,7 +440,7 @@ def test_version_answers_without_the_heavy_libraries() -> None:
         "from camwright.pipeline import cli\n"
         "try: cli.main()\n"
         "except SystemExit: pass\n"
-        "print(sorted({'numpy', 'pydantic', 'pint', 'gmsh', 'pyvista'} & set(sys.modules)))"
+        "print(sorted({'numpy', 'pydantic', 'gmsh', 'pyvista'} & set(sys.modules)))"
     )
     assert last_line_of(script) == "[]"
 
@@ -452,7 +452,7 @@ def test_a_case_is_read_without_the_heavy_libraries() -> None:
         "from camwright.pipeline import cli, preview\n"
         "from camwright.pipeline.case.case_file import read_case\n"
         f"read_case({str(ROOT / 'cases' / 'gx120.toml')!r})\n"
-        "heavy = {'dask', 'gmsh', 'h5py', 'matplotlib', 'meshio', 'pandas', 'pint', 'pyvista'}\n"
+        "heavy = {'dask', 'gmsh', 'h5py', 'matplotlib', 'meshio', 'pandas', 'pyvista'}\n"
         "heavy |= {'scipy.' + name for name in ('interpolate', 'linalg', 'optimize', 'sparse')}\n"
         "heavy.add('skfem')\n"
         "print(sorted(heavy & set(sys.modules)))"

@@ -164,44 +164,152 @@ def test_factor() -> None:
     assert units.factor("percent") == 0.01
 
 
-def _pint_powers(text: str) -> tuple[float, ...]:
-    """Powers of kg, m, s, K and rad of a unit by pint."""
-    unit = units._unit(text)
-    names = ("[mass]", "[length]", "[time]", "[temperature]")
-    return (*(float(unit.dimensionality.get(name, 0)) for name in names), units._angle(unit))
+PINNED = {
+    "%": ("0.01", (0, 0, 0, 0, 0)),
+    "1/GPa": ("1E-9", (-1, 1, 2, 0, 0)),
+    "1/K": ("1", (0, 0, 0, -1, 0)),
+    "1/min": ("0.01666666666666666666666666667", (0, 0, -1, 0, 0)),
+    "1/mm^2": ("1E+6", (0, -2, 0, 0, 0)),
+    "1/s": ("1", (0, 0, -1, 0, 0)),
+    "GPa": ("1E+9", (1, -1, -2, 0, 0)),
+    "Hz": ("1", (0, 0, -1, 0, 0)),
+    "J/kg/K": ("1", (0, 2, -2, -1, 0)),
+    "K/W": ("1", (-1, -2, 3, 1, 0)),
+    "MJ/kg": ("1E+6", (0, 2, -2, 0, 0)),
+    "MN/m": ("1E+6", (1, 0, -2, 0, 0)),
+    "MPa m/s": ("1E+6", (1, 0, -3, 0, 0)),
+    "N cm": ("0.01", (1, 2, -2, 0, 0)),
+    "N m s/rad": ("1", (1, 2, -1, 0, -1)),
+    "N m/rad": ("1", (1, 2, -2, 0, -1)),
+    "N mm": ("0.001", (1, 2, -2, 0, 0)),
+    "N s/m": ("1", (1, 0, -1, 0, 0)),
+    "N*mm": ("0.001", (1, 2, -2, 0, 0)),
+    "N/cm2": ("1E+4", (1, -1, -2, 0, 0)),
+    "N/cm2 m/min": ("166.6666666666666666666666667", (1, 0, -3, 0, 0)),
+    "N/mm": ("1E+3", (1, 0, -2, 0, 0)),
+    "W/m/K": ("1", (1, 1, -3, -1, 0)),
+    "bar": ("1E+5", (1, -1, -2, 0, 0)),
+    "cm^3": ("0.000001", (0, 3, 0, 0, 0)),
+    "day": ("8.64E+4", (0, 0, 1, 0, 0)),
+    "deg": ("0.01745329251994329576923690768", (0, 0, 0, 0, 1)),
+    "ft": ("0.3048", (0, 1, 0, 0, 0)),
+    "g cm^2": ("1E-7", (1, 2, 0, 0, 0)),
+    "g mm": ("0.000001", (1, 1, 0, 0, 0)),
+    "g/cm3": ("1E+3", (1, -3, 0, 0, 0)),
+    "h": ("3.6E+3", (0, 0, 1, 0, 0)),
+    "in": ("0.0254", (0, 1, 0, 0, 0)),
+    "inch": ("0.0254", (0, 1, 0, 0, 0)),
+    "kN/mm": ("1E+6", (1, 0, -2, 0, 0)),
+    "kPa": ("1E+3", (1, -1, -2, 0, 0)),
+    "kW": ("1E+3", (1, 2, -3, 0, 0)),
+    "kgf": ("9.80665", (1, 1, -2, 0, 0)),
+    "kg mm^2": ("0.000001", (1, 2, 0, 0, 0)),
+    "kg/m3": ("1", (1, -3, 0, 0, 0)),
+    "lb": ("0.45359237", (1, 0, 0, 0, 0)),
+    "lb/in3": ("27679.90471020312119364396209", (1, -3, 0, 0, 0)),
+    "lbf": ("4.4482216152605", (1, 1, -2, 0, 0)),
+    "lbf/in": ("175.1268352464763779527559054", (1, 0, -2, 0, 0)),
+    "lbf in": ("0.1129848290276167", (1, 2, -2, 0, 0)),
+    "mPa s": ("0.001", (1, -1, -1, 0, 0)),
+    "cSt": ("0.000001", (0, 2, -1, 0, 0)),
+    "min-1": ("0.01666666666666666666666666667", (0, 0, -1, 0, 0)),
+    "mm/rad^2": ("0.001", (0, 1, 0, 0, -2)),
+    "mm^2/s": ("0.000001", (0, 2, -1, 0, 0)),
+    "mm^3/N/m": ("1E-9", (-1, 1, 2, 0, 0)),
+    "mm²": ("0.000001", (0, 2, 0, 0, 0)),
+    "mrad": ("0.001", (0, 0, 0, 0, 1)),
+    "ms": ("0.001", (0, 0, 1, 0, 0)),
+    "nm": ("1E-9", (0, 1, 0, 0, 0)),
+    "psi": ("6894.757293168361336722673443", (1, -1, -2, 0, 0)),
+    "ksi": ("6894757.293168361336722673443", (1, -1, -2, 0, 0)),
+    "atm": ("101325", (1, -1, -2, 0, 0)),
+    "hp": ("745.69987158227022", (1, 2, -3, 0, 0)),
+    "oz": ("0.028349523125", (1, 0, 0, 0, 0)),
+    "rad/s²": ("1", (0, 0, -2, 0, 1)),
+    "rpm": ("0.1047197551196597746154214461", (0, 0, -1, 0, 1)),
+    "rps": ("6.283185307179586476925286766", (0, 0, -1, 0, 1)),
+    "t": ("1E+3", (1, 0, 0, 0, 0)),
+    "turn/s": ("6.283185307179586476925286766", (0, 0, -1, 0, 1)),
+    "um": ("0.000001", (0, 1, 0, 0, 0)),
+    "µm": ("0.000001", (0, 1, 0, 0, 0)),
+    "µs": ("0.000001", (0, 0, 1, 0, 0)),
+    "°": ("0.01745329251994329576923690768", (0, 0, 0, 0, 1)),
+    "hPa": ("1E+2", (1, -1, -2, 0, 0)),
+    "mbar": ("1E+2", (1, -1, -2, 0, 0)),
+    "daN": ("1E+1", (1, 1, -2, 0, 0)),
+    "cP": ("0.001", (1, -1, -1, 0, 0)),
+    "MPa^-1": ("0.000001", (-1, 1, 2, 0, 0)),
+    "m ^2": ("1", (0, 2, 0, 0, 0)),
+    "N·m": ("1", (1, 2, -2, 0, 0)),
+}
+"""SI value and powers of kg, m, s, K and rad of the units of cases and tests, to 28 digits."""
+
+
+@pytest.mark.parametrize("unit", PINNED)
+def test_a_unit_has_its_exact_factor(unit: str) -> None:
+    size, powers = PINNED[unit]
+    read = units._unit(unit)
+    assert (*read.powers, read.zero) == (*powers, 0, 0)
+    # 28 digits of decimal arithmetic, a few operations
+    assert abs(read.size / Decimal(size) - 1) < Decimal("1e-26")
+    assert float(read.size) == float(Decimal(size))
+    assert units.parse(f"3 {unit}", unit, "f") == float(3 * Decimal(size))
 
 
 @pytest.mark.parametrize(
     "form",
     ["{0}", "1/{0}", "{0} {1}", "{0}*{1}", "{0}/{1}", "{0}^2/{1}", "{1}**2 {0}-1", "{1}/{0}/{1}3"],
 )
-def test_table_of_units_agrees_with_pint(form: str) -> None:
-    # 28 digits of decimal arithmetic, a few operations
-    names = list(units._COMMON)
-    pairs = zip(names, names[7:] + names[:7], strict=True)
-    for text in (form.format(*pair) for pair in pairs):
-        table = units._from_table(text)
-        assert table is not None
-        assert table.powers == _pint_powers(text), text
-        registry = units._registry()
-        size = registry.Quantity(Decimal(1), units._unit(text)).to_base_units().magnitude
-        assert abs(size / table.size - 1) < Decimal("1e-25"), text
+def test_units_are_composed_from_left_to_right(form: str) -> None:
+    forms: dict[str, tuple[int, int]] = {
+        "{0}": (1, 0), "1/{0}": (-1, 0), "{0} {1}": (1, 1), "{0}*{1}": (1, 1), "{0}/{1}": (1, -1),
+        "{0}^2/{1}": (2, -1), "{1}**2 {0}-1": (-1, 2), "{1}/{0}/{1}3": (-1, -2),
+    }  # fmt: skip
+    names = list(units._UNITS)
+    for first, second in zip(names, names[7:] + names[:7], strict=True):
+        one, other = units._UNITS[first], units._UNITS[second]
+        read = units._unit(form.format(first, second))
+        a, b = forms[form]
+        assert abs(read.size / (one.size**a * other.size**b) - 1) < Decimal("1e-26")
+        powers = zip(one.powers, other.powers, strict=True)
+        assert read.powers == tuple(a * x + b * y for x, y in powers)
 
 
-@pytest.mark.parametrize("number", ["20", "-40", "1e3", "0.05", "-273.15", "70.000001"])
-def test_a_celsius_temperature_is_that_of_pint(number: str) -> None:
-    registry, value = units._registry(), Decimal(number)
-    kelvin = registry.Quantity(value, "degC").to("K").magnitude
-    assert units._to_si(value, "degC", "K") == kelvin
-    assert units._from_si(kelvin, "degC") == registry.Quantity(kelvin, "K").to("degC").magnitude
-    assert units.same_dimension("degC", "K") and not units.same_dimension("degC", "m")
-    assert units._from_table("W/degC") is None
+def test_byte_is_a_dimension_of_its_own() -> None:
+    assert units.parse("20 MB", "MB", "memory") == 20e6 == 20 * units.factor("MB")
+    assert not units.same_dimension("MB", "percent")
 
 
 @pytest.mark.parametrize(
-    "text", ["m//s", "m /", "/m", "m*", "m*/s", "1//m", "m**", "m^2^2", " m", "1", "1 m", "m*1/s"]
-)
-def test_table_of_units_takes_nothing_that_pint_refuses(text: str) -> None:
-    assert units._from_table(text) is None
+    ("text", "kelvin"),
+    [("20 degC", 293.15), ("-40 °C", 233.15), ("-273.15 degC", 0.0), ("68 degF", 293.15),
+     ("-40 degF", 233.15), ("-459.67 °F", 0.0), ("70.000001 degC", 343.150001)],
+)  # fmt: skip
+def test_a_temperature_has_its_zero(text: str, kelvin: float) -> None:
+    assert units.parse(text, "K", "temperature") == kelvin
+    assert units.same_dimension("degC", "K") and not units.same_dimension("degC", "m")
+    with pytest.raises(ValueError, match="degC"):
+        units._unit("W/degC")
+
+
+@pytest.mark.parametrize(
+    ("text", "closest"),
+    [("3 mn", "mm|mN|min"), ("3 Mpa", "MPa"), ("3 inchs", "inches"), ("3 newton", ""),
+     ("3 furlong", "")],
+)  # fmt: skip
+def test_an_unknown_unit_names_the_closest(text: str, closest: str) -> None:
+    with pytest.raises(InputError, match="in a known unit, such as mm") as refused:
+        units.parse(text, "mm", "length")
+    if closest:
+        assert re.search(rf"; did you mean ({closest})\?$", str(refused.value))
+    else:
+        assert "did you mean" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "text", ["m//s", "m /", "/m", "m*", "m*/s", "1//m", "m**", "m^2^2", " m", "1", "1 m", "m*1/s",
+             "m10", "m^0", "kkg", "mmin", "ft²²"],
+)  # fmt: skip
+def test_what_is_no_unit_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r".*"):
         units._unit(text)

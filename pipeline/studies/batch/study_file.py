@@ -23,7 +23,6 @@ DESIGNS_MAX = 10_000_000
 SCHEMA_VERSION = 1
 INDEPENDENT = ("random", "latin_hypercube", "sobol")
 """Methods of sampling whose first designs are a sample of the distributions."""
-_BITS = 8.0  # a byte; the SI value of "1 MB" is in bits
 _NUMBER_MAX = 1e300
 _KEPT = re.compile(r"(|failed|pareto|best:([1-9][0-9]{0,6}))")
 
@@ -189,12 +188,12 @@ class DesignLimits(Section):
     """Bounds of time and memory for the solution of one design."""
 
     time: Annotated[float, In("s", at_least=0.1, at_most=1e6)] = 600.0
-    memory: Annotated[float, In("MB", at_least=10, at_most=1e6)] = _BITS * 1e9
+    memory: Annotated[float, In("MB", at_least=10, at_most=1e6)] = 1e9
 
     @property
     def bytes(self) -> int:
         """Memory in bytes."""
-        return int(self.memory / _BITS)
+        return int(self.memory)
 
 
 class Study(Section):
