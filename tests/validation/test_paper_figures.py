@@ -524,4 +524,4 @@ def test_text_of_a_figure_is_escaped_and_told_aloud():
     assert "a &lt;b&gt; &amp; c" in text and "<b>" not in text and "<i>" not in text
     chart = Chart(record)
     assert chart.caption.startswith("C24, Figures 1 and 2. ")
-    assert chart.alt == "a <b> & c. y, N, one <: 2 to 3. y, N, two: 4 to 4."
+    assert chart.alt == "a <b> & c. y, one <: 2 to 3 N. y, two: 4 to 4 N."

@@ -4,7 +4,7 @@ In the order of use:
 
 | module              | responsibility                                                       |
 | ------------------- | -------------------------------------------------------------------- |
-| `paper_chart`       | a figure of a paper as SVG                                           |
+| `paper_chart`       | a figure of a paper from its record                                  |
 | `figures_page`      | ``figures.html``: figures beside the published values                |
 | `values_page`       | ``values.html``: values, verdicts, basis, figures                    |
 | `gallery_page`      | ``gallery.html``: machines and their cams                            |

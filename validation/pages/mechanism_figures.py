@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camwright.geometry.figures import SERIES
+from camwright.geometry.figures import SERIES, Curve, Figure, HorizontalAxis, Look, Panel
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS, png, shipped, style
+from camwright.reports.figure_svg import COLOURS, png, png_of, shipped, style
 from camwright.reports.report_tables import Record
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Canvas
 
 _PAIRS = {
     "shaft": ("shaft", "blue"),
@@ -28,79 +25,60 @@ _PAIRS = {
 def draw(document: Record, out: Path) -> tuple[Path, ...]:
     """Write the PNG figures of a mechanism comparison: friction energy, torque, workspace."""
     space = document["workspace"]
+    label = "friction energy above the best cam, %"
     drawn = {
-        "energies": _energies(document),
-        "turn": _turn(document),
+        "energies": png_of(_energies(document)),
+        "turn": png_of(_turn(document)),
         "workspace_slider_crank": _maps(
-            space,
-            "friction energy above the best cam, %",
-            ("slider_crank", "no offset"),
-            ("slider_crank_offset", "offset"),
+            space, label, ("slider_crank", "no offset"), ("slider_crank_offset", "offset")
         ),
         "workspace_eccentric_cam": _maps(
             space,
-            "friction energy above the best cam, %",
+            label,
             ("small_roller", "small roller, no offset"),
             ("big_roller_offset", "big roller, offset"),
             ("small_roller_offset", "small roller, offset"),
         ),
     }
-    paths = []
-    for name, canvas in drawn.items():
-        with style(name):
-            paths.append(write_atomic(out / f"{name}.png", png(canvas)))
-    return tuple(paths)
+    return tuple(write_atomic(out / f"{name}.png", picture) for name, picture in drawn.items())
 
 
-def _energies(document: Record) -> Canvas:
-    from matplotlib.figure import Figure as Canvas
-
+def _energies(document: Record) -> Figure:
     rows = []
     for one in document["mechanisms"]:
         rows.append((one["name"], one["losses_J"]))
         rows += [(f"slipping, mu {mu}", losses) for mu, losses in one.get("slipping", {}).items()]
-    with style("energies"):
-        canvas = Canvas(figsize=(6.4, 0.9 + 0.36 * len(rows)), layout="constrained")
-        axes = canvas.add_subplot()
-        at = np.arange(len(rows))[::-1]
-        left = np.zeros(len(rows))
-        for pair, (name, colour) in _PAIRS.items():
-            width = np.array([losses[pair] for _, losses in rows])
-            axes.barh(at, width, left=left, height=0.6, color=COLOURS[colour], label=name)
-            left = left + width
-        for place, total in zip(at, left, strict=True):
-            axes.text(total, place, f" {total:.1f}", va="center")
-        axes.set_yticks(at, [name for name, _ in rows])
-        axes.set_xlabel("friction energy of a turn, J")
-        axes.set_xlim(0, 1.12 * left.max())
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.legend(frameon=False, ncols=5, loc="lower left", bbox_to_anchor=(0, 1))
-    return canvas
+    names, places = tuple(name for name, _ in rows), np.arange(float(len(rows)))
+    curves, start = [], np.zeros(len(rows))
+    for pair, (label, colour) in _PAIRS.items():
+        end = start + np.array([losses[pair] for _, losses in rows])
+        curves.append(Curve(end, places, label, colour, "bar", lower=start, notes=names))
+        start = end
+    axis = HorizontalAxis("friction energy of a turn", "J", (0.0, 1.12 * float(start.max())))
+    panel = Panel("", "", tuple(curves), kind="bars")
+    return Figure("energies", "Friction energy of a turn", "", (panel,), axis)
 
 
-def _turn(document: Record) -> Canvas:
-    from matplotlib.figure import Figure as Canvas
-
-    with style("turn"):
-        canvas = Canvas(figsize=(6.4, 4.6), layout="constrained")
-        upper, lower = canvas.subplots(2, 1, sharex=True)
-        strokes = ("-", "--", ":", "-.")
-        for k, one in enumerate(document["mechanisms"]):
-            look = {"linestyle": strokes[k % 4], "color": COLOURS[SERIES[k % len(SERIES)]]}
-            upper.plot(document["phi_deg"], one["motor_torque_Nm"], label=one["name"], **look)
-            lower.plot(document["phi_deg"], one["reduced_inertia_kg_m2"], **look)
-        upper.set_ylabel("motor torque, N m")
-        lower.set_ylabel("reduced inertia, kg m²")
-        lower.set_xlabel("crank angle, deg")
-        lower.set_xticks(range(0, 361, 60))
-        upper.legend(frameon=False, ncols=3, loc="lower left", bbox_to_anchor=(0, 1))
-        for axes in (upper, lower):
-            axes.spines[["top", "right"]].set_visible(False)
-            axes.grid(visible=True)
-    return canvas
+def _turn(document: Record) -> Figure:
+    looks: tuple[Look, ...] = ("line", "dashed", "dotted")
+    angle = np.array(document["phi_deg"])
+    panels = [
+        Panel(quantity, unit, tuple(
+            Curve(angle, np.array(one[key]), one["name"], colour, look)
+            for one, colour, look in zip(
+                document["mechanisms"], cycle(SERIES), cycle(looks), strict=False
+            )
+        ), height=1.2)
+        for key, quantity, unit in (
+            ("motor_torque_Nm", "motor torque", "N m"),
+            ("reduced_inertia_kg_m2", "reduced inertia", "kg m²"),
+        )
+    ]  # fmt: skip
+    axis = HorizontalAxis("crank angle", "deg", (0.0, 360.0), 60.0)
+    return Figure("turn", "Motor torque and reduced inertia", "", tuple(panels), axis)
 
 
-def _maps(space: Record, label: str, *wanted: tuple[str, str]) -> Canvas:
+def _maps(space: Record, label: str, *wanted: tuple[str, str]) -> bytes:
     """Friction energy above the best cam over the workspace; white where the sizes do not fit."""
     from matplotlib.figure import Figure as Canvas
 
@@ -126,4 +104,4 @@ def _maps(space: Record, label: str, *wanted: tuple[str, str]) -> Canvas:
                           ha="center", va="center", color=COLOURS["muted"])  # fmt: skip
             axes.set_ylabel("rod over crank")
         panels[-1].set_xlabel("crank or eccentricity, mm; rod: pitch radius of the cam")
-    return canvas
+        return png(canvas)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from camwright.pipeline.base.files import Json
-from camwright.reports.figure_svg import png, shipped, style
+from camwright.reports.figure_svg import png_of
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_content import Pictures, ReportSection, SectionBlock, Tabular
 from camwright.reports.report_tables import DASH, Cell, Record, ReportTable, Status, words
-from validation.pages.paper_chart import Chart, drawn
+from validation.pages.paper_chart import Chart
 
 HEAD = (
     "row", "quantity", "published", "obtained", "unit", "verdict", "reason", "tolerance", "basis",
@@ -66,13 +66,10 @@ def _paper(document: Record, key: str) -> ReportSection:
     return ReportSection(key, key, blocks, f"{paper['citation']}{doi}")
 
 
-@shipped()
-def _picture(figure: Record) -> Picture:
+def _picture(record: Record) -> Picture:
     """Curves behind a group of rows."""
-    chart = Chart(figure)
-    with style(chart.id):
-        picture = png(drawn(figure))
-    return Picture(chart.title, chart.caption, chart.alt, png=picture)
+    figure = Chart(record).figure
+    return Picture(figure.title, figure.caption, figure.alt, png=png_of(figure))
 
 
 def _row(row: Record) -> list[Cell]:
