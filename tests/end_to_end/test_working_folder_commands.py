@@ -65,9 +65,9 @@ def test_the_other_commands_import_none_of_the_folder(tmp_path: Path) -> None:
 
 
 def test_every_command_is_run_in_a_folder_of_traps() -> None:
-    pages = [
-        (ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "docs/tutorial.md")
-    ]
+    names = ("tutorial.md", "tutorials/size.md", "tutorials/contact.md", "tutorials/sign.md")
+    files = [ROOT / "README.md", *(ROOT / "docs" / name for name in names)]
+    pages = [file.read_text(encoding="utf-8") for file in files]
     lines = [line for page in pages for line in re.findall(r"^camwright (.+)$", page, re.MULTILINE)]
     words = [line.split() for line in (*lines, *COMMANDS)]
     assert set(TREE) <= {" ".join(each[:count]) for each in words for count in (1, 2)}
