@@ -2,6 +2,7 @@
 # make test    set up .venv, run ruff, mypy and the tests
 # make verify  the slow tests, or PART="sizes ends" of them; writes docs/verification.md
 # make bench   benchmarks             make lint  ruff and mypy only
+# make docs    the documentation site, into build/docs/site
 # make fuzz    20,000 mutated input files     make pins   write the pinned figures of the cases anew
 
 PYTHON ?= python3
@@ -14,7 +15,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help setup run test verify fuzz pins lint typing bench clean
+.PHONY: help setup run test verify docs fuzz pins lint typing bench clean
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -49,6 +50,9 @@ test: lint
 
 verify: .venv/developing
 	$(BIN)/python tests/slow_parts.py $(PART)
+
+docs: .venv/developing
+	$(BIN)/python scripts/build_site.py
 
 fuzz: .venv/developing
 	$(BIN)/python tests/mutated_inputs.py 20000

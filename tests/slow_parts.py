@@ -42,7 +42,7 @@ PARTS: Mapping[str, tuple[str, ...]] = {
     "remedies": ("remedies_hold", "redesign_command"),
     "sizes": ("size_command",),
     "designs": ("design_command",),
-    "site": ("tutorials",),
+    "site": ("site_in_browser", "tutorials"),
     "studies": ("live_preview", "screening", "screening_designs", "study"),
 }  # fmt: skip
 """Files of tests/ by part, without `test_`; all others are of the part `records`."""
