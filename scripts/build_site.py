@@ -18,7 +18,10 @@ DOCS = ROOT / "docs"
 OUT = ROOT / "build" / "docs"
 GENERATOR = {"sphinx": "sphinx", "furo": "furo", "myst_parser": "myst-parser"}
 """Modules of the generator and the packages that bring them; all are of the extra `docs`."""
-_BLOCK = re.compile(r"<!-- (?:table: \w+|end|results of make verify|end of results) -->\n?")
+_BLOCK = re.compile(
+    r"<!-- (?:table: \w+|end|results of make verify|end of results|"
+    r"figures of the tests|end of figures) -->\n?"
+)
 _FIGURE = re.compile(r"<!-- figure: (\w+) -->")
 _TURNING = "<!-- turning cam -->"
 _LINK = re.compile(r"\]\(([\w/.-]+\.md)(#[^)\s]+)?\)")

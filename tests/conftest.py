@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import json
 import os
 import signal
 import sys
@@ -53,6 +54,27 @@ def command(
         return int(leaving.value.code or 0), captured.out, captured.err
 
     return call
+
+
+@pytest.fixture
+def measured(record_property: Callable[[str, object], None]) -> Callable[..., None]:
+    """Asserts that a figure is its reference within a share, and records it for the documentation.
+
+    Its name and unit are one row of docs/verification.md, whatever the number of tests: the worst.
+    """
+
+    def call(name: str, value: float, reference: float, *, rtol: float, unit: str = "") -> None:
+        assert value == pytest.approx(reference, rel=rtol), name
+        figure = [name, float(value), float(reference), rtol, unit]
+        record_property("measured", json.dumps(figure))
+
+    return call
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if "measured" in getattr(item, "fixturenames", ()):
+            item.add_marker("measured")
 
 
 def pytest_collection_finish() -> None:

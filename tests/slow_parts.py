@@ -7,6 +7,7 @@ python tests/slow_parts.py --list       names and files of the parts
 
 from __future__ import annotations
 
+import json
 import platform
 import re
 import subprocess
@@ -22,6 +23,9 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "verification.md"
 START, END = "<!-- results of make verify -->", "<!-- end of results -->"
+FIGURES, FIGURES_END = "<!-- figures of the tests -->", "<!-- end of figures -->"
+MEASURED = "figures"
+"""Name of the part of the tests that state figures, quick ones all of them."""
 
 PARTS: Mapping[str, tuple[str, ...]] = {
     "contact": ("any_contour_meshes", "envelope_verification", "stress_fields", "deck",
@@ -97,6 +101,77 @@ def counts(report: Path) -> tuple[int, int, int]:
     return passed, failed, skipped
 
 
+class Figure(NamedTuple):
+    """A figure of a test beside its reference; rtol: the share by which they may differ."""
+
+    name: str
+    value: float
+    reference: float
+    rtol: float
+    unit: str
+
+    @property
+    def deviation(self) -> float:
+        """Difference over the reference."""
+        return abs(self.value - self.reference) / abs(self.reference)
+
+    def shown(self, value: float) -> str:
+        """A value with the unit."""
+        return f"{value:.6g} {self.unit}".rstrip()
+
+
+def figures(report: Path) -> list[Figure]:
+    """The worst figure of each name in a JUnit report, by its share of what is permitted."""
+    worst: dict[str, Figure] = {}
+    for each in ET.parse(report).getroot().iter("property"):
+        if each.get("name") == "measured":
+            one = Figure(*json.loads(each.get("value", "")))
+            known = worst.setdefault(one.name, one)
+            if one.deviation / one.rtol > known.deviation / known.rtol:
+                worst[one.name] = one
+    return list(worst.values())
+
+
+def figure_table(listed: Sequence[Figure]) -> str:
+    """Figures as a table."""
+    head = ["| figure | found | reference | deviation | permitted |",
+            "| --- | --- | --- | --- | --- |"]  # fmt: skip
+    rows = [
+        f"| {one.name} | {one.shown(one.value)} | {one.shown(one.reference)} | "
+        f"{100.0 * one.deviation:.2g} % | {100.0 * one.rtol:.2g} % |"
+        for one in sorted(listed)
+    ]
+    return "\n".join([*head, *rows])
+
+
+def measure() -> Result:
+    """Run the quick tests that state figures, and write these into the page."""
+    begin = time.monotonic()
+    files = [path for path in sorted((ROOT / "tests").rglob("test_*.py"))
+             if "measured(" in path.read_text(encoding="utf-8")]  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "results.xml"
+        command = [
+            *(sys.executable, "-m", "pytest", "-q", "-m", "measured and not slow", "-n", "2"),
+            *(f"--junitxml={report}", *files),
+        ]
+        code = subprocess.run(command, cwd=ROOT, check=False).returncode
+        passed, failed, skipped = counts(report) if report.is_file() else (0, 0, 0)
+        if code == 0:
+            page = PAGE.read_text(encoding="utf-8")
+            PAGE.write_text(with_figures(page, figures(report)), encoding="utf-8")
+    return Result(passed, max(failed, int(code != 0)), skipped, time.monotonic() - begin)
+
+
+def with_figures(page: str, listed: Sequence[Figure]) -> str:
+    """The page with these figures in place of those that it has."""
+    before, found, rest = page.partition(FIGURES)
+    _, ended, after = rest.partition(FIGURES_END)
+    if not found or not ended:
+        raise SystemExit(f"{PAGE}: the marks of the table of figures are missing")
+    return f"{before}{FIGURES}\n{figure_table(listed)}\n{FIGURES_END}{after}"
+
+
 def commit() -> str:
     """Commit of the checkout, with a + where files of it are changed."""
 
@@ -125,7 +200,7 @@ def written(page: str, rows: Mapping[str, str]) -> str:
     kept |= rows
     head = ["| part | result | passed | failed | skipped | wall time | commit | date |",
             "| --- | --- | --- | --- | --- | --- | --- | --- |"]  # fmt: skip
-    body = [kept[name] for name in (*PARTS, RECORDS) if name in kept]
+    body = [kept[name] for name in (*PARTS, RECORDS, MEASURED) if name in kept]
     return before + "\n".join([START, *head, *body, END]) + after
 
 
@@ -136,13 +211,14 @@ def main(names: Sequence[str]) -> int:
         for name, files in parts.items():
             print(f"{name}: {' '.join(str(path.relative_to(ROOT)) for path in files)}")
         return 0
-    if unknown := [name for name in names if name not in parts]:
-        print(f"part = {unknown[0]}, must be one of: {', '.join(parts)}", file=sys.stderr)
+    if unknown := [name for name in names if name not in (*parts, MEASURED)]:
+        known = ", ".join([*parts, MEASURED])
+        print(f"part = {unknown[0]}, must be one of: {known}", file=sys.stderr)
         return 2
     begin, failed, of = time.monotonic(), 0, commit()
-    for name in names or parts:
+    for name in names or (*parts, MEASURED):
         print(f"== {name}", flush=True)
-        result = run(parts[name])
+        result = measure() if name == MEASURED else run(parts[name])
         failed += result.failed
         rows = {name: row(name, result, of, datetime.now(UTC))}
         PAGE.write_text(written(PAGE.read_text(encoding="utf-8"), rows), encoding="utf-8")

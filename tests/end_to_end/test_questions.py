@@ -136,7 +136,10 @@ def test_the_page_has_ten_questions() -> None:
 
 @pytest.mark.parametrize("title", QUESTIONS)
 def test_a_question_has_its_answer(
-    title: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    title: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    measured: Callable[..., None],
 ) -> None:
     blocks = dict(re.findall(r"^```(\w+)\n(.*?)^```$", QUESTIONS[title], re.M | re.S))
     commands = blocks["bash"].splitlines()
@@ -164,4 +167,6 @@ def test_a_question_has_its_answer(
     for number, value in zip(stated, exact, strict=True):
         unit = 10.0 ** (np.floor(np.log10(abs(value))) - 3.0)
         # half of the fourth digit; a preload is rounded up
-        assert abs(number - value) <= (1.0 if "rounded up" in answer else 0.51) * unit, title
+        most = (1.0 if "rounded up" in answer else 0.51) * unit
+        assert abs(number - value) <= most, title
+        measured(f"Textbook question: {title}", number, value, rtol=1.01 * most / abs(value))

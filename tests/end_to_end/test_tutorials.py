@@ -18,9 +18,11 @@ FOLDER = Path(__file__).resolve().parents[2] / "docs" / "tutorials"
 PAGES = sorted(FOLDER.glob("*.md"))
 QUICK = ("contact",)
 """Pages of a second; the others are executed by `make verify`."""
-NOT_ALONE = ("python", "crown", "workshop")
-"""Pages on the run or the case of the first ten minutes, which is made before them."""
-FIRST = ("camwright new demo", "camwright run demo.toml --out runs/demo --positions 36")
+BEFORE = {
+    "crown": ("camwright new demo",),
+    "python": ("camwright new demo", "camwright run demo.toml --out runs/demo --positions 36"),
+}
+"""Commands of the first ten minutes on whose files a page rests."""
 WRITES = {
     "crown": "demo_crown/crown.toml",
     "size": "feed_sized.png",
@@ -90,9 +92,8 @@ def executed(block: Block, folder: Path) -> None:
      for page in PAGES],
 )  # fmt: skip
 def test_a_tutorial_runs_from_an_empty_folder(page: Path, tmp_path: Path) -> None:
-    if page.stem in NOT_ALONE:
-        for command in FIRST:
-            run(shlex.split(command), tmp_path)
+    for command in BEFORE.get(page.stem, ()):
+        run(shlex.split(command), tmp_path)
     every = list(blocks(page.read_text(encoding="utf-8")))
     snippets = [each for each in every if each.language == "python"]
     if snippets:  # of a page one program, at its end

@@ -1,5 +1,6 @@
 """`make verify`: parts of the slow tests, and the page of their results."""
 
+import json
 import subprocess
 from datetime import UTC, datetime
 from pathlib import Path
@@ -37,6 +38,22 @@ def test_tests_are_counted(tmp_path: Path) -> None:
         '<testsuites><testsuite tests="9" failures="1" errors="2" skipped="3"/></testsuites>'
     )
     assert slow_parts.counts(report) == (3, 3, 3)
+
+
+def test_the_worst_figure_of_a_name_is_written(tmp_path: Path) -> None:
+    report = tmp_path / "results.xml"
+    listed = (["b", 101.0, 100.0, 0.02, "mm"], ["a", -2.0, -2.0, 0.01, ""],
+              ["b", 98.5, 100.0, 0.02, "mm"])  # fmt: skip
+    cases = "".join(
+        f"<testcase><properties><property name='measured' value='{json.dumps(each)}'/>"
+        "<property name='other' value='1'/></properties></testcase>"
+        for each in listed
+    )
+    report.write_text(f"<testsuites><testsuite>{cases}</testsuite></testsuites>")
+    page = f"head\n{slow_parts.FIGURES}\nold\n{slow_parts.FIGURES_END}\ntail\n"
+    written = slow_parts.with_figures(page, slow_parts.figures(report))
+    assert "| a | -2 | -2 | 0 % | 1 % |\n| b | 98.5 mm | 100 mm | 1.5 % | 2 % |\n" in written
+    assert "old" not in written and written.startswith("head\n") and written.endswith("\ntail\n")
 
 
 def test_a_run_that_breaks_off_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:

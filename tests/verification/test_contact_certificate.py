@@ -105,16 +105,18 @@ def test_non_matching_patch_test(angle):
 
 
 @pytest.mark.parametrize("k", range(8))
-def test_two_steel_cylinders_at_every_mesh_position(k):
+def test_two_steel_cylinders_at_every_mesh_position(k, measured):
     # Gate 0.5 % at h = a/8, the contact pushed through one facet.
     a, p0, load = hertz_of_the_discs()
     found = two_discs(phase=k / 8, other_phase=0.37)
-    np.testing.assert_allclose(found.p0, p0, rtol=5e-4)
-    np.testing.assert_allclose(found.half_width, a, rtol=1e-3)
+    name, mega = "Two steel cylinders, Hertz", 1e-6
+    measured(f"{name}: peak pressure", mega * found.p0, mega * p0, rtol=5e-4, unit="MPa")
+    measured(f"{name}: half-width", 1e3 * found.half_width, 1e3 * a, rtol=1e-3, unit="mm")
     shear = hertz.SHEAR_MAX * p0 + hertz.disc_correction(load, RADIUS)
-    np.testing.assert_allclose(found.tau_max, shear, rtol=2e-3)
+    measured(f"{name}: shear", mega * found.tau_max, mega * shear, rtol=2e-3, unit="MPa")
     np.testing.assert_allclose(found.tau_depth, hertz.SHEAR_MAX_DEPTH * a, atol=0.05 * a)
-    np.testing.assert_allclose(found.von_mises, hertz.von_mises_peak(NU)[0] * p0, rtol=5e-3)
+    mises = hertz.von_mises_peak(NU)[0] * p0
+    measured(f"{name}: von Mises", mega * found.von_mises, mega * mises, rtol=5e-3, unit="MPa")
     assert found.residual_equilibrium < 1e-10 and found.residual_complementarity < 1e-10
 
 

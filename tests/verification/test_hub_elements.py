@@ -59,13 +59,16 @@ def lame(interference, cam=STEEL, share=(BORE / OUTER) ** 2):
 
 
 @pytest.mark.parametrize("cam", [STEEL, SOFT])
-def test_shrunk_ring_by_lame(cam):
+def test_shrunk_ring_by_lame(cam, measured):
     """Mean pressure and hoop stress of a ring without keyway to 0.1 %."""
     pressed = seated(cam=cam).units
     state, exact = pressed.state(loads(10e-6, count=1)), lame(10e-6, cam)
-    assert pressed.unloaded(10e-6) == pytest.approx(exact, rel=1e-3)
+    name, mega = "Shrunk ring, Lame", 1e-6
+    pressure = mega * pressed.unloaded(10e-6)
+    measured(f"{name}: mean pressure", pressure, mega * exact, rtol=1e-3, unit="MPa")
     share = (BORE / OUTER) ** 2
-    assert state.stress.mean() == pytest.approx(exact * (1 + share) / (1 - share), rel=1e-3)
+    hoop, stress = mega * exact * (1 + share) / (1 - share), mega * state.stress.mean()
+    measured(f"{name}: hoop stress", stress, hoop, rtol=1e-3, unit="MPa")
     assert not state.opened.any()
 
 
