@@ -234,7 +234,7 @@ def read_axial(path: Path, load_case: str, worst: tuple[str, float] | None) -> A
     Raises
     ------
     ResultError
-        If the file cannot be read or lacks the load case.
+        If the file cannot be read, lacks the load case or has no known pressure of it.
     """
     entry = read_npz(path)
     try:
@@ -246,9 +246,12 @@ def read_axial(path: Path, load_case: str, worst: tuple[str, float] | None) -> A
     rows = np.flatnonzero(cases == load_case)
     if not rows.size:
         raise ResultError(f"{path}: load case {load_case} is missing")
-    row = int(rows[np.argmax(np.maximum(level, tilted)[rows].max(axis=1))])
-    if worst is not None and (cases == worst[0]).any():
-        near = np.flatnonzero(cases == worst[0])
+    most = np.maximum(level, tilted).max(axis=1)  # NaN where the follower may leave the cam
+    if not np.isfinite(most[rows]).any():
+        raise ResultError(f"the contact force of load case {load_case} is not known at any angle")
+    row = int(rows[np.nanargmax(most[rows])])
+    near = np.flatnonzero(np.isfinite(most) & (cases == worst[0])) if worst else rows[:0]
+    if worst is not None and near.size:
         row = int(near[np.argmin(np.abs((angle[near] - worst[1] + 180.0) % 360.0 - 180.0))])
     return AxialPressure(
         edges, angle[rows], tilted[rows], level[row], tilted[row], float(angle[row]),

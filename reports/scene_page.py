@@ -205,10 +205,12 @@ def _greatest(material: ReportMaterial, view: TurnView, stations: int) -> Array 
         )
     except ResultError:
         return None
+    solved = np.isfinite(envelope[MAP]).any(axis=1)
+    if not solved.any():
+        return None
     angle = np.linspace(0.0, 360.0, stations, endpoint=False)
-    return np.interp(
-        angle, envelope["cam_angle_deg"], np.nanmax(envelope[MAP], axis=1), period=360.0
-    )
+    greatest = np.nanmax(envelope[MAP][solved], axis=1)
+    return np.interp(angle, envelope["cam_angle_deg"][solved], greatest, period=360.0)
 
 
 def _cam(view: TurnView, width: float) -> Solid:

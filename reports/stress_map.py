@@ -23,7 +23,7 @@ def read_envelope(path: Path, load_case: str) -> dict[str, Array]:
     Raises
     ------
     ResultError
-        If the file cannot be read or lacks the load case.
+        If the file cannot be read, lacks the load case or has no known stress of it.
     """
     prefix = f"{load_case}."
     arrays = {
@@ -34,6 +34,8 @@ def read_envelope(path: Path, load_case: str) -> dict[str, Array]:
     missing = {"cam_angle_deg", "depth_mm", *(name for name, _ in MAPS)} - set(arrays)
     if missing:
         raise ResultError(f"{path}: no {', '.join(sorted(missing))} for load case {load_case}")
+    if not all(np.isfinite(arrays[name]).any() for name in ("depth_mm", *dict(MAPS))):
+        raise ResultError(f"the contact force of load case {load_case} is not known at any angle")
     return arrays
 
 
@@ -82,7 +84,8 @@ def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Arr
     depth, values = envelope["depth_mm"], envelope["von_mises_MPa"]
     radius = np.hypot(*place)
     scale = _enlarged(0.25 * float(radius.min()) / float(np.nanmax(depth)))
-    band = place[:, :, None] - up[:, :, None] * scale * depth
+    # Where the follower may leave the cam there is no stress, nor a depth at which it is known.
+    band = place[:, :, None] - up[:, :, None] * scale * np.nan_to_num(depth)
     thinned = slice(None, None, max(1, at.size // _STATIONS))
     closed, shown = (
         np.concatenate([v[..., thinned, :], v[..., :1, :]], axis=-2) for v in (band, values)

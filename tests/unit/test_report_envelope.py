@@ -54,3 +54,19 @@ def test_draws_the_map_in_its_place_along_the_contour(path):
 @pytest.mark.parametrize(("wanted", "drawn"), [(1.0, 1.0), (1.99, 1.0), (26.0, 20.0), (0.6, 0.5)])
 def test_depths_are_enlarged_by_a_round_number(wanted, drawn):
     assert stress_map._enlarged(wanted) == pytest.approx(drawn)
+
+
+def test_stations_without_a_known_stress_are_left_out(path):
+    """Of a follower that leaves the cam; without any station there is a reason for no map."""
+    entry = dict(np.load(path))
+    for name in ("depth_mm", "von_mises_MPa", "shear_range_MPa"):
+        entry[f"rated.{name}"][0] = np.nan
+    np.savez(path, **entry)
+    found = stress_map.read_envelope(path, "rated")
+    angle = np.arange(0.0, 360.0, 10.0)
+    normal = np.stack([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    assert stress_map.around(found, angle, 40.0 * normal, normal).startswith(b"\x89PNG")
+    entry["rated.von_mises_MPa"][1] = np.nan
+    np.savez(path, **entry)
+    with pytest.raises(ResultError, match="rated is not known at any angle"):
+        stress_map.read_envelope(path, "rated")

@@ -102,6 +102,20 @@ def test_reads_the_pressure_along_the_line_at_its_worst_angle(axial):
         pressure_figures.read_axial(axial, "idle", None)
 
 
+def test_pressure_along_the_line_of_a_follower_that_leaves_the_cam(axial):
+    """Angles without a known force are left out; without any there is no picture, but a reason."""
+    entry = dict(np.load(axial))
+    entry["tilted_pressure_MPa"][[3, 7]] = np.nan
+    np.savez(axial, **entry)
+    one = pressure_figures.read_axial(axial, "idle", None)
+    assert (one.worst_angle, one.peak) == (270.0, pytest.approx(300.0 * 1.2 * 6 / 15))
+    assert pressure_figures.drawn_axial(one, None, None).startswith(b"\x89PNG")
+    entry["tilted_pressure_MPa"][:ROWS] = np.nan
+    np.savez(axial, **entry)
+    with pytest.raises(ResultError, match="load case idle is not known at any angle"):
+        pressure_figures.read_axial(axial, "idle", None)
+
+
 @pytest.mark.parametrize(("limit", "centre"), [(None, None), (250.0, 180.0)])
 def test_draws_the_pressure_along_the_line(axial, limit, centre):
     one = pressure_figures.read_axial(axial, "idle", None)
