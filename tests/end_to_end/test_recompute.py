@@ -354,7 +354,9 @@ def forged(file: Path, kind: Kind) -> None:
         assert count == 1
         file.write_text(text)
     elif kind is Kind.PAGE:
-        file.write_bytes(content.replace(b"</body>", b"<p>approved</p></body>"))
+        end, mark = (b"</svg>", b"text") if file.suffix == ".svg" else (b"</body>", b"p")
+        told = b"<%b>approved</%b>%b" % (mark, mark, end)
+        file.write_bytes(told.join(content.rsplit(end, 1)))
     elif kind is Kind.BOOK:
         with zipfile.ZipFile(file) as old:
             members = {name: old.read(name) for name in old.namelist()}
