@@ -79,10 +79,10 @@ def _energy(turn: SheetTurn) -> Figure | None:
     drag = _summed(np.abs(c["viscous_force_N"] * speed) / c["cam_speed_rad_per_s"], theta)
     rest = turn.case.get("follower", {}).get("face") is not None
     stored, moving = spring - spring[np.argmin(lift)], 0.5 * mass * speed**2
-    given = _summed(c["cam_torque_Nm"], theta)
+    put_in = _summed(c["cam_torque_Nm"], theta)
     curves = (Curve(turn.crank, stored, "spring, above zero lift"),
               Curve(turn.crank, moving, "kinetic, of the follower", "green"))  # fmt: skip
-    work = (Curve(turn.crank, given, "work of the cam", "vermillion"),
+    work = (Curve(turn.crank, put_in, "work of the cam", "vermillion"),
             Curve(turn.crank, rubbing + drag, "guide friction", "muted"))  # fmt: skip
     note = " The face rubs on the cam as well." if rest else ""
     return angle_figure(

@@ -7,7 +7,6 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from importlib import import_module
-from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -283,18 +282,15 @@ def split_keys(text: str) -> Split:
     sections = re.split(r"^### ", match[1], flags=re.MULTILINE)[1:]
     pages, places, lists = {}, {}, []
 
-    def first(section: str) -> str:
-        found = re.match(r"`\[+(\w+)", section)
-        return found[1] if found else "top"
-
-    for name, listed in groupby(
-        sorted(sections, key=lambda each: [*map(first, sections)].index(first(each))), first
-    ):
-        whole = list(listed)
+    by_table: dict[str, list[str]] = {}
+    for section in sections:
+        table = re.match(r"`\[+(\w+)", section)
+        by_table.setdefault(table[1] if table else "top", []).append(section)
+    for name, tables in by_table.items():
         title = "Top of the file" if name == "top" else f"`[{name}]`"
-        body = "\n".join(f"## {each.rstrip()}\n" for each in whole).replace("](", "](../")
+        body = "\n".join(f"## {each.rstrip()}\n" for each in tables).replace("](", "](../")
         pages[f"keys/{name}.md"] = f"# {title}\n\n{body}"
-        headings = [each.partition("\n")[0] for each in whole]
+        headings = [each.partition("\n")[0] for each in tables]
         places |= {slug(each): f"keys/{name}.md" for each in headings}
         inside = ", ".join(f"[{each}](keys/{name}.md#{slug(each)})" for each in headings)
         lists.append(f"- {inside}")
@@ -311,5 +307,5 @@ def _replaced(
 
 def check_links(places: Mapping[str, str]) -> dict[str, str]:
     """Page and anchor of each check by its id."""
-    found = {anchor.partition("-")[0]: f"{page}#{anchor}" for anchor, page in places.items()}
-    return {each.id: found[each.id.lower()] for each in CHECKS}
+    links = {anchor.partition("-")[0]: f"{page}#{anchor}" for anchor, page in places.items()}
+    return {each.id: links[each.id.lower()] for each in CHECKS}

@@ -411,22 +411,27 @@ _WEIGHT = "camshaft.counterweight"
 _COUNTERWEIGHT = f"{_WEIGHT}.radius", f"{_WEIGHT}.width"
 
 
+def _lowest_part(numbers: Numbers) -> str:
+    """Part of the follower above a counterweight: the fork, else roller or face."""
+    follower = numbers.known_case.facing
+    return follower.word if follower.parts.get("fork") is None else "fork"
+
+
 def beside_counterweight(body: CounterweightBody, numbers: Numbers) -> Gaps:
     """Gaps of a counterweight from bearings, gear, follower and machine shaft, m.
 
     Bearings are as wide as stated, else at most as their bore. The cam carries it.
     """
     case = numbers.known_case
-    shaft, follower = camshaft_of(case), case.facing
+    shaft = camshaft_of(case)
     wide = shaft.bearing_width if shaft.bearing_width is not None else shaft.widest
     half = np.nan if wide is None else 0.5 * wide
     gaps: dict[str, Value] = {}
     for number, bearing in enumerate((0.0, shaft.bearing_spacing), 1):
         at = bearing - shaft.cam_position
         gaps[f"bearing {number}"] = body.beyond(at - half, at + half)
-    name = follower.word if follower.parts.get("fork") is None else "fork"
     deep = numbers["follower.half_depth"] + _aside(numbers)
-    gaps[name] = body.under(deep, lowest_follower(numbers))
+    gaps[_lowest_part(numbers)] = body.under(deep, lowest_follower(numbers))
     if shaft.gear is None or not case.scope.covers("gear"):
         return gaps
     gear, half = _gear(numbers)
@@ -490,20 +495,17 @@ def counterweight_gap(solution: Solution) -> Demand | None:
     taken = weight.radius is None or weight.width is None
     words = f"half ring of {sizes[0]} outer radius, {sizes[1]} wide" if taken else ""
     if isnan(room):
-        left = {key: numbers is None for key, numbers in
-                zip(_COUNTERWEIGHT, (weight.radius, weight.width), strict=True)}  # fmt: skip
-        missing = tuple(key for key, lacks in left.items() if lacks)
-        bearing = camshaft_of(solution.machine)
-        if bearing.bearing_width is None and bearing.widest is None:
+        sized = zip(_COUNTERWEIGHT, (weight.radius, weight.width), strict=True)
+        missing = tuple(key for key, size in sized if size is None)
+        shaft = camshaft_of(solution.machine)
+        if shaft.bearing_width is None and shaft.widest is None:
             missing = (*missing, "camshaft.bearing_width")
         narrow = _narrowest(gaps) if body.width > 0.0 else "no room about the shaft"
         return Demand(None, limit, missing=missing, note=f"{words}: {narrow}")
     apart = {name: _one(gap) for name, gap in gaps.items()}
-    bearing_gaps = [gap for name, gap in apart.items() if name.startswith("bearing")]
-    fork = next(gap for name, gap in apart.items() if name in ("fork", "roller", "face"))
     stated = {
-        "b": min(bearing_gaps),
-        "f": fork,
+        "b": min(gap for name, gap in apart.items() if name.startswith("bearing")),
+        "f": apart[_lowest_part(solution.numbers)],
         "c": apart.get("gear", np.inf),
         "m": apart.get("machine shaft", np.inf),
     }

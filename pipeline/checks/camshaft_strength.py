@@ -714,11 +714,11 @@ def _hardest_impact(cycle: Cycle, rotor: Rotor, drag: float, backlash: float) ->
     if cycle.cam_speed <= 0.0:
         return None
     torque = cycle.loads.cam_torque + drag
-    found = [
+    impacts = [
         impact(cycle.theta, torque, reversal, cycle.cam_speed, rotor, backlash)
         for reversal in cycle.parts.reversals
     ]
-    return max(filter(None, found), key=lambda each: each.force, default=None)
+    return max(filter(None, impacts), key=lambda each: each.force, default=None)
 
 
 def _mesh_stiffness(gear: CamshaftGear) -> float:

@@ -68,10 +68,11 @@ class Change:
         InputError
             If the values do not fit into the case.
         """
-        given = dict(self.values)
-        cards = {key: str(given.pop(key)) for key in PARTS if key in given}
-        if given:
-            case = with_values(case, {key: _entry(key, value) for key, value in given.items()})
+        values = dict(self.values)
+        cards = {key: str(values[key]) for key in PARTS if key in values}
+        entries = {key: _entry(key, value) for key, value in self.values if key not in PARTS}
+        if entries:
+            case = with_values(case, entries)
         for key, name in cards.items():
             if key == BEARING:
                 case = with_roller(case, name, catalogue_of(folder).rollers[name], folder)

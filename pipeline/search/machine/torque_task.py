@@ -157,30 +157,30 @@ def task_of(torque: str | Path, **options: Unpack[DesignOptions]) -> DesignTask:
     """
     if unknown := options.keys() - {"speed", *NAMES}:
         raise InputError(min(unknown), "unknown", f"one of: speed, {', '.join(NAMES)}")
-    given = cast(
+    stated = cast(
         DesignOptions, {name: value for name, value in options.items() if value is not None}
     )
-    if "speed" not in given:
+    if "speed" not in stated:
         raise InputError("speed", "missing", 'stated: speed of the shaft, such as "1500 rpm"')
     path = Path(torque)
-    running = _number(given["speed"], "rpm", "speed", above=0.0)
-    least, most = _range(given.get("speeds"), running)
+    running = _number(stated["speed"], "rpm", "speed", above=0.0)
+    least, most = _range(stated.get("speeds"), running)
     fastest = _OVER * most
-    if "overspeed" in given:
-        fastest = _number(given["overspeed"], "rpm", "overspeed", at_least=most)
-    angle = _cycle(path, given.get("cycle"))
+    if "overspeed" in stated:
+        fastest = _number(stated["overspeed"], "rpm", "overspeed", at_least=most)
+    angle = _cycle(path, stated.get("cycle"))
     return DesignTask(
         file=path,
         demand=_demand(path, angle),
         speed=running,
         speeds=(least, most),
         overspeed=fastest,
-        period=_period(angle, _turns(given["ratio"]) if "ratio" in given else None),
-        space=_number(given["space"], "mm", "space", above=0.0) if "space" in given else None,
-        life=_number(given.get("life", _LIFE), "h", "life", above=0.0),
-        ambient=_number(given.get("ambient", _AMBIENT), "K", "ambient", above=0.0),
-        remove=_share(given["remove"]) if "remove" in given else _REMOVE,
-        options=given,
+        period=_period(angle, _turns(stated["ratio"]) if "ratio" in stated else None),
+        space=_number(stated["space"], "mm", "space", above=0.0) if "space" in stated else None,
+        life=_number(stated.get("life", _LIFE), "h", "life", above=0.0),
+        ambient=_number(stated.get("ambient", _AMBIENT), "K", "ambient", above=0.0),
+        remove=_share(stated["remove"]) if "remove" in stated else _REMOVE,
+        options=stated,
     )
 
 
