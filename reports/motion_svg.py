@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.figures import Figure
+from camwright.geometry.figures import Figure, closed
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports.analysis_sheet import groups
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of, motion_of
@@ -80,14 +80,20 @@ class _MotionPanel:
     limit_name: str = ""
 
     @property
+    def finite_curves(self) -> Sequence[_MotionCurve]:
+        """Curves that are finite at every angle."""
+        return [each for each in self.curves if np.isfinite(each.values).all()]
+
+    @property
     def span(self) -> tuple[float, float]:
         """Least and greatest value, rounded outwards to ticks."""
-        every = [np.nan_to_num(curve.values) for curve in self.curves]
+        every = [curve.values for curve in self.curves]
         ends = [0.0, *(float(v.min()) for v in every), *(float(v.max()) for v in every)]
         if np.isfinite(self.limit):
             ends.append(self.limit)
         step = _step(max(ends) - min(ends))
-        return float(np.floor(min(ends) / step) * step), float(np.ceil(max(ends) / step) * step)
+        low, high = float(np.floor(min(ends) / step)), float(np.ceil(max(ends) / step))
+        return low * step, max(high, low + 1.0) * step
 
     @property
     def ticks(self) -> Array:
@@ -189,42 +195,43 @@ def _text(
 
 
 def _panels(turn: SheetTurn) -> list[_MotionPanel]:
-    """Forces and contact pressure over the turn."""
-    forces = [
-        _MotionCurve(label, turn.columns[column], colour)
-        for label, column, colour in _FORCES
-        if np.isfinite(turn.columns[column]).all()
-    ]
+    """Forces and contact pressure over the turn, of those that are known at every angle.
+
+    They are not where the follower may leave the cam.
+    """
+    forces = [_MotionCurve(label, turn.columns[name], colour) for label, name, colour in _FORCES]
     panels = [_MotionPanel("Force", "N", forces, np.nan)]
     for figure in (each for _, group in groups(turn) for each in group):
         if figure.id == _PRESSURE and isinstance(figure, Figure):
             drawn = figure.panels[0]
-            curve = _MotionCurve(f"p0, {drawn.curves[0].label}", drawn.curves[0].y, "blue")
+            values = drawn.curves[0].y[: turn.crank.size]  # the sheet ends with the first again
+            curve = _MotionCurve(f"p0, {drawn.curves[0].label}", values, "blue")
             limits = lowest(*drawn.limits)
             name = limits[0].label if limits else ""
             limit = limits[0].value if limits else np.nan
             panels.append(_MotionPanel("Contact pressure", drawn.unit, [curve], limit, name))
-    return panels
+    panels = [replace(each, curves=each.finite_curves) for each in panels]
+    return [each for each in panels if each.curves]
 
 
-def _box(place: int, count: int) -> tuple[float, float, float, float]:
+def _box(panel_number: int, count: int) -> tuple[float, float, float, float]:
     """Left, top, width and height of the axes of a panel."""
     height = (_PAGE_HEIGHT - _HEAD - _FOOT) / count
     left = _SPLIT + _PANEL_GAP + _AXIS_LEFT
     return (
         left,
-        _HEAD + place * height + _AXIS_TOP,
+        _HEAD + panel_number * height + _AXIS_TOP,
         _PAGE_WIDTH - _PAGE_EDGE - left,
         height - _AXIS_TOP - _AXIS_BOTTOM,
     )
 
 
-def _panel(panel: _MotionPanel, place: int, count: int) -> str:
+def _panel(panel: _MotionPanel, panel_number: int, count: int) -> str:
     """Axes and curves of a panel."""
-    left, top, width, height = _box(place, count)
+    left, top, width, height = _box(panel_number, count)
     lines = [_text(f"{panel.title}, {panel.unit}", left, top - 26.0, 13.5, weight=650)]
     for value in panel.ticks:
-        y = _height_of(panel, place, count, value)
+        y = _height_of(panel, panel_number, count, value)
         colour = "muted" if value == 0.0 else "grid"
         lines.append(_line((left, y), (left + width, y), colour, 0.8))
         lines.append(_text(number(float(value), 4), left - 8.0, y + 4.0, 11.5, "muted",
@@ -232,24 +239,24 @@ def _panel(panel: _MotionPanel, place: int, count: int) -> str:
     for degrees in range(0, 361, 90):
         x = left + width * degrees / 360.0
         lines.append(_line((x, top), (x, top + height), "grid", 0.8))
-        name = "cam angle " if degrees == 180 and place == count - 1 else ""
+        name = "cam angle " if degrees == 180 and panel_number == count - 1 else ""
         low = top + height + 17.0
         lines.append(_text(f"{name}{degrees}°", x, low, 11.5, "muted", anchor="middle"))
     across = left
     for curve in panel.curves:
-        words = f"{curve.label}, at most {quantity(float(np.nanmax(curve.values)), panel.unit, 4)}"
+        words = f"{curve.label}, at most {quantity(float(curve.values.max()), panel.unit, 4)}"
         lines.append(_line((across, top - 10.0), (across + 16.0, top - 10.0), curve.colour, 2.4))
         lines.append(_text(words, across + 22.0, top - 6.0, 12.0, "muted"))
         across += 44.0 + 6.4 * len(words)
     if np.isfinite(panel.limit):
-        y = _height_of(panel, place, count, panel.limit)
+        y = _height_of(panel, panel_number, count, panel.limit)
         lines.append(_line((left, y), (left + width, y), "fail", 1.2, "5 4"))
         lines.append(_text(f"{panel.limit_name} {quantity(panel.limit, panel.unit, 4)}",
                           left + width, y - 5.0, 11.5, "fail", anchor="end"))  # fmt: skip
     for curve in panel.curves:
         stride = -(-curve.values.size // _CURVE_POINTS_MOST)
-        values = _closed(curve.values[::stride])
-        heights = [_height_of(panel, place, count, float(v)) for v in values]
+        values = closed(curve.values[::stride])
+        heights = [_height_of(panel, panel_number, count, float(v)) for v in values]
         along = zip(left + width * np.linspace(0.0, 1.0, values.size), heights, strict=True)
         path = "L".join(f"{decimal(a)} {decimal(b)}" for a, b in along)
         lines.append(f'<path d="M{path}" fill="none" stroke="var(--{curve.colour})" '
@@ -257,8 +264,8 @@ def _panel(panel: _MotionPanel, place: int, count: int) -> str:
     return "\n".join(lines)
 
 
-def _height_of(panel: _MotionPanel, place: int, count: int, value: float) -> float:
-    _, top, _, height = _box(place, count)
+def _height_of(panel: _MotionPanel, panel_number: int, count: int, value: float) -> float:
+    _, top, _, height = _box(panel_number, count)
     low, high = panel.span
     return top + height * (high - value) / (high - low)
 
@@ -272,32 +279,28 @@ def _line(
     return f'<line {places} stroke="var(--{colour})" stroke-width="{width:g}"{dashed}/>'
 
 
-def _closed(values: Array) -> Array:
-    return np.append(values, values[0])
-
-
 def _frames(size: int) -> Array:
     """Rows of the frames, the first again at the end."""
     count = min(FRAMES, size)
     return np.append(np.arange(count) * size // count, 0)
 
 
-def _marks(panel: _MotionPanel, place: int, count: int, row: int) -> str:
+def _marks(panel: _MotionPanel, panel_number: int, count: int, row: int) -> str:
     """Cursor and dots at a row."""
-    left, top, width, height = _box(place, count)
+    left, top, width, height = _box(panel_number, count)
     x = left + width * row / panel.curves[0].values.size
-    dots = (_dot(x, _height_of(panel, place, count, float(c.values[row])), c.colour)
+    dots = (_dot(x, _height_of(panel, panel_number, count, float(c.values[row])), c.colour)
             for c in panel.curves)  # fmt: skip
     return "\n".join([_line((x, top), (x, top + height), "ink", 1.2), *dots])
 
 
-def _moving_marks(panel: _MotionPanel, place: int, count: int) -> str:
+def _moving_marks(panel: _MotionPanel, panel_number: int, count: int) -> str:
     """Cursor and dots that run over the turn."""
-    left, top, width, height = _box(place, count)
+    left, top, width, height = _box(panel_number, count)
     marks = [_line((left, top), (left, top + height), "ink", 1.2)]
     for curve in panel.curves:
         heights = [
-            _height_of(panel, place, count, float(curve.values[k]))
+            _height_of(panel, panel_number, count, float(curve.values[k]))
             for k in _frames(curve.values.size)
         ]
         marks.append(_dot(left, heights[0], curve.colour, _animate("cy", map(decimal, heights))))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
+from camwright.pipeline.base.tables import Table
 from camwright.reports import motion_svg
 from camwright.reports.report_data import ReportMaterial, read_material
 
@@ -91,3 +93,29 @@ def test_both_panels_have_their_curves(drawn: ET.Element) -> None:
     words = "\n".join(str(each.text) for each in drawn.iter(f"{SVG}text"))
     assert "Force, N" in words and "Contact pressure, MPa" in words
     assert "contact, at most" in words and "spring, at most" in words
+
+
+def test_the_curves_have_a_value_an_angle_of_the_turn(material: ReportMaterial) -> None:
+    """The same cursor runs over all of them."""
+    turn = material.turn
+    sizes = {curve.values.size for panel in motion_svg._panels(turn) for curve in panel.curves}
+    assert sizes == {turn.crank.size}
+
+
+def test_what_is_not_known_at_every_angle_is_left_out(material: ReportMaterial) -> None:
+    """Of a follower that may leave the cam: a path of NaN is drawn up to the first of them."""
+    turn = material.turn
+    lost = np.array(turn.columns["normal_force_N"])
+    lost[3] = np.nan
+    names = ("normal_force_N", "p0_hertz_MPa", "p0_fe_MPa")
+    columns = Table({**turn.columns.numbers, **dict.fromkeys(names, lost)}, turn.columns.rows_of)
+    leaving = replace(turn, columns=columns)
+    panels = motion_svg._panels(leaving)
+    assert [[curve.label for curve in panel.curves] for panel in panels] == [["spring"]]
+
+
+def test_a_panel_of_zeros_has_a_span() -> None:
+    zeros = motion_svg._MotionCurve("force", np.zeros(8), "blue")
+    panel = motion_svg._MotionPanel("Force", "N", [zeros], np.nan)
+    assert panel.span == (0.0, 1.0)
+    assert panel.ticks == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
