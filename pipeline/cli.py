@@ -15,7 +15,13 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from camwright.geometry.errors import AlteredError, CamError, InputError
-from camwright.pipeline.commands.arguments import help_of, option_named, read_arguments
+from camwright.pipeline.commands.arguments import (
+    HELP,
+    asks_for_help,
+    help_of,
+    option_named,
+    read_arguments,
+)
 from camwright.pipeline.commands.command_tree import (
     GROUPS,
     TREE,
@@ -46,7 +52,6 @@ _ONCE_S = (
     2.0  # a terminal that closes sends its signal twice: the second does not stop the clean-up
 )
 _COLLECT_AFTER = 50_000  # new objects
-_HELP = ("--help", "-h")
 
 
 def main() -> NoReturn:
@@ -106,18 +111,23 @@ def run_line(words: Sequence[str]) -> int:
     CamError
         If a word is refused, or by the command.
     """
-    if not words or words[0] in _HELP:
+    if not words or words[0] in HELP:
         show_text(tree_text())
         return PASSED
     if words[0] in _ROOT:
+        if any(word in HELP for word in words):
+            show_text(tree_text())
+            return PASSED
+        if len(words) > 1:
+            raise InputError(words[1], "one argument too many", "left out")
         _ROOT[words[0]]()
         return PASSED
-    if words[0] in GROUPS and (len(words) == 1 or words[1] in _HELP):
+    if words[0] in GROUPS and (len(words) == 1 or words[1] in HELP):
         show_text(tree_text(words[0]))
         return PASSED
     path, texts = split_path(words)
     command = TREE[path].command
-    if any(text in _HELP for text in texts):
+    if asks_for_help(command, texts):
         show_text(help_of(path, command))
         return PASSED
     try:
@@ -129,7 +139,9 @@ def run_line(words: Sequence[str]) -> int:
     try:
         return command(**values)
     except InputError as error:
-        raise option_named(error, command, texts) from error
+        if (named := option_named(error, command, texts)) is error:
+            raise
+        raise named from error
 
 
 def _resumed(words: Sequence[str]) -> str:
@@ -174,7 +186,9 @@ def _show_completion() -> None:
 def _install_completion() -> None:
     from camwright.pipeline.commands.completion import install
 
-    show_text(f"completion of bash: {install()}, read by the next shell")
+    show_text(
+        f"completion of bash: {install()}, read by the next shell if bash-completion is installed"
+    )
 
 
 _ROOT = {

@@ -138,7 +138,6 @@ def generated(source: Path, site: Path) -> int:
         "-b",
         "html",
         "-q",
-        "-n",
         "-W",
         "--keep-going",
         "-d",
@@ -148,7 +147,6 @@ def generated(source: Path, site: Path) -> int:
     ]
     code = int(build_main(words))
     (site / ".buildinfo").unlink(missing_ok=True)
-    shutil.rmtree(site / "_sources", ignore_errors=True)
     for file in site.rglob("*.html"):
         text = file.read_text(encoding="utf-8")
         for old, new in _NAMED.items():

@@ -10,6 +10,8 @@ from site_pictures import Chart, Curve, TurningCam, chart, closed_line, path_of
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.pipeline.base.verdict import within_depth
+from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_in_plane, von_mises
+from camwright.pipeline.contact.hertz import subsurface_stress
 from camwright.pipeline.results.trial import Trial
 
 CASE = "cases/gx120-redesign.toml"
@@ -138,12 +140,8 @@ class Figures:
     def stress(self) -> Figure:
         """Stress on the axis below a line contact; Johnson, Contact Mechanics (1985), sec. 4.2."""
         z = np.linspace(0.0, 3.0, 301)  # half-widths
-        root = np.sqrt(1.0 + z**2)
-        across, down = 2.0 * z - (1.0 + 2.0 * z**2) / root, -1.0 / root
-        along = _POISSON * (across + down)
-        shear = 0.5 * np.abs(across - down)
-        squares = (across - down) ** 2 + (down - along) ** 2 + (along - across) ** 2
-        mises = np.sqrt(0.5 * squares)
+        field = subsurface_stress(0.0, z)
+        shear, mises = shear_in_plane(field), von_mises(field, _POISSON)
         words = "Von Mises and shear stress below the middle of a line contact over the depth"
         curves = [Curve("von Mises", z, mises), Curve("greatest shear", z, shear)]
         return (

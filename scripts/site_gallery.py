@@ -31,7 +31,7 @@ GROUPS = {
     "papers": (
         "Cams of papers",
         "Published cams with the values as they are printed; several fail, as the papers "
-        "themselves or arithmetic say.",
+        "state or their own numbers show.",
     ),
 }
 """Folders below cases/ with title and lead."""

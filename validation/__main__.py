@@ -68,7 +68,7 @@ def mechanisms(arguments: argparse.Namespace) -> None:
     folder = arguments.out or Path(f"{document['case']}_figures")
     drawn = mechanism_figures.draw(document, folder)
     if arguments.json:
-        say(json.dumps(document, indent=2, ensure_ascii=False))
+        say(json.dumps(document, indent=2))
         return
     for line in lines(document):
         say(line)

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import difflib
 import inspect
+import re
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
+from itertools import takewhile
 from pathlib import Path
 from typing import (
     Annotated,
@@ -29,6 +31,9 @@ Command = Callable[..., int]
 """A command: its arguments -> exit code."""
 WIDTH = 80
 _COLUMN = 24  # of the words of an option
+HELP = ("--help", "-h")
+"""Words that ask for help."""
+_SHORT = re.compile(r"-[A-Za-z]")  # no option is short: none is taken for an argument
 _KINDS = (bool, int, float, Path)
 _METAVARS = {int: "N", float: "NUMBER", Path: "FILE"}
 
@@ -160,7 +165,7 @@ def _argument(
 
 
 def read_arguments(command: Command, texts: Sequence[str]) -> dict[str, Any]:
-    """Values of the stated parameters of a command, as it is called with.
+    """Keyword arguments for a command, from its words.
 
     Parameters
     ----------
@@ -182,9 +187,9 @@ def read_arguments(command: Command, texts: Sequence[str]) -> dict[str, Any]:
     values: dict[str, Any] = {each.group: {} for each in accepted if each.group}
     for each in accepted:
         if each.typed in stated:
-            found = [each.value(text) for text in stated[each.typed]]
+            converted = [each.value(text) for text in stated[each.typed]]
             target = values[each.group] if each.group else values
-            target[each.parameter] = found if each.many else found[-1]
+            target[each.parameter] = converted if each.many else converted[-1]
     for group in {each.group for each in accepted if each.group}:
         if is_dataclass(hints[group]):
             values[group] = hints[group](**values[group])
@@ -202,7 +207,7 @@ def _stated(texts: Sequence[str], accepted: Sequence[Argument]) -> dict[str, lis
             loose += rest
             break
         name, equals, value = word.partition("=")
-        if not word.startswith("--"):
+        if not word.startswith("--") and not _SHORT.match(word):
             loose.append(word)
             continue
         if name not in options:
@@ -213,7 +218,7 @@ def _stated(texts: Sequence[str], accepted: Sequence[Argument]) -> dict[str, lis
             value = name
         elif not equals:
             following = next(rest, None)
-            if following is None:
+            if following is None or following.partition("=")[0] in (*options, "--"):
                 raise InputError(name, "missing", f"stated as {options[name].usage}")
             value = following
         stated.setdefault(name, []).append(value)
@@ -224,6 +229,18 @@ def _stated(texts: Sequence[str], accepted: Sequence[Argument]) -> dict[str, lis
     if loose:
         raise InputError(loose[0], "one argument too many", "left out")
     return stated
+
+
+def asks_for_help(command: Command, texts: Sequence[str]) -> bool:
+    """Whether the words of a command ask for its help; not as a value, nor after ``--``."""
+    valued = {
+        each.typed for each in arguments_of(command) if each.is_option and each.kind is not bool
+    }
+    words = [*takewhile(lambda text: text != "--", texts)]
+    return any(
+        word == HELP[0] or (word == HELP[1] and before not in valued)
+        for before, word in zip(("", *words), words, strict=False)
+    )
 
 
 def _closest(name: str, accepted: Mapping[str, Argument]) -> str:
@@ -238,7 +255,7 @@ def _phrase(sentence: str) -> str:
 
 
 def option_named(error: InputError, command: Command, texts: Sequence[str]) -> InputError:
-    """An error of a value of a group under the option as typed; another one as it is."""
+    """An error in a field of an option group, named by its option; any other error unchanged."""
     for each in arguments_of(command):
         if each.group and each.parameter == error.field:
             stated = _stated(texts, arguments_of(command)).get(each.typed, [str(error.value)])

@@ -82,7 +82,7 @@ def check(
             "default: 8."
         ),
     ] = None,
-    seed: Annotated[int | None, Words("Of these angles; default: drawn anew.")] = None,
+    seed: Annotated[int | None, Words("Seed of the random angles; default: a new one.")] = None,
 ) -> int:
     """Print failures, missing data and verdict of a run, or of a preview of a case.
 

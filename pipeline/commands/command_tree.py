@@ -34,14 +34,17 @@ class Entry(NamedTuple):
 
 
 TREE: Mapping[str, Entry] = {
-    "new": Entry("NAME", "write a commented first case that passes", "new_command:new"),
+    "new": Entry("NAME", "write a first case that passes", "new_command:new"),
     "check": Entry("RUN|CASE...", "verdict of runs, preview of cases", "check_command:check"),
     "run": Entry("CASE --out DIR", "solve a case by finite elements", "run_command:run", _RESUME),
     "report": Entry("RUN", "page, PDF, hand-check sheets of a run", "report_command:report"),
     "explain": Entry("WORD...", "a key, check or record in words", "explain_command:explain"),
     "inspect": Entry("RUN CSV", "judge a measured cam against its run", "inspect_command:inspect"),
     "design machine": Entry(
-        "CSV --out CASE", "a case with all parts for a torque", "machine_command:machine", _AGAIN
+        "CSV --speed N --out CASE",
+        "a case with all parts for a torque",
+        "machine_command:machine",
+        _AGAIN,
     ),
     "design parts": Entry(
         "CASE", "search the catalogues: ripple, size", "parts_command:parts", _AGAIN
@@ -67,7 +70,7 @@ TREE: Mapping[str, Entry] = {
 ROOT_OPTIONS = ("--help", "--version", "--debug", "--show-completion", "--install-completion")
 GROUPS = tuple(dict.fromkeys(path.split()[0] for path in TREE if " " in path))
 """First words that need a second one."""
-_WIDTH = 35  # of the usage of a command
+_WIDTH = 39  # of the usage of a command
 
 
 def tree_text(group: str = "") -> str:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.commands.arguments import Argument, arguments_of
 from camwright.pipeline.commands.command_tree import GROUPS, ROOT_OPTIONS, TREE
@@ -53,8 +54,22 @@ def _words_of(options: Sequence[Argument]) -> str:
 
 
 def install() -> Path:
-    """Write the script where bash looks for it, and return its path."""
+    """Write the script where bash looks for it, and return its path.
+
+    Raises
+    ------
+    ResultError
+        If something else is there already: it is not replaced.
+    """
     home = os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share"
-    return write_atomic(
-        Path(home) / "bash-completion" / "completions" / "camwright", bash_script() + "\n"
-    )
+    path = Path(home) / "bash-completion" / "completions" / "camwright"
+    if path.is_symlink() or (path.exists() and not _is_ours(path)):
+        raise ResultError(f"{path}: exists already and is not of camwright, not overwritten")
+    return write_atomic(path, bash_script() + "\n")
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a file was written by `install`, of this version or another."""
+    mark = _SCRIPT.splitlines()[0].encode()
+    with path.open("rb") as file:
+        return file.read(len(mark)) == mark

@@ -24,7 +24,7 @@ EXIT_CODES: Mapping[int, str] = {
     0: "passes or done",
     1: "fails, or none passes",
     2: "error",
-    3: "data missing",
+    3: "data missing or screen open",
     4: "not as recorded",
     130: "interrupted",
 }
@@ -84,9 +84,7 @@ JobsOption = Annotated[
 JsonOption = Annotated[bool, Words("Print the record as JSON.", typed="--json")]
 NoCacheOption = Annotated[bool, Words("Do not use the disk cache.")]
 PngOption = Annotated[bool, Words("Write the figures as PNG files as well.")]
-ResumeOption = Annotated[
-    bool, Words("Resume what was interrupted; what is solved is not solved again.")
-]
+ResumeOption = Annotated[bool, Words("Resume an interrupted run; finished results are reused.")]
 
 
 def say(text: str) -> None:

@@ -9,11 +9,11 @@
 | `corners_document`    | ``corners.json``                                           |
 | `signoff_record`      | ``signoff.json``                                           |
 | `check_document`      | output of ``check --json``                                 |
-| `crown_document`      | ``crown.json``, output of ``crown --json``                 |
-| `size_document`       | output of ``size --json``                                  |
+| `crown_document`      | ``crown.json``, output of ``design crown --json``          |
+| `size_document`       | output of ``design sizes --json``                          |
 | `judgement_record`    | judgements of changed cases, as a search stores them       |
-| `redesign_document`   | ``redesign.json``, output of ``redesign --json``           |
-| `design_document`     | ``design.json``, output of ``design --json``               |
+| `redesign_document`   | ``redesign.json``, output of ``design parts --json``       |
+| `design_document`     | ``design.json``, output of ``design machine --json``       |
 | `inspection_document` | ``inspection.json``, output of ``inspect --json``          |
 | `study_document`      | ``study.json``                                             |
 | `live_document`       | ``8_live.json``                                            |

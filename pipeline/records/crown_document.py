@@ -1,4 +1,4 @@
-"""Form of ``crown.json``, the output of ``crown --json``."""
+"""Form of ``crown.json``, the output of ``design crown --json``."""
 
 from typing import Annotated, Literal, NotRequired
 

@@ -1,4 +1,4 @@
-"""Form of ``design.json``, the output of ``design --json``."""
+"""Form of ``design.json``, the output of ``design machine --json``."""
 
 from typing import Annotated, Literal, NotRequired
 
@@ -19,7 +19,7 @@ class DesignOptions(TypedDict):
     speeds: NotRequired[str | tuple[Number, Number]]
     """Range of speeds of the shaft, such as "800..3600 rpm"; default: that speed."""
     overspeed: NotRequired[Number]
-    """Greatest speed that the parts bear; default: 1.2 times the greatest of these."""
+    """Highest speed the parts must withstand; default: 1.2 times the greatest of these."""
     cycle: NotRequired[Number]
     """Shaft angle of a cycle of the torque, such as "360 deg"; default: of the table."""
     ratio: NotRequired[Number]

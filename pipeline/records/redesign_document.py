@@ -1,4 +1,4 @@
-"""Form of ``redesign.json``, the output of ``redesign --json``."""
+"""Form of ``redesign.json``, the output of ``design parts --json``."""
 
 from typing import Literal
 

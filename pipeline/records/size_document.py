@@ -1,4 +1,4 @@
-"""Form of the output of ``size --json``."""
+"""Form of the output of ``design sizes --json``."""
 
 from typing_extensions import TypedDict
 

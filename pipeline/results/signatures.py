@@ -1,7 +1,7 @@
 """Signatures of the sign-off record: in-toto statements in DSSE envelopes, by Ed25519.
 
 ``signoff.intoto.jsonl`` has one envelope a line and role. An envelope or statement with other keys
-or values than those that `sign` writes is refused.
+or values than those that `sign run` writes is refused.
 
 References
 ----------
@@ -20,7 +20,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.errors import CamError, InputError, ResultError
 from camwright.pipeline.base.files import each_key_once, read_text, sha256_of, write_atomic
 from camwright.pipeline.records.check_document import Role, SignatureRecord
 from camwright.pipeline.results import signoff
@@ -170,7 +170,7 @@ def verified(
     try:
         lines = bytes_of(file, signoff.SIGNATURES).decode("utf-8").splitlines()
         digest = sha256_of(folder / signoff.NAME)
-    except (InputError, UnicodeDecodeError, OSError) as error:
+    except (CamError, UnicodeDecodeError) as error:
         return (), [f"{signoff.SIGNATURES}: {error}"]
     if not lines:
         return (), [f"{signoff.NAME}: is unsigned ({signoff.SIGNATURES} is empty)"]

@@ -18,7 +18,7 @@ The public names, in the order of the calculation:
 | `design_from_torque` | case file with all parts for a torque table        | record           |
 | `screen_designs` | closed-form checks of thousands of designs at once    | columns          |
 | `size`         | sizes that a case leaves open, and their checks         | `Sizing`         |
-| `crown`        | least crown within a ratio of the axial pressure        | `CrownDesign`    |
+| `crown`        | crown in the middle of those within a ratio of pressure | `CrownDesign`    |
 | `CamError`     | every error that the user can correct, in one line      |                  |
 
 All values are in SI units: m, N, Pa, rad, s, kg. A name is imported when it is first used.

@@ -1,4 +1,4 @@
-"""`python -m validation`: pages and records where asked for; a wrong name in one line."""
+"""`python -m validation`: pages and records in the given folder; a wrong name in one line."""
 
 import json
 import subprocess

@@ -110,6 +110,10 @@ def test_a_former_command_is_refused_with_the_line_to_type(
         (["run", "a.toml", "--outt", "x"], "--outt = unknown, must be an option"),
         (["run", "a.toml", "--outt", "x"], "did you mean --out?"),
         (["run", "a.toml", "--out"], "--out = missing, must be stated as --out DIR"),
+        (["run", "a.toml", "--out", "--resume"], "--out = missing, must be stated as --out DIR"),
+        (["run", "a.toml", "--out", "--"], "--out = missing, must be stated as --out DIR"),
+        (["run", "a.toml", "--out=x", "-j", "4"], "-j = unknown, must be an option"),
+        (["--version", "a"], "a = one argument too many, must be left out"),
         (["run", "a.toml", "--png=3"], "--png = 3, must be stated without a value"),
         (["run", "a.toml", "b.toml"], "b.toml = one argument too many, must be left out"),
         (["run", "a.toml", "--out", "x", "--jobs", "0"], "--jobs = 0, must be >= 1 and <= 256"),
@@ -124,6 +128,21 @@ def test_a_former_command_is_refused_with_the_line_to_type(
 )
 def test_a_wrong_line_is_refused_by_its_own_words(words: Sequence[str], message: str) -> None:
     assert message in str(ran(words).exception)
+
+
+@pytest.mark.parametrize(
+    ("words", "asks"),
+    [
+        ("a.toml --out --help", True),
+        ("-h", True),
+        ("a.toml --out -h", False),
+        ("a.toml --png -h", True),
+        ("-- --help", False),
+        ("a.toml --out=--help", False),
+    ],
+)
+def test_help_is_asked_for_by_a_word_of_its_own(words: str, asks: bool) -> None:
+    assert arguments.asks_for_help(TREE["run"].command, words.split()) is asks
 
 
 class Loads(TypedDict):
@@ -245,3 +264,23 @@ def test_an_impossible_crown_is_no_error(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(crown_design, "crown", impossible)
     case = str(ROOT / "cases" / "gx120.toml")
     assert run_line(["design", "crown", case, "--ratio", "1.01"]) == terminal.FAILED
+
+
+def test_help_installs_nothing_and_what_is_not_ours_stays(
+    command: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    script = tmp_path / "bash-completion" / "completions" / "camwright"
+    assert command("--install-completion", "--help")[0] == 0
+    assert not script.exists()
+    script.parent.mkdir(parents=True)
+    script.write_text("complete -W mine camwright\n")
+    code, _, err = command("--install-completion")
+    assert code == 2 and "exists already and is not of camwright" in err
+    script.unlink()
+    script.symlink_to(tmp_path / "elsewhere")
+    assert command("--install-completion")[0] == 2
+    assert not (tmp_path / "elsewhere").exists()
+    script.unlink()
+    for _ in range(2):  # its own file is written again
+        assert command("--install-completion")[0] == 0

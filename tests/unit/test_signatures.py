@@ -528,3 +528,9 @@ def test_a_changed_run_is_not_signed(tmp_path: Path, command: Command) -> None:
         f"camwright: {run}/trial_1/5_cycle.csv: was changed since the sign-off\n",
     )
     assert not (run / signoff.SIGNATURES).exists()
+
+
+def test_a_file_that_cannot_be_read_is_an_error_of_the_run(tmp_path: Path) -> None:
+    """Not one of the program, which would hide the other runs of a table."""
+    with pytest.raises(ResultError, match=r"signoff\.json: No such file"):
+        sha256_of(tmp_path / "signoff.json")

@@ -1,4 +1,4 @@
-"""Case with open keys for `size`, and its completion."""
+"""Case with open keys for `design sizes`, and its completion."""
 
 from __future__ import annotations
 
