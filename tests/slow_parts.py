@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
@@ -72,17 +72,24 @@ def slow_files() -> dict[str, list[Path]]:
     return parts
 
 
-def run(files: Sequence[Path]) -> Result:
-    """Run the slow tests of some files in two processes."""
+def run(
+    files: Sequence[Path], marker: str = "slow", then: Callable[[Path], None] | None = None
+) -> Result:
+    """Run the tests of a marker in some files in two processes.
+
+    then : function   of the JUnit report, where all have passed
+    """
     begin = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "results.xml"
         command = [
-            *(sys.executable, "-m", "pytest", "-q", "-m", "slow", "-n", "2", "--dist", "worksteal"),
+            *(sys.executable, "-m", "pytest", "-q", "-m", marker, "-n", "2", "--dist", "worksteal"),
             *("--max-worker-restart=0", "--durations=10", f"--junitxml={report}", *files),
         ]
         code = subprocess.run(command, cwd=ROOT, check=False).returncode
         counted = counts(report) if report.is_file() else (0, 0, 0)
+        if code == 0 and then is not None:
+            then(report)
     passed, failed, skipped = counted
     if code != 0 and failed == 0:
         failed = 1  # the run itself broke off
@@ -146,21 +153,14 @@ def figure_table(listed: Sequence[Figure]) -> str:
 
 def measure() -> Result:
     """Run the quick tests that state figures, and write these into the page."""
-    begin = time.monotonic()
     files = [path for path in sorted((ROOT / "tests").rglob("test_*.py"))
              if "measured(" in path.read_text(encoding="utf-8")]  # fmt: skip
-    with tempfile.TemporaryDirectory() as folder:
-        report = Path(folder) / "results.xml"
-        command = [
-            *(sys.executable, "-m", "pytest", "-q", "-m", "measured and not slow", "-n", "2"),
-            *(f"--junitxml={report}", *files),
-        ]
-        code = subprocess.run(command, cwd=ROOT, check=False).returncode
-        passed, failed, skipped = counts(report) if report.is_file() else (0, 0, 0)
-        if code == 0:
-            page = PAGE.read_text(encoding="utf-8")
-            PAGE.write_text(with_figures(page, figures(report)), encoding="utf-8")
-    return Result(passed, max(failed, int(code != 0)), skipped, time.monotonic() - begin)
+    return run(files, "measured and not slow", _write_figures)
+
+
+def _write_figures(report: Path) -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    PAGE.write_text(with_figures(page, figures(report)), encoding="utf-8")
 
 
 def with_figures(page: str, listed: Sequence[Figure]) -> str:

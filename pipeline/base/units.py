@@ -229,6 +229,15 @@ def parse(text: object, unit: str, field: str) -> float:
     return value
 
 
+def parse_or_bare(text: str, unit: str, field: str) -> float:
+    """SI value of a text with unit, or of a bare number in `unit`; as `parse`."""
+    try:
+        float(text)
+    except ValueError:
+        return parse(text, unit, field)
+    return parse(f"{text.strip()} {unit}", unit, field)
+
+
 @lru_cache(maxsize=512)
 def factor(unit: str) -> float:
     """SI value of one `unit`: ``factor("mm")`` is 0.001; not for offset units such as degC."""

@@ -83,10 +83,9 @@ def deck(
     from camwright.pipeline.results import contact_deck as decks
     from camwright.pipeline.results.folder_exchange import amended, settle_recorded
 
-    text = angle if any(c.isalpha() or c == "°" for c in angle) else f"{angle} deg"
-    theta = units.parse(text, "deg", "--angle")
+    theta = units.parse_or_bare(angle, "deg", "--angle")
     if not 0.0 <= theta <= math.tau:
-        raise InputError("--angle", units.rounded(text), ">= 0 and <= 360 deg, one cam turn")
+        raise InputError("--angle", units.shown(theta, "deg"), ">= 0 and <= 360 deg, one cam turn")
     kind = "contact" if contact else "loads"
     default = folder / "exports" / f"{kind}_{units.in_unit(theta, 'deg'):07.3f}.inp"
     target = default if out is None else out

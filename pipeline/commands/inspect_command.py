@@ -47,7 +47,7 @@ def inspect(
     from camwright.pipeline.studies import cam_inspection
     from camwright.reports.comparisons.inspection_pictures import draw
 
-    width = None if tolerance is None else units.parse(tolerance, "um", "--tolerance")
+    width = None if tolerance is None else units.parse_or_bare(tolerance, "um", "--tolerance")
     if width is not None and not width > 0:
         raise InputError("--tolerance", tolerance, "> 0 um")
     settle_recorded(folder)

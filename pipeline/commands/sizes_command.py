@@ -51,7 +51,7 @@ def sizes(
         raise InputError("--chart", str(chart), f"a file that ends in {' or '.join(_PICTURES)}")
     if out is not None and out.exists():
         raise ResultError(f"{out}: exists already, not overwritten")
-    least = units.parse(least_radius, "mm", "--least-radius")
+    least = units.parse_or_bare(least_radius, "mm", "--least-radius")
     if not least >= 0.0:
         raise InputError("--least-radius", least_radius, ">= 0 mm")
     with progress_shown() as progress:

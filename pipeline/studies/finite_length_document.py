@@ -48,15 +48,6 @@ _MOMENT_ROUND_OFF = 1e-12
 _DEPTH_OVER_LENGTH = 2.0
 
 
-def quantity(text: str, unit: str, option: str) -> float:
-    """SI value of a text with unit, or of a number in `unit`."""
-    try:
-        float(text)
-    except ValueError:
-        return units.parse(text, unit, option)
-    return units.parse(f"{text.strip()} {unit}", unit, option)
-
-
 @dataclass(frozen=True)
 class LengthOptions:
     """Options of the bodies' lengths as text; numbers without unit in mm, N/mm, mrad, N mm."""
@@ -139,10 +130,12 @@ class LengthOptions:
     def tilt_or_moment(self) -> tuple[float | None, float | None]:
         """Tilt, rad, or moment, N m; the other is None."""
         if self.moment is None:
-            return 0.0 if self.tilt is None else quantity(self.tilt, "mrad", "--tilt"), None
+            if self.tilt is None:
+                return 0.0, None
+            return units.parse_or_bare(self.tilt, "mrad", "--tilt"), None
         if self.tilt is not None:
             raise InputError("--moment", self.moment, "left out beside --tilt")
-        return None, quantity(self.moment, "N mm", "--moment")
+        return None, units.parse_or_bare(self.moment, "N mm", "--moment")
 
     def mean(self) -> float:
         """Length of the mean at an end, m."""
@@ -183,7 +176,7 @@ class LengthOptions:
     def _positive(text: str | None, unit: str, option: str) -> float:
         if not text:
             raise InputError(option, "missing", f"specified, > 0 {unit}")
-        value = quantity(text, unit, option)
+        value = units.parse_or_bare(text, unit, option)
         if not value > 0:
             raise InputError(option, units.rounded(text), f"> 0 {unit}")
         return value

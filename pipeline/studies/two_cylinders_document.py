@@ -22,7 +22,6 @@ from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.studies.finite_length_document import (
     LengthOptions,
     finite_length,
-    quantity,
 )
 from camwright.pipeline.studies.finite_length_document import lines as length_lines
 from camwright.pipeline.studies.two_cylinders import (
@@ -114,7 +113,7 @@ class ContactOptions:
     def depths(self) -> tuple[float | None, float | None]:
         """Depths of the reference points of the approach, m; None: the centre."""
         first, second = (
-            None if text is None else quantity(text, "mm", name)
+            None if text is None else units.parse_or_bare(text, "mm", name)
             for text, name in ((self.depth1, "--depth1"), (self.depth2, "--depth2"))
         )
         return first, second
@@ -123,11 +122,11 @@ class ContactOptions:
         if self.line_load is not None:
             if self.load is not None:
                 raise InputError("--load", self.load, "left out beside --line-load")
-            line_load = quantity(self.line_load, "N/mm", "--line-load")
+            line_load = units.parse_or_bare(self.line_load, "N/mm", "--line-load")
         else:
             if self.load is None or (self.width is None and not self.lengths.stated):
                 raise InputError("--line-load", "missing", "specified, or --load and --width")
-            line_load = quantity(self.load, "N", "--load") / self._width()
+            line_load = units.parse_or_bare(self.load, "N", "--load") / self._width()
         if not line_load >= 0:
             unit = "N/mm" if self.load is None else "N"
             text = self.load or self.line_load or ""
@@ -144,7 +143,7 @@ class ContactOptions:
             return self.lengths.contact_length()
         if self.lengths.stated:
             raise InputError("--width", _as_read(self.width, "mm"), "left out beside --length1")
-        width = quantity(self.width, "mm", "--width")
+        width = units.parse_or_bare(self.width, "mm", "--width")
         if not width > 0:
             raise InputError("--width", _as_read(self.width, "mm"), "> 0 mm")
         return width
@@ -246,7 +245,7 @@ def _as_read(text: str, unit: str) -> str:
 
 def _modulus(text: str, option: str) -> float:
     """Young's modulus, Pa; a number without a unit is in MPa where no other unit is plausible."""
-    modulus = quantity(text, "MPa", option)
+    modulus = units.parse_or_bare(text, "MPa", option)
     try:
         number = float(text)
     except ValueError:
@@ -264,7 +263,7 @@ def _modulus(text: str, option: str) -> float:
 def _radius(text: str, option: str) -> float:
     if text.strip().lower() in ("inf", "+inf", "infinity", "flat"):
         return float("inf")
-    radius = quantity(text, "mm", option)
+    radius = units.parse_or_bare(text, "mm", option)
     if radius == 0:
         raise InputError(option, text, "other than 0; inf: flat, negative: concave")
     return radius

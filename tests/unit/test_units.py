@@ -313,3 +313,10 @@ def test_an_unknown_unit_names_the_closest(text: str, closest: str) -> None:
 def test_what_is_no_unit_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r".*"):
         units._unit(text)
+
+
+@pytest.mark.parametrize(("text", "value"), [("20", 20e-6), (" -3 ", -3e-6), ("0.02 mm", 20e-6)])
+def test_a_bare_number_has_the_unit_of_its_option(text: str, value: float) -> None:
+    assert units.parse_or_bare(text, "um", "--tolerance") == pytest.approx(value, rel=1e-12)
+    with pytest.raises(InputError, match="--tolerance"):
+        units.parse_or_bare(f"{text} s", "um", "--tolerance")
