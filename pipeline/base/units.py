@@ -229,13 +229,18 @@ def parse(text: object, unit: str, field: str) -> float:
     return value
 
 
-def parse_or_bare(text: str, unit: str, field: str) -> float:
-    """SI value of a text with unit, or of a bare number in `unit`; as `parse`."""
+def with_unit(text: str, unit: str) -> str:
+    """The text of a quantity as typed; a bare number with its unit."""
     try:
         float(text)
     except ValueError:
-        return parse(text, unit, field)
-    return parse(f"{text.strip()} {unit}", unit, field)
+        return text
+    return f"{text.strip()} {unit}"
+
+
+def parse_or_bare(text: str, unit: str, field: str) -> float:
+    """SI value of a text with unit, or of a bare number in `unit`; as `parse`."""
+    return parse(with_unit(text, unit), unit, field)
 
 
 @lru_cache(maxsize=512)

@@ -83,9 +83,10 @@ def deck(
     from camwright.pipeline.results import contact_deck as decks
     from camwright.pipeline.results.folder_exchange import amended, settle_recorded
 
-    theta = units.parse_or_bare(angle, "deg", "--angle")
+    text = units.with_unit(angle, "deg")
+    theta = units.parse(text, "deg", "--angle")
     if not 0.0 <= theta <= math.tau:
-        raise InputError("--angle", units.shown(theta, "deg"), ">= 0 and <= 360 deg, one cam turn")
+        raise InputError("--angle", units.rounded(text), ">= 0 and <= 360 deg, one cam turn")
     kind = "contact" if contact else "loads"
     default = folder / "exports" / f"{kind}_{units.in_unit(theta, 'deg'):07.3f}.inp"
     target = default if out is None else out
