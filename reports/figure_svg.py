@@ -189,10 +189,10 @@ def draw(figure: SheetFigure, width: float = FIGURE_WIDTH) -> Canvas:
     return _panels(figure, width)
 
 
-def svg_of(figure: SheetFigure, facecolor: str = "none") -> str:
-    """SVG text of a figure, in the colours of the light theme."""
+def svg_of(figure: SheetFigure, facecolor: str = "none", width: float = FIGURE_WIDTH) -> str:
+    """SVG text of a figure, in the colours of the light theme; `width` in inches."""
     with style(figure.id):
-        canvas, svg = draw(figure), io.StringIO()
+        canvas, svg = draw(figure, width), io.StringIO()
         canvas.savefig(svg, format="svg", facecolor=facecolor, metadata={"Date": None})
         return svg.getvalue()
 

@@ -6,19 +6,20 @@ from collections.abc import Callable, Mapping
 from html import escape
 
 import numpy as np
-from site_pictures import Chart, Curve, TurningCam, chart, closed_line, path_of
+from site_pictures import TurningCam, chart, closed_line, over_cam, path_of
 
 from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.figures import SERIES, Curve, LimitLine, Panel, over
 from camwright.pipeline.base.verdict import within_depth
 from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_in_plane, von_mises
 from camwright.pipeline.contact.hertz import subsurface_stress
+from camwright.pipeline.results.check_records import CheckList
 from camwright.pipeline.results.trial import Trial
 
 CASE = "cases/gx120-redesign.toml"
-_ANGLE = "cam angle, deg"
-_BARS, _LETTERS = 12, 44
+_BARS = 12
 _POISSON = 0.3
-Figure = tuple[str, str]
+Picture = tuple[str, str]
 """A picture as SVG, and its caption."""
 
 
@@ -29,10 +30,9 @@ class Figures:
         self.trial = trial
         self.cycle = trial.cycles[0]
         self.columns = self.cycle.table
-        self.angle = np.append(self.columns["cam_angle_deg"], 360.0)
 
     @property
-    def drawn(self) -> Mapping[str, Callable[[], Figure]]:
+    def drawn(self) -> Mapping[str, Callable[[], Picture]]:
         """Functions that draw the figures, by name."""
         return {
             "torque": self.torque,
@@ -51,11 +51,12 @@ class Figures:
         picture, caption = self.drawn[name]()
         return f'<figure class="drawn">{picture}<figcaption>{escape(caption)}</figcaption></figure>'
 
-    def _over_turn(self, words: str, up: str, *curves: tuple[str, Array]) -> str:
-        listed = [Curve(name, self.angle, np.append(values, values[:1])) for name, values in curves]
-        return chart(Chart(f"{words} over the cam angle", _ANGLE, up, listed))
+    def _over_turn(self, title: str, words: str, *curves: tuple[str, Array]) -> str:
+        quantity, _, unit = words.rpartition(", ")
+        name = title.lower().replace(" ", "-")
+        return chart(over_cam(name, title, quantity, unit, curves))
 
-    def torque(self) -> Figure:
+    def torque(self) -> Picture:
         """Torque about its mean, without and with the cam."""
         turn = self.cycle.turn
         curves = [("without the cam", turn.torque_before), ("with the cam", turn.torque_after)]
@@ -67,7 +68,7 @@ class Figures:
             f"without the cam and {after:.1f} N m with it.",
         )
 
-    def energy(self) -> Figure:
+    def energy(self) -> Picture:
         """Energy in the spring."""
         spring, lift = self.cycle.machine.spring, 1e-3 * self.columns["lift_mm"]
         stored = spring.preload * lift + 0.5 * spring.rate * lift**2
@@ -76,7 +77,7 @@ class Figures:
             f"Energy that the spring stores beyond its preload: up to {stored.max():.1f} J.",
         )
 
-    def lift(self) -> Figure:
+    def lift(self) -> Picture:
         """Lift of the follower."""
         lift = self.columns["lift_mm"]
         return (
@@ -84,7 +85,7 @@ class Figures:
             f"Lift of the follower, up to {lift.max():.2f} mm.",
         )
 
-    def contour(self) -> Figure:
+    def contour(self) -> Picture:
         """Contour, pitch curve and roller."""
         contour, theta = self.trial.contour, uniform_turn(720)
         cam = TurningCam.of(contour, self.trial.case.cam.bore_radius or 0.0)
@@ -107,19 +108,20 @@ class Figures:
             "(dashed), and the roller at six angles."
         )
 
-    def pressure_angle(self) -> Figure:
+    def pressure_angle(self) -> Picture:
         """Pressure angle with its limit."""
         values = self.columns["pressure_angle_deg"]
         most = float(np.degrees(self.trial.case.limits.pressure_angle))
-        curve = Curve("", self.angle, np.append(values, values[:1]))
-        words = "Pressure angle over the cam angle with its limits"
-        limits = [("limit", most), ("limit", -most)]
+        limits = LimitLine(most, "limit"), LimitLine(-most, "limit")
+        figure = over_cam(
+            "pressure-angle", "Pressure angle", "pressure angle", "deg", [("", values)], limits
+        )
         return (
-            chart(Chart(words, _ANGLE, "pressure angle, deg", [curve], limits)),
+            chart(figure),
             f"Pressure angle; this case allows {most:g} degrees, since its stem slides fast.",
         )
 
-    def force(self) -> Figure:
+    def force(self) -> Picture:
         """Contact force in up to three load cases."""
         cycles = sorted(self.trial.cycles, key=lambda each: each.machine.speed)[-3:]
         curves = [(each.load_case, each.table["normal_force_N"]) for each in cycles]
@@ -129,7 +131,7 @@ class Figures:
             "takes away.",
         )
 
-    def pressure(self) -> Figure:
+    def pressure(self) -> Picture:
         """Greatest contact pressure."""
         p0 = self.columns["p0_hertz_MPa"]
         return (
@@ -137,47 +139,28 @@ class Figures:
             f"Greatest pressure of the contact at each cam angle, up to {np.nanmax(p0):.0f} MPa.",
         )
 
-    def stress(self) -> Figure:
+    def stress(self) -> Picture:
         """Stress on the axis below a line contact; Johnson, Contact Mechanics (1985), sec. 4.2."""
         z = np.linspace(0.0, 3.0, 301)  # half-widths
         field = subsurface_stress(0.0, z)
         shear, mises = shear_in_plane(field), von_mises(field, _POISSON)
-        words = "Von Mises and shear stress below the middle of a line contact over the depth"
-        curves = [Curve("von Mises", z, mises), Curve("greatest shear", z, shear)]
+        curves = Curve(z, mises, "von Mises"), Curve(z, shear, "greatest shear", SERIES[1])
+        panel = Panel("stress over p0", "", curves)
         return (
-            chart(Chart(words, "depth over half-width", "stress over p0", curves)),
+            chart(over("stress", "Stress", "", "depth over half-width", "", [panel], dots=False)),
             f"Below the middle of the strip the von Mises stress is greatest "
             f"{z[np.argmax(mises)]:.2f} half-widths deep, {mises.max():.2f} of the pressure, and "
             f"the shear stress {z[np.argmax(shear)]:.2f} half-widths deep, {shear.max():.2f} of it "
             f"(plane strain, Poisson ratio {_POISSON}).",
         )
 
-    def utilisation(self) -> Figure:
+    def utilisation(self) -> Picture:
         """Required checks of the greatest utilisation as bars."""
-        known = sorted(
-            (-each.utilisation, each.title)
-            for each in within_depth(self.trial.checks)
-            if each.must_have and not each.evidence and each.utilisation is not None
-        )[:_BARS]
-        high, wide, left = 25.0, 520.0, 310.0
-        scale = (wide - left - 50.0) / max(1.0, -known[0][0])
-        rows = []
-        for row, (less, title) in enumerate(known):
-            end, base = left - scale * less, row * high + 16.0
-            short = title if len(title) <= _LETTERS else f"{title[:_LETTERS].rstrip()}…"
-            rows.append(
-                f'<text class="end" x="{left - 8.0:g}" y="{base:g}">{escape(short)}</text>'
-                f'<rect class="bar" x="{left:g}" y="{base - 12.0:g}" width="{end - left:.1f}" '
-                f'height="16"/><text x="{max(end, left + scale) + 6.0:.1f}" y="{base:g}">'
-                f"{-less:.2f}</text>"
-            )
-        tall = high * len(known) + 8.0
-        picture = (
-            f'<svg class="chart wide" viewBox="0 0 {wide:g} {tall:g}" role="img" '
-            f'aria-label="Utilisation of the {len(known)} governing checks">{"".join(rows)}'
-            f'<path class="limit" d="M{left + scale:.1f} 0V{tall:g}"/></svg>'
-        )
-        return picture, (
-            f"The {len(known)} required checks of the greatest utilisation in the preview at "
+        required = [
+            each for each in within_depth(self.trial.checks) if each.must_have and not each.evidence
+        ]
+        figure = CheckList(required).figure(_BARS)
+        return chart(figure), (
+            f"The {_BARS} required checks of the greatest utilisation in the preview at "
             "nominal sizes; the dashed line is the limit, 1."
         )

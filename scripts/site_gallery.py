@@ -9,9 +9,9 @@ from html import escape
 from pathlib import Path
 
 import numpy as np
-from site_pictures import Chart, Curve, TurningCam, chart, turning_cam
+from site_pictures import TurningCam, chart, over_cam, turning_cam
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.figures import Figure
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import within_depth
 from camwright.pipeline.case.case_file import read_case
@@ -37,7 +37,8 @@ GROUPS = {
 """Folders below cases/ with title and lead."""
 NO_CASE = ("mechanisms",)
 """Files below cases/ that are not case files but those of a comparison."""
-_ANGLE = "cam angle, deg"
+_CHART_WIDTH = 4.0
+"""Width of a chart in two columns, inches."""
 _SHOWN = 10
 """Failed checks of a page."""
 
@@ -142,7 +143,7 @@ def page(one: Shown, links: Mapping[str, str]) -> str:
     facts = "".join(
         f'<tr><th scope="row">{escape(a)}</th><td>{escape(b)}</td></tr>' for a, b in _facts(trial)
     )
-    charts = "".join(f"<figure>{chart(each)}</figure>" for each in _charts(trial))
+    charts = "".join(f"<figure>{chart(each, _CHART_WIDTH)}</figure>" for each in _charts(trial))
     parts = [
         f"# {one.title}",
         _sentence(one.about),
@@ -219,31 +220,26 @@ def _facts(trial: Trial) -> Iterator[tuple[str, str]]:
         yield "Torque ripple with the cam", f"{after:.3g} N m"
 
 
-def _closed(values: Array) -> Array:
-    return np.append(values, values[:1])
-
-
-def _charts(trial: Trial) -> Iterator[Chart]:
+def _charts(trial: Trial) -> Iterator[Figure]:
     """Curves of the first load case over a turn of the cam."""
     cycle = trial.cycles[0]
     turn, table = cycle.turn, cycle.table
-    angle = np.append(table["cam_angle_deg"], 360.0)
-
-    def one(words: str, up: str, *columns: tuple[str, Array]) -> Chart:
-        return Chart(f"{words} over the cam angle, {trial.case.title}", _ANGLE, up,
-                     [Curve(name, angle, _closed(values)) for name, values in columns])  # fmt: skip
-
     if turn.torque_before is not None and turn.torque_after is not None:
-        yield one("Torque about its mean, without and with the cam", "torque about its mean, N m",
-                  ("without the cam", turn.torque_before),
-                  ("with the cam", turn.torque_after))  # fmt: skip
-    yield one("Lift", "lift, mm", ("", table["lift_mm"]))
+        yield over_cam(
+            "torque", "Torque", "torque about its mean", "N m",
+            [("without the cam", turn.torque_before), ("with the cam", turn.torque_after)],
+        )  # fmt: skip
+    yield over_cam("lift", "Lift", "lift", "mm", [("", table["lift_mm"])])
     if trial.contour.rolls:
-        yield one("Pressure angle", "pressure angle, deg", ("", table["pressure_angle_deg"]))
-    if np.isfinite(table["normal_force_N"]).all():
-        yield one("Contact force", "contact force, N", ("", table["normal_force_N"]))
-    if np.isfinite(table["p0_hertz_MPa"]).all():
-        yield one("Contact pressure", "contact pressure, MPa", ("", table["p0_hertz_MPa"]))
+        yield over_cam(
+            "angle", "Pressure angle", "pressure angle", "deg", [("", table["pressure_angle_deg"])]
+        )
+    for name, quantity, column, unit in (
+        ("force", "contact force", "normal_force_N", "N"),
+        ("pressure", "contact pressure", "p0_hertz_MPa", "MPa"),
+    ):
+        if np.isfinite(table[column]).all():
+            yield over_cam(name, quantity.capitalize(), quantity, unit, [("", table[column])])
 
 
 def solved(root: Path, say: Callable[[str], None]) -> list[Shown]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from html import escape
 from typing import NamedTuple
 
@@ -10,104 +10,38 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.geometry.figures import (
+    SERIES,
+    Curve,
+    Figure,
+    HorizontalAxis,
+    LimitLine,
+    Panel,
+    closed,
+)
+from camwright.reports.figure_svg import FIGURE_WIDTH, svg_of, themed
 
 STEPS = 72
 """Positions of a turning cam; the browser moves its parts in straight lines between them."""
-_WIDTH, _HEIGHT = 440.0, 230.0
-_LEFT, _RIGHT, _TOP, _BOTTOM = 58.0, 14.0, 30.0, 44.0
-_TICKS = 5
 
 
-class Curve(NamedTuple):
-    """A curve of a chart: its name in the legend, "" for none, and its points."""
-
-    name: str
-    x: Array
-    y: Array
+def chart(figure: Figure, width: float = FIGURE_WIDTH) -> str:
+    """A figure as SVG with its text alternative; `width` in inches."""
+    svg = themed(svg_of(figure, width=width), figure.id)
+    return f'{svg}<span id="{figure.id}-alt" hidden>{escape(figure.alt)}</span>'
 
 
-class Chart(NamedTuple):
-    """A chart: words for a screen reader, labels of the axes, curves, dashed limits by name."""
-
-    words: str
-    across: str
-    up: str
-    curves: Sequence[Curve]
-    limits: Sequence[tuple[str, float]] = ()
-
-
-def chart(one: Chart) -> str:
-    """A chart as an SVG."""
-    across = np.concatenate([curve.x for curve in one.curves])
-    up = np.concatenate([*(curve.y for curve in one.curves), [value for _, value in one.limits]])
-    x_ticks, y_ticks = _ticks(across), _ticks(up)
-    left, right = float(across.min()), float(across.max())
-    low, high = min(up.min(), y_ticks[0]), max(up.max(), y_ticks[-1])
-
-    def place(x: Array, y: Array) -> tuple[Array, Array]:
-        wide, tall = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BOTTOM
-        return (
-            _LEFT + wide * (np.asarray(x) - left) / (right - left),
-            _TOP + tall * (high - np.asarray(y)) / (high - low),
-        )
-
-    parts = []
-    for value, text in zip(y_ticks, _numbers(y_ticks), strict=True):
-        (x0, x1), (y, _) = place(np.array([left, right]), np.array([value, value]))
-        parts.append(f'<path class="grid" d="M{x0:.1f} {y:.1f}H{x1:.1f}"/>')
-        parts.append(f'<text class="end" x="{x0 - 6:.1f}" y="{y + 4:.1f}">{text}</text>')
-    for value, text in zip(x_ticks, _numbers(x_ticks), strict=True):
-        (x,), (y,) = place(np.array([value]), np.array([low]))
-        parts.append(f'<text class="middle" x="{x:.1f}" y="{y + 17:.1f}">{text}</text>')
-    for name, value in one.limits:
-        (x0, x1), (y, _) = place(np.array([left, right]), np.array([value, value]))
-        parts.append(f'<path class="limit" d="M{x0:.1f} {y:.1f}H{x1:.1f}"/>')
-        parts.append(f'<text class="end" x="{x1:.1f}" y="{y - 5:.1f}">{escape(name)}</text>')
-    beside = _LEFT
-    for number, curve in enumerate(one.curves):
-        parts.append(f'<path class="curve c{number}" d="{_line(*place(curve.x, curve.y))}"/>')
-        if curve.name:
-            parts.append(
-                f'<path class="curve c{number}" d="M{beside:.1f} 12h18"/>'
-                f'<text x="{beside + 24:.1f}" y="16">{escape(curve.name)}</text>'
-            )
-            beside += 40.0 + 6.6 * len(curve.name)
-    middle = 0.5 * (_TOP + _HEIGHT - _BOTTOM)
-    parts.append(
-        f'<text class="middle" x="{0.5 * (_LEFT + _WIDTH - _RIGHT):.1f}" y="{_HEIGHT - 6:.1f}">'
-        f"{escape(one.across)}</text>"
-        f'<text class="middle" transform="translate(13 {middle:.1f}) rotate(-90)">'
-        f"{escape(one.up)}</text>"
+def over_cam(
+    figure_id: str, title: str, quantity: str, unit: str, curves: Iterable[tuple[str, Array]],
+    limits: tuple[LimitLine, ...] = (),
+) -> Figure:  # fmt: skip
+    """Figure of values (n,) at equal cam angles over one turn, by their names."""
+    listed = tuple(
+        Curve(np.linspace(0.0, 360.0, values.size + 1), closed(values), name, SERIES[k])
+        for k, (name, values) in enumerate(curves)
     )
-    return (
-        f'<svg class="chart" viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}" role="img" '
-        f'aria-label="{escape(one.words)}">{"".join(parts)}</svg>'
-    )
-
-
-def _ticks(values: Array) -> Array:
-    """Round numbers over the range of values."""
-    low, high = float(np.min(values)), float(np.max(values))
-    if not high > low:
-        low, high = low - 0.5 * max(abs(low), 1.0), high + 0.5 * max(abs(high), 1.0)
-    if low > 0.0 and low < 0.4 * high:
-        low = 0.0
-    raw = (high - low) / _TICKS
-    power = 10.0 ** np.floor(np.log10(raw))
-    step = next(power * each for each in (1.0, 2.0, 2.5, 5.0, 10.0) if power * each >= raw)
-    if high > 300.0 and np.isclose(high, 360.0):
-        step = 90.0
-    return np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1.0) * step
-
-
-def _numbers(ticks: Array) -> list[str]:
-    return [f"{value + 0.0:g}".replace("-", "−") for value in np.round(ticks, 12)]
-
-
-def _line(x: Array, y: Array) -> str:
-    """A path through points."""
-    points = [f"{a:.1f} {b:.1f}" for a, b in zip(x, y, strict=True)]
-    return f"M{'L'.join(points)}"
+    axis = HorizontalAxis("cam angle", "deg", (0.0, 360.0), 90.0)
+    return Figure(figure_id, title, "", (Panel(quantity, unit, listed, limits),), axis)
 
 
 class TurningCam(NamedTuple):

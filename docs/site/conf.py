@@ -6,6 +6,8 @@ import re
 from importlib.metadata import version as installed
 from itertools import count
 
+from camwright.reports.figure_svg import COLOURS, DARK
+
 project = "Camwright"
 author = "the developers of Camwright"
 copyright = "the developers of Camwright, GPL-3.0-or-later"  # noqa: A001
@@ -42,21 +44,19 @@ _SHARED = {
 }
 html_theme_options = {
     "navigation_with_keys": True,
-    "light_css_variables": _SHARED | {
+    "light_css_variables": _SHARED | COLOURS | {
         "color-brand-primary": "#005a8d", "color-brand-content": "#005a8d",
         "color-brand-visited": "#5b3f8c",
         "color-foreground-muted": "#59616b", "color-foreground-secondary": "#48505a",
-        "camwright-0": "#0072b2", "camwright-1": "#c04f00", "camwright-2": "#00694d",
-        "camwright-limit": "#b3261e", "camwright-steel": "#dfe4ea", "camwright-fixed": "#8f98a3",
-        "camwright-cam": "#b9d7ec", "camwright-line": "#1b1f24", "camwright-grid": "#dde2e8",
+        "camwright-2": "#00694d", "camwright-steel": "#dfe4ea", "camwright-fixed": "#8f98a3",
+        "camwright-cam": "#b9d7ec", "camwright-line": "#1b1f24",
     },
-    "dark_css_variables": _SHARED | {
+    "dark_css_variables": _SHARED | DARK | {
         "color-brand-primary": "#7cc4f5", "color-brand-content": "#7cc4f5",
         "color-brand-visited": "#c3b1e8",
         "color-foreground-muted": "#a0a8b2", "color-foreground-secondary": "#b3bac3",
-        "camwright-0": "#5ab1ec", "camwright-1": "#ff8f4d", "camwright-2": "#35c89c",
-        "camwright-limit": "#ff8a80", "camwright-steel": "#3c4652", "camwright-fixed": "#707b88",
-        "camwright-cam": "#24506e", "camwright-line": "#e6e9ed", "camwright-grid": "#343b44",
+        "camwright-2": "#35c89c", "camwright-steel": "#3c4652", "camwright-fixed": "#707b88",
+        "camwright-cam": "#24506e", "camwright-line": "#e6e9ed",
     },
 }  # fmt: skip
 

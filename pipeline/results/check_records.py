@@ -180,6 +180,10 @@ class CheckList(Displayed, tuple[Item, ...]):
         return data_frame({key: [record.get(key) for record in self.records] for key in _SHOWN})
 
     def plot(self, most: int = 12) -> DrawnAxes:
+        """Bars of the greatest utilisations; see `figure`."""
+        return plotted(self.figure(most))
+
+    def figure(self, most: int = 12) -> Figure:
         """Bars of the greatest utilisations with their values, on an axis to twice the limit.
 
         Parameters
@@ -201,7 +205,7 @@ class CheckList(Displayed, tuple[Item, ...]):
         )  # fmt: skip
         axis = HorizontalAxis("utilisation", "", (0.0, _LONGEST_BAR))
         panel = Panel("", "", bars, (LimitLine(1.0, "limit"),), kind="bars")
-        return plotted(Figure("utilisation", "Utilisation", "", (panel,), axis))
+        return Figure("utilisation", "Utilisation", "", (panel,), axis)
 
     def _repr_html_(self) -> str:
         return html_table(repr(self), _SHOWN[:8], map(_row_in_words, self.records))

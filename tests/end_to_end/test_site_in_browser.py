@@ -168,6 +168,6 @@ def test_it_is_whole_without_scripts(site: Path, tab: Tab) -> None:
     page = context.new_page()
     page.goto((site / "gallery" / "gx120.html").as_uri())
     assert page.locator(".turning-cam").first.is_visible()
-    assert page.locator(".chart").count() >= 4
+    assert page.locator(".charts svg").count() >= 4
     assert re.search(r"\d", page.locator(".beside table").inner_text())
     context.close()

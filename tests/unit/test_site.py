@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 import xml.etree.ElementTree as ET
+from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +16,12 @@ import build_site
 import site_reference
 from site_figures import Figures
 from site_gallery import GROUPS, NO_CASE, about, case_files
-from site_pictures import STEPS, Chart, Curve, TurningCam, chart, turning_cam
+from site_pictures import STEPS, TurningCam, chart, over_cam, turning_cam
 
 import camwright
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour, RollerContour
+from camwright.geometry.figures import LimitLine
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -175,12 +177,17 @@ def test_a_turning_cam_is_an_svg_that_keeps_still_where_motion_is_reduced(lift: 
     assert re.search(reduced, style)
 
 
-def test_a_chart_has_round_ticks_and_its_curves() -> None:
-    x = np.linspace(0.0, 360.0, 37)
-    curves = [Curve("one", x, np.sin(x)), Curve("two", x, x)]
-    text = chart(Chart("words", "cam angle, deg", "lift, mm", curves, [("limit", 400.0)]))
-    texts = [each.text for each in ET.fromstring(text).iter("text")]
-    assert {"0", "90", "180", "270", "360", "100", "400", "one", "two", "limit"} <= set(texts)
+def test_a_chart_over_the_cam_angle_has_its_ticks_curves_and_words() -> None:
+    theta = uniform_turn(36)
+    curves = [("one", np.sin(theta)), ("two", theta)]
+    figure = over_cam("lift", "Lift < 400", "lift", "mm", curves, (LimitLine(5.0, "limit"),))
+    svg, _, words = chart(figure).partition("<span")
+    picture = ET.fromstring(svg)
+    texts = {each.text for each in picture.iter("{http://www.w3.org/2000/svg}text")}
+    assert {"0", "90", "180", "270", "360", "limit 5 mm", "one", "two", "lift, mm"} <= texts
+    assert picture.get("aria-labelledby") == "lift-alt"
+    assert words == f' id="lift-alt" hidden>{escape(figure.alt)}</span>'
+    assert "Lift < 400" in figure.alt
 
 
 def test_a_missing_generator_says_what_to_install(
