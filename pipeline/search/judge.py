@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,7 +15,7 @@ import numpy as np
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError, GeometryError
 from camwright.geometry.lift import Lift
-from camwright.pipeline.base.store import JSON, Store
+from camwright.pipeline.base.store import JSON, Store, key_of
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Corner, machines
 from camwright.pipeline.checks.check import Check, Declaration
@@ -328,6 +327,8 @@ class Judge:
     ) -> Any:
         """Record of a changed case, from the store or made; a refusal is a record, too.
 
+        A stored one is of the same kind, source, libraries, cases and included files.
+
         Parameters
         ----------
         kind : str          of the record
@@ -346,13 +347,13 @@ class Judge:
 
         if self.store is None:
             return made()
-        texts = self.version, self._base_text, case.to_toml()
-        digest = hashlib.sha256("\0".join(texts).encode()).hexdigest()
-        return self.store.kept(f"{kind}_{digest[:24]}", made, _is_judgement)
+        key = key_of(kind, (self.version, self._base_sha256, case.sha256))
+        return self.store.kept(key, made, _is_judgement)
 
     @cached_property
-    def _base_text(self) -> str:
-        return self.base.to_toml()
+    def _base_sha256(self) -> str:
+        """Hash of the case of which the torques are."""
+        return self.base.sha256
 
     def _contour(self, case: Case, *, undercut: bool = False) -> Contour:
         contour = case.contour(cam_lift(case, self.torques) if self.lift is None else self.lift)

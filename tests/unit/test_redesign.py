@@ -8,6 +8,7 @@ import pytest
 from synthesis_ratings import named
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base import store
 from camwright.pipeline.case.cards.catalogue import (
     better_bush,
     better_roller,
@@ -18,6 +19,7 @@ from camwright.pipeline.case.cards.catalogue import (
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_of, variant
 from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.case_writer import tables_text
 from camwright.pipeline.case.limits import CAM_RADIUS
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.search.change import Change
@@ -285,8 +287,8 @@ def test_a_roller_that_fits_nowhere_is_left():
 
 
 def test_a_judgement_that_is_kept_is_not_made_again(case, tmp_path):
-    store, known = judgements(tmp_path), {"feasible": True, "ripple_left_Nm": 1.0}
-    judge = Judge(case, engine_torques(case), store=store, version="v")
+    folder, known = judgements(tmp_path), {"feasible": True, "ripple_left_Nm": 1.0}
+    judge = Judge(case, engine_torques(case), store=folder, version="v")
     made = []
 
     def record(changed):
@@ -298,10 +300,10 @@ def test_a_judgement_that_is_kept_is_not_made_again(case, tmp_path):
     heavy = Change((("follower.mass", "180 g"),))
     refused = {"feasible": False, "why": "cam.width = 0.01, must be > 0.02 m"}
     assert [judge.stored(heavy, "whole", record) for _ in range(2)] == [refused, refused]
-    (path,) = tmp_path.glob("solved/whole_*.json")
+    (path,) = tmp_path.glob("solved/whole-*.json")
     path.write_bytes(b'{"feasib')  # torn
     assert [judge.stored(heavy, "whole", record) for _ in range(2)] == [known, known]
-    store.put(path.stem, {"verdict": "pass"})  # of no judgement
+    folder.put(path.stem, {"verdict": "pass"})  # of no judgement
     assert judge.stored(heavy, "whole", record) == known
     assert made == [0.18] * 3
     others = (
@@ -314,6 +316,46 @@ def test_a_judgement_that_is_kept_is_not_made_again(case, tmp_path):
     assert len(made) == 6 and len(list(tmp_path.glob("solved/*.json"))) == 4
     bad = Change((("follower.mass", "-1 g"),))
     assert judge.kept(bad, WHOLE)["why"].startswith("follower.mass = -1 g")
+
+
+def table_of(amplitude):
+    """Torque of two cycles a turn, N m, over the crank angle."""
+    angle = np.arange(0.0, 720.0, 5.0)
+    torque = 0.1 + amplitude * np.sin(2.0 * np.pi * angle / 360.0)
+    rows = (f"{a},{value:.4f}" for a, value in zip(angle, torque, strict=True))
+    return "\n".join(["crank_angle_deg,torque_Nm", *rows]) + "\n"
+
+
+def test_a_judgement_is_of_the_contents_of_the_included_files(case, tmp_path):
+    """The text of a case states the name of its table alone."""
+    entries = case.tables() | {"engine": {"kind": "table", "file": "torque.csv"}}
+    text, made = tables_text(entries), []
+
+    def judged(amplitude):
+        (tmp_path / "torque.csv").write_text(table_of(amplitude), encoding="utf-8")
+        read = parse_case(text, tmp_path)
+        judge = Judge(read, engine_torques(read), store=judgements(tmp_path), version="v")
+
+        def record(_):
+            made.append(amplitude)
+            return {"feasible": True, "ripple": amplitude}
+
+        return judge.stored(Change(), "draft", record)["ripple"]
+
+    assert [judged(amplitude) for amplitude in (2.0, 2.0, 3.0, 2.0)] == [2.0, 2.0, 3.0, 2.0]
+    assert made == [2.0, 3.0]
+
+
+def test_a_judgement_is_of_the_libraries(case, tmp_path, monkeypatch):
+    judge = Judge(case, engine_torques(case), store=judgements(tmp_path), version="v")
+    records = iter(({"feasible": True, "ripple": 1.0}, {"feasible": True, "ripple": 2.0}))
+
+    def judged():
+        return judge.stored(Change(), "draft", lambda _: next(records))["ripple"]
+
+    assert [judged(), judged()] == [1.0, 1.0]
+    monkeypatch.setattr(store, "_versions", lambda: ("scipy 0.1",))
+    assert judged() == 2.0
 
 
 def test_a_point_that_passes_keeps_one_without_data_off_the_front():
