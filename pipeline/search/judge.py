@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -32,7 +32,8 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, is_body, solution
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.records.judgement_record import (
-    JudgementRecord,
+    ConflictJudgement,
+    DraftJudgement,
     PreviewJudgement,
     RefusedJudgement,
 )
@@ -44,7 +45,9 @@ from camwright.pipeline.torque.torque import Torque
 
 STORED = "solved"
 """Folder of the stored judgements of a search."""
+NOT_STORED: Store[Any] = Store(None, JSON)
 NOT_RAISED: Mapping[str, float] = MappingProxyType({})
+R = TypeVar("R", DraftJudgement, PreviewJudgement, ConflictJudgement)
 _DECIDING = tuple(each for each in CHECKS if each.must_have and not each.evidence)
 
 
@@ -63,7 +66,7 @@ class Headline:
 
 
 class Depth(NamedTuple):
-    """Depth of a judgement: tier of the solution, tolerance corners, bounds of the friction.
+    """Depth of the judgement of a drawn cam: tier, tolerance corners, bounds of the friction.
 
     Parameters
     ----------
@@ -73,10 +76,6 @@ class Depth(NamedTuple):
     worst : collection     names of those at which one check alone is judged
     undercut : bool        judge an undercut contour as well
     bounds : bool          solve the bounds of the friction, too
-    cam : str              "drawn": held by the judge, or of the smoother of the case;
-                           "synthesised": as of a preview, of the constrained synthesis of the case
-                           if it has one; "draft": of its synthesis on few cam angles. In a
-                           screening the figures are those of the synthesis alone
     """
 
     tier: Tier = Tier.PREVIEW
@@ -84,17 +83,6 @@ class Depth(NamedTuple):
     worst: Collection[str] = ()
     undercut: bool = False
     bounds: bool = True
-    cam: Literal["drawn", "synthesised", "draft"] = "drawn"
-
-    @property
-    def kind(self) -> str:
-        """Kind of its stored records."""
-        return f"{self.tier.word}_{self.cam}"
-
-
-DRAFT = Depth(Tier.SCREENING, cam="draft")
-SYNTHESIS = Depth(Tier.SCREENING, cam="synthesised")
-WHOLE = Depth(corners=None, cam="synthesised")
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,7 +209,7 @@ class Judge:
     folder : Path       of the user's cards; None: shipped cards only
     lift : Lift         held by every changed case; None: drawn from each
     corners : mapping   check -> names of its worst tolerance corners, the governing one first
-    store : Store       of the records of judgements; None: they are not stored
+    store : Store       of the records of judgements
     version : str       hash of the source, of which stored records are
     """
 
@@ -230,7 +218,7 @@ class Judge:
     folder: Path | None = None
     lift: Lift | None = None
     corners: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    store: Store[Any] | None = None
+    store: Store[Any] = NOT_STORED
     version: str = ""
 
     def case(self, change: Applicable, *, quick: bool = False) -> Case:
@@ -274,7 +262,9 @@ class Judge:
         return {name: used(by_corner[corner].get(name)) for name, corner in governing.items()}
 
     def judged(self, change: Applicable, depth: Depth, *, quick: bool = False) -> Judgement:
-        """Judgement of the changed case.
+        """Judgement of the changed case with a drawn cam.
+
+        Its lift is held by the judge, or of the smoother of the case.
 
         Parameters
         ----------
@@ -285,53 +275,61 @@ class Judge:
         CamError
             If there is no such case or cam, or it cannot be solved.
         """
-        return self._judged(change, self.case(change, quick=quick), depth)
-
-    def _judged(self, change: Applicable, case: Case, depth: Depth) -> Judgement:
-        drawn: Trial | None = None
-        if depth.cam == "drawn":
-            contour = self._contour(case, undercut=depth.undercut)
-            solved = solution(case, contour, depth.tier, torques=self.torques, bounds=depth.bounds)
-        else:
-            from camwright.pipeline.preview import preview_case
-
-            drawn = preview_case(case, corners=False, torques=self.torques)
-            case, solved = drawn.case, drawn.solution
+        case = self.case(change, quick=quick)
+        contour = self._contour(case, undercut=depth.undercut)
+        solved = solution(case, contour, depth.tier, torques=self.torques, bounds=depth.bounds)
         governing, worst = (_named(case, names or ()) for names in (depth.corners, depth.worst))
-        every = depth.corners is None
-        return Judgement(change, solved, governing, worst, whole=every, drawn=drawn)
+        return Judgement(change, solved, governing, worst, whole=depth.corners is None)
 
-    def kept(self, change: Applicable, depth: Depth) -> Any:
-        """Record of a judgement, from the store or judged; a refusal is a record, too.
+    def synthesised(self, change: Applicable) -> Judgement:
+        """Judgement of the changed case with the cam of its synthesis, at every corner.
+
+        As in a preview: of the smoother, where the case has no constrained synthesis.
+
+        Raises
+        ------
+        CamError
+            As by `judged`.
+        """
+        return self._synthesised(change, self.case(change))
+
+    def _synthesised(self, change: Applicable, case: Case) -> Judgement:
+        from camwright.pipeline.preview import preview_case
+
+        drawn = preview_case(case, corners=False, torques=self.torques)
+        return Judgement(change, drawn.solution, whole=True, drawn=drawn)
+
+    def previewed(self, change: Applicable) -> PreviewJudgement | RefusedJudgement:
+        """Record of the judgement with the cam of the synthesis, from the store or judged."""
+        return self.stored(change, "preview", lambda case: self._synthesised(change, case).record)
+
+    def drafted(
+        self, change: Applicable, *, fine: bool = False
+    ) -> DraftJudgement | RefusedJudgement:
+        """Record of the synthesis alone, from the store or solved.
 
         Parameters
         ----------
-        depth : Depth   with a cam of the synthesis
-
-        Returns
-        -------
-        dict   of `JudgementRecord` that of the depth, or a refusal
+        fine : bool   as that of `draft_figures`
         """
 
-        def record(case: Case) -> JudgementRecord:
-            if depth.tier is not Tier.SCREENING:
-                return self._judged(change, case, depth).record
+        def record(case: Case) -> DraftJudgement:
             from camwright.pipeline.search.figures import draft_figures
 
-            return draft_figures(case, self.torques, fine=depth.cam == "synthesised")
+            return draft_figures(case, self.torques, fine=fine)
 
-        return self.stored(change, depth.kind, record)
+        return self.stored(change, "synthesis" if fine else "draft", record)
 
     def stored(
-        self, change: Applicable, kind: str, record: Callable[[Case], JudgementRecord]
-    ) -> Any:
+        self, change: Applicable, kind: str, record: Callable[[Case], R]
+    ) -> R | RefusedJudgement:
         """Record of a changed case, from the store or made; a refusal is a record, too.
 
         A stored one is of the same kind, source, libraries, cases and included files.
 
         Parameters
         ----------
-        kind : str          of the record
+        kind : str          of the record; it says how deep the judgement is
         record : function   changed case -> record
         """
         try:
@@ -339,16 +337,15 @@ class Judge:
         except CamError as error:
             return refusal(error)
 
-        def made() -> JudgementRecord:
+        def judged() -> R | RefusedJudgement:
             try:
                 return record(case)
             except CamError as error:
                 return refusal(error)
 
-        if self.store is None:
-            return made()
         key = key_of(kind, (self.version, self._base_sha256, case.sha256))
-        return self.store.kept(key, made, _is_judgement)
+        stored: R | RefusedJudgement = self.store.kept(key, judged, _is_judgement)
+        return stored
 
     @cached_property
     def _base_sha256(self) -> str:

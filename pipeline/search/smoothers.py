@@ -19,7 +19,7 @@ from camwright.pipeline.checks.check import Check
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.results.verdict_summary import WIDTH, shortened
 from camwright.pipeline.search.change import Change
-from camwright.pipeline.search.judge import WHOLE, Depth, Judge
+from camwright.pipeline.search.judge import Depth, Judge
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.torque.torque import Torque
@@ -221,7 +221,7 @@ def _without(kind: str, words: str, error: CamError, width: float | None = None)
 def _constrained(case: Case, torques: Mapping[str, Torque]) -> Compared:
     smoothing = case.smoothing.model_copy(update={"kind": "constrained"})
     judge = Judge(case.model_copy(update={"smoothing": smoothing}), torques)
-    trial = judge.judged(Change(), WHOLE).trial
+    trial = judge.synthesised(Change()).trial
     feasible = trial.synthesis is not None and trial.synthesis["feasible"]
     words = (
         "least ripple within all limits" if feasible else "the synthesis ends outside the limits"

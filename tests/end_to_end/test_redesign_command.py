@@ -175,7 +175,7 @@ def test_without_a_result_limit_and_way_are_named_and_no_file_is(
 def test_what_is_solved_is_used_again(done, case_file):
     out, document = done
     kept = {path: path.stat().st_mtime_ns for path in (out / "solved").iterdir()}
-    lost = next(path for path in sorted(kept) if path.name.startswith("screening"))
+    lost = next(path for path in sorted(kept) if path.name.startswith("synthesis"))
     lost.unlink()  # as if the search had been killed before it
     assert redesign_study.redesign(case_file, out, "size", 1, Silent()) == document
     assert lost.is_file()
@@ -243,8 +243,8 @@ def test_a_killed_search_blocks_nothing_and_a_running_one_blocks_others(
     with pytest.raises(KeyboardInterrupt):
         redesign_study.redesign(case_file, out, "size", 1, Silent())
     assert [each.name for each in out.iterdir()] == ["solved"]
-    (out / "solved" / "whole_a.json").symlink_to(case_file)
-    with pytest.raises(ResultError, match=r"whole_a\.json: is a link"):
+    (out / "solved" / "preview-a.json").symlink_to(case_file)
+    with pytest.raises(ResultError, match=r"preview-a\.json: is a link"):
         redesign_study.redesign(case_file, out, "size", 1, Silent())
 
 

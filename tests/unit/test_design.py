@@ -27,7 +27,7 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.cycle.machine_envelope import sizes_of
 from camwright.pipeline.records.judgement_record import DraftJudgement
 from camwright.pipeline.search.change import Change
-from camwright.pipeline.search.judge import DRAFT, Judge, judgements
+from camwright.pipeline.search.judge import Judge, judgements
 from camwright.pipeline.search.machine import (
     design_study,
     part_exchange,
@@ -545,7 +545,7 @@ def test_a_drafted_cam_grows_where_its_prime_radius_is_the_greatest(
         text = study.text(drawn, synthesised_points.freed(drawn, growth))
         case = parse_case(text, tmp_path)
         judge = Judge(case, engine_torques(case), store=judgements(tmp_path))
-        assert judge.stored(Change(), DRAFT.kind, lambda _, each=record: each) == record
+        assert judge.stored(Change(), "draft", lambda _, each=record: each) == record
     point = draft(study, Candidate(design, 0.1, 0.04, 0.0, "pressure_angle"))
     assert point.use == (1.05 if grown else 1.1)
 

@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from synthesis_ratings import named
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline import preview
 from camwright.pipeline.base import store
 from camwright.pipeline.case.cards.catalogue import (
     better_bush,
@@ -22,10 +24,11 @@ from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.case_writer import tables_text
 from camwright.pipeline.case.limits import CAM_RADIUS
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.search import figures
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.figures import verdict_of
 from camwright.pipeline.search.front import front, thinned
-from camwright.pipeline.search.judge import WHOLE, Judge, judgements
+from camwright.pipeline.search.judge import Judge, Judgement, judgements
 from camwright.pipeline.search.parts import redesign_study
 from camwright.pipeline.search.parts.exclusions import exclusions
 from camwright.pipeline.search.parts.part_search import RUNG, RUNGS, Pruned, RollerSearch
@@ -244,7 +247,8 @@ class Solved:
     def __init__(self, solve):
         self.solve = solve
 
-    def kept(self, choice, _depth):
+    def drafted(self, choice, *, fine):
+        assert fine
         return self.solve(choice)
 
 
@@ -315,7 +319,7 @@ def test_a_judgement_that_is_kept_is_not_made_again(case, tmp_path):
     assert judge.stored(Change((("follower.mass", "181 g"),)), "whole", record) == known
     assert len(made) == 6 and len(list(tmp_path.glob("solved/*.json"))) == 4
     bad = Change((("follower.mass", "-1 g"),))
-    assert judge.kept(bad, WHOLE)["why"].startswith("follower.mass = -1 g")
+    assert judge.previewed(bad)["why"].startswith("follower.mass = -1 g")
 
 
 def table_of(amplitude):
@@ -344,6 +348,24 @@ def test_a_judgement_is_of_the_contents_of_the_included_files(case, tmp_path):
 
     assert [judged(amplitude) for amplitude in (2.0, 2.0, 3.0, 2.0)] == [2.0, 2.0, 3.0, 2.0]
     assert made == [2.0, 3.0]
+
+
+def test_a_judgement_is_of_its_depth(case, tmp_path, monkeypatch):
+    """A draft, a synthesis and a preview of one case are three records."""
+    monkeypatch.setattr(
+        figures, "draft_figures", lambda *_, fine: {"feasible": True, "mass": float(fine)}
+    )
+    monkeypatch.setattr(Judgement, "record", {"feasible": True, "mass_g": 3.0})
+    monkeypatch.setattr(preview, "preview_case", lambda *_, **__: SimpleNamespace(solution=None))
+    judge = Judge(case, engine_torques(case), store=judgements(tmp_path), version="v")
+
+    def masses():
+        drafts = [judge.drafted(Change(), fine=fine)["mass"] for fine in (False, True)]
+        return [*drafts, judge.previewed(Change())["mass_g"]]
+
+    assert [masses(), masses()] == [[0.0, 1.0, 3.0]] * 2
+    names = sorted(path.name.partition("-")[0] for path in tmp_path.glob("solved/*"))
+    assert names == ["draft", "preview", "synthesis"]
 
 
 def test_a_judgement_is_of_the_libraries(case, tmp_path, monkeypatch):

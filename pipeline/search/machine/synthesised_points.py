@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil, inf
 from pathlib import Path
-from typing import Any, NamedTuple, TypedDict
+from typing import NamedTuple, TypedDict, TypeVar
 
 from camwright.geometry.errors import CamError, ResultError
 from camwright.pipeline.base.progress import Progress
@@ -16,7 +16,6 @@ from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.records.judgement_record import (
-    DraftJudgement,
     PreviewJudgement,
     RefusedJudgement,
     is_refused,
@@ -24,12 +23,13 @@ from camwright.pipeline.records.judgement_record import (
 )
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.front import front, thinned
-from camwright.pipeline.search.judge import DRAFT, WHOLE, Depth, Judge, judgements, refusal
+from camwright.pipeline.search.judge import Judge, judgements, refusal
 from camwright.pipeline.search.machine.candidate_search import FAR, OPTIMISTIC, Candidate
 from camwright.pipeline.search.machine.design_case import SYNTHESIS, Machinery, case_text
 from camwright.pipeline.search.machine.torque_task import DesignTask
 from camwright.pipeline.smoothing.constraints import check_of
 
+R = TypeVar("R")
 _FRONT_WITHIN = 5  # of the front of the screening within the limits
 _FRONT_NEAR = 2  # of the front of those near to them
 _ROLLERS = 3  # whose likeliest designs are tried
@@ -82,11 +82,12 @@ class PointStudy:
 
     def solved(self, design: Machinery, smoothing: str = SYNTHESIS) -> Solved:
         """A design with its record, cached or solved, its checks judged at all tolerance ends."""
-        return Solved(design, self._kept(design, smoothing, WHOLE), smoothing)
+        record = self._judged(design, smoothing, lambda judge: judge.previewed(Change()))
+        return Solved(design, record, smoothing)
 
     def drafted(self, design: Machinery, smoothing: str) -> Solved:
         """A design with the record of its synthesis on few cam angles, cached or solved."""
-        rough: DraftJudgement | RefusedJudgement = self._kept(design, smoothing, DRAFT)
+        rough = self._judged(design, smoothing, lambda judge: judge.drafted(Change()))
         if is_refused(rough):
             return Solved(design, rough, smoothing)
         failing: list[DraftLimit] = []
@@ -105,15 +106,17 @@ class PointStudy:
         }
         return Solved(design, record, smoothing)
 
-    def _kept(self, design: Machinery, smoothing: str, depth: Depth) -> Any:
-        """Record of the judgement of a design, which is a case of its own; see `Judge.kept`."""
+    def _judged(
+        self, design: Machinery, smoothing: str, record: Callable[[Judge], R]
+    ) -> R | RefusedJudgement:
+        """Record by the judge of a design, which is a case of its own; or its refusal."""
         try:
             case = parse_case(self.text(design, smoothing), self.folder)
             torques = engine_torques(case)
         except CamError as error:
             return refusal(error)
         store = judgements(self.folder)
-        return Judge(case, torques, store=store, version=self.version).kept(Change(), depth)
+        return record(Judge(case, torques, store=store, version=self.version))
 
 
 @dataclass(frozen=True)

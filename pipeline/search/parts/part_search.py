@@ -25,7 +25,7 @@ from camwright.pipeline.records.judgement_record import (
     RefusedJudgement,
     is_refused,
 )
-from camwright.pipeline.search.judge import SYNTHESIS, Judge
+from camwright.pipeline.search.judge import Judge
 from camwright.pipeline.search.parts import ripple_bounds
 from camwright.pipeline.smoothing.scenario import Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
@@ -129,7 +129,7 @@ class RollerSearch:
     def _judged(self, spring: str, bush: str, room: float | None = None) -> DraftJudgement | None:
         """Judgement of a choice by the synthesis alone; None: there is no such cam."""
         choice = Choice(self.roller, spring, bush, room)
-        record: DraftJudgement | RefusedJudgement = self.judge.kept(choice, SYNTHESIS)
+        record = self.judge.drafted(choice, fine=True)
         self.tried.append((choice, record))
         return None if is_refused(record) else record
 

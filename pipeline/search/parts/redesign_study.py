@@ -38,7 +38,7 @@ from camwright.pipeline.records.redesign_document import (
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.front import front, thinned
-from camwright.pipeline.search.judge import STORED, WHOLE, Judge, judgements
+from camwright.pipeline.search.judge import STORED, Judge, judgements
 from camwright.pipeline.search.parts.exclusions import exclusions
 from camwright.pipeline.search.parts.part_search import RollerSearch, Selection, Tried, selection
 from camwright.pipeline.smoothing.infeasibility import infeasibility
@@ -87,9 +87,7 @@ class RedesignTask:
 
     def whole(self, choice: Choice | None) -> PreviewJudgement | RefusedJudgement:
         """Judgement of a choice by preview, None: of the case, at its worst tolerance corners."""
-        record: PreviewJudgement | RefusedJudgement
-        record = self.judge().kept(Change() if choice is None else choice, WHOLE)
-        return record
+        return self.judge().previewed(Change() if choice is None else choice)
 
     def conflict(self, choice: Choice | None) -> ConflictJudgement | RefusedJudgement:
         """Infeasibility of a choice, None: of the case."""
@@ -99,9 +97,7 @@ class RedesignTask:
             problem = problem_of(case, judge.torques)
             return {"feasible": False, **infeasibility(problem).as_record()}
 
-        record: ConflictJudgement | RefusedJudgement
-        record = judge.stored(Change() if choice is None else choice, "conflict", conflict)
-        return record
+        return judge.stored(Change() if choice is None else choice, "conflict", conflict)
 
 
 def redesign(
