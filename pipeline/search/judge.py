@@ -91,7 +91,6 @@ class Judgement:
 
     Parameters
     ----------
-    change              of the case of the judge
     solved : Solution   of the changed case
     governing : tuple   tolerance corners, besides the nominal, at which every check is judged
     worst : tuple       those at which one check alone is judged
@@ -99,7 +98,6 @@ class Judgement:
     drawn : Trial       of a synthesis, nominal; None: the cam is of none
     """
 
-    change: Applicable
     solved: Solution
     governing: tuple[Corner, ...] = ()
     worst: tuple[Corner, ...] = ()
@@ -279,7 +277,7 @@ class Judge:
         contour = self._contour(case, undercut=depth.undercut)
         solved = solution(case, contour, depth.tier, torques=self.torques, bounds=depth.bounds)
         governing, worst = (_named(case, names or ()) for names in (depth.corners, depth.worst))
-        return Judgement(change, solved, governing, worst, whole=depth.corners is None)
+        return Judgement(solved, governing, worst, whole=depth.corners is None)
 
     def synthesised(self, change: Applicable) -> Judgement:
         """Judgement of the changed case with the cam of its synthesis, at every corner.
@@ -291,17 +289,17 @@ class Judge:
         CamError
             As by `judged`.
         """
-        return self._synthesised(change, self.case(change))
+        return self._synthesised(self.case(change))
 
-    def _synthesised(self, change: Applicable, case: Case) -> Judgement:
+    def _synthesised(self, case: Case) -> Judgement:
         from camwright.pipeline.preview import preview_case
 
         drawn = preview_case(case, corners=False, torques=self.torques)
-        return Judgement(change, drawn.solution, whole=True, drawn=drawn)
+        return Judgement(drawn.solution, whole=True, drawn=drawn)
 
     def previewed(self, change: Applicable) -> PreviewJudgement | RefusedJudgement:
         """Record of the judgement with the cam of the synthesis, from the store or judged."""
-        return self.stored(change, "preview", lambda case: self._synthesised(change, case).record)
+        return self.stored(change, "preview", lambda case: self._synthesised(case).record)
 
     def drafted(
         self, change: Applicable, *, fine: bool = False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
 
@@ -236,11 +236,9 @@ def _factors(task: DesignTask, designs: list[Machinery]) -> dict[str, Array]:
     springs = [each.spring for each in designs]
     windings = ("wire_diameter", "mean_diameter", "coils", "free_length", "end_factor",
                 "shear_modulus", "density", "strength_at_1mm", "strength_exponent")  # fmt: skip
-    known = {each.name for each in fields(HelicalSpring)}
     factors = {
         f"spring.design.{name}": np.array([getattr(each.spring, name) for each in springs])
         for name in windings
-        if name in known
     }
     share = np.array([_share(task, each.spring) for each in designs])
     return factors | {

@@ -40,6 +40,7 @@ WRITTEN = 144  # in a case file, for the error bars of a run
 _AROUND = 0.01  # m of room and wall between parts and outside of the housing
 _TOOTH_LOSS = 0.01  # of the torque at the gear
 _BEARING_FRICTION = 1.5e-3  # deep-groove ball bearings: moment over force and half the bore
+_BUSH_CARD = "ptfe_lined"  # card of both bushes
 _TABLE_STEPS = (0.5, 0.25, 0.2, 0.1)  # deg, of the contour table
 SYNTHESIS = """\
 kind = "constrained"
@@ -64,7 +65,6 @@ class Machinery:
     lift: float
     cam_radius: float
     offset: float = 0.0
-    bush: str = "ptfe_lined"
     oils: Mapping[str, tuple[float, float]] = field(default_factory=dict, repr=False)
 
     @property
@@ -456,9 +456,9 @@ def _follower(design: Machinery) -> str:
         ambient=f"{design.oil_temperature - 273.15:g} degC",
     )  # fmt: skip
     bush = filled(
-        _BUSH, card=design.bush, length=_mm(frame.bush_length),
+        _BUSH, card=_BUSH_CARD, length=_mm(frame.bush_length),
         diameter=stem, wall=_mm(frame.bush_wall),
-        source=_assumed(f"size, clearance, housing, wear; card {design.bush}"),
+        source=_assumed(f"size, clearance, housing, wear; card {_BUSH_CARD}"),
     )  # fmt: skip
     return text + "".join(f"\n[guides.{side}]\n{bush}" for side in "ab") + _MATERIALS
 

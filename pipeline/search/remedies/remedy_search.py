@@ -50,7 +50,6 @@ _SIZES_THAT_TIE = 1.1  # ratio of two sizes that count as equal: the side effect
 _LEVERS_VERIFIED = 3  # levers verified for a check
 _COARSE_LEVELS = (0.4, math.log(4.0))  # levels of the length of a crowned contact, each a new table
 _COARSE_PREVIEWS = 2
-_INTERPOLATIONS = 1  # interpolations between two steps, at most
 _PREVIEWS = 5  # of one lever for a check, at most
 _ENOUGH = 0.9  # utilisation of a change that is small enough
 _FURTHER = 1.005  # size of a change over the interpolated one
@@ -441,19 +440,13 @@ class _RemedySearch:
         return _Confirmed(step, judgement, value) if value <= 1.0 else None
 
     def _refined(self, name: str, way: _Crossing, lever: Scaled) -> float:
-        """Size of a change at which a check meets its limit, by interpolation."""
-        size, above, below = way.size, way.above, way.below
-        for _ in range(_INTERPOLATIONS):
-            if size >= below.step.size:
-                break
-            step = self.bench.scaled(lever, size)
-            seen = _Seen(step, self._scaled(step, [name])[name])
-            if seen.used <= 1.0:
-                below = seen
-            else:
-                above = seen
-            size = _crossing(above, below, self.failures[name].used)
-        return size
+        """Size of a change at which a check meets its limit, by one more interpolation."""
+        if way.size >= way.below.step.size:
+            return way.size
+        step = self.bench.scaled(lever, way.size)
+        seen = _Seen(step, self._scaled(step, [name])[name])
+        above, below = (way.above, seen) if seen.used <= 1.0 else (seen, way.below)
+        return _crossing(above, below, self.failures[name].used)
 
     def _judgement(self, name: str, step: Step) -> Judgement | None:
         """Judgement of a step at the corners of a check; None without a solution."""

@@ -131,7 +131,6 @@ def smallest_spring(
     lift: LiftParts,
     conditions: Sequence[HoldingCondition],
     *,
-    preload_share: float = PRELOAD_SHARE,
     rate: float | None = None,
     force: ExternalForce = NO_FORCE,
 ) -> SpringSize:
@@ -142,19 +141,15 @@ def smallest_spring(
 
     Parameters
     ----------
-    preload_share : float   least preload over the force at full lift, > 0 and < 1
     rate : float            N/m, where it is fixed; None: of the least energy
     force : ExternalForce   of the machine on the follower, as of `preload_needed`
 
     Raises
     ------
     InputError
-        If nothing throws the follower off the cam, so that any spring holds it; if the share is out
-        of bounds.
+        If nothing throws the follower off the cam, so that any spring holds it.
     """
-    if not 0.0 < preload_share < 1.0:
-        raise InputError("preload_share", preload_share, "> 0 and < 1")
-    stroke, least = lift.stroke, preload_share / (1.0 - preload_share)
+    stroke, least = lift.stroke, PRELOAD_SHARE / (1.0 - PRELOAD_SHARE)
 
     def spring(each: float) -> SpringSize:
         needed = preload_needed(lift, each, conditions, force).value
