@@ -345,7 +345,7 @@ def summary_of(
         "final_trial": final.number,
         "trial_points": [point.as_record() for point in points],
         "scope": case.scope.as_record(),
-        "headline": headline(final),
+        "headline": headline(final.solution),
         "load_ends": final.load_ends,
         "prices": None if final.synthesis is None else final.synthesis["prices"],
         "machine_prices": None

@@ -10,6 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
@@ -78,7 +79,7 @@ class Balance:
 
 def balance(cam: CamBody, contour: Contour) -> Balance:
     """Unbalance of the cam with bore and keyway, and its counter-hole."""
-    unbalance, order = _unbalance(cam, contour), cam.counter_hole
+    unbalance, order = undrilled(cam, contour), cam.counter_hole
     wall = WALL if order is None else order.wall
     depth = 0.0 if cam.keyway is None else cam.keyway.depth
     hole, missed = None, ""
@@ -91,9 +92,17 @@ def balance(cam: CamBody, contour: Contour) -> Balance:
     return Balance(unbalance, hole, missed, order is not None, cam.material.density * cam.width)
 
 
-def _unbalance(cam: CamBody, contour: Contour) -> Unbalance:
+def undrilled(cam: CamBody, contour: Contour) -> Unbalance:
+    """Unbalance and mass of the cam with bore and keyway, without a counter-hole."""
     density = cam.material.density
     return unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
+
+
+def design_mass(case: Case, contour: Contour) -> float:
+    """Mass of cam, follower and half of the spring, kg."""
+    spring = case.spring.design
+    own = undrilled(case.cam, contour).mass + case.follower.mass
+    return float(own + (0.0 if spring is None else 0.5 * spring.mass))
 
 
 def camshaft_loads(
@@ -122,7 +131,7 @@ def rotor_unbalance(made: Unbalance, shaft: Camshaft | None) -> float:
 @lru_cache(maxsize=8)
 def _as_made(cam: CamBody, contour: Contour) -> Unbalance:
     """Unbalance of the cam as manufactured; each load case and check of the shaft reads it."""
-    return _unbalance(cam, contour) if cam.counter_hole is None else balance(cam, contour).as_made
+    return undrilled(cam, contour) if cam.counter_hole is None else balance(cam, contour).as_made
 
 
 def drilled_hole(cam: CamBody, contour: Contour) -> CounterHole | None:

@@ -92,10 +92,10 @@ class PreviewJudgement(TypedDict):
     """Maximum lift."""
     pressure_angle_max_deg: float
     """Maximum pressure angle."""
-    normal_force_max_N: float
-    """Greatest contact force of all load cases."""
+    normal_force_max_N: float | None
+    """Greatest contact force of the load cases without lift-off or locking; null without one."""
     p0_max_MPa: float | None
-    """Greatest contact pressure; null where the contour bounds no body."""
+    """Greatest contact pressure; null there, too, and where the contour bounds no body."""
     failing: list[str]
     """Ids of the blocking checks that fail, the worst first."""
     shortfalls: list[Shortfall]

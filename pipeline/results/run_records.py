@@ -189,21 +189,21 @@ def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
     }
 
 
-def headline(trial: Trial) -> HeadlineRecord:
-    """Key figures of the final trial in mm, N and MPa; None where not applicable.
+def headline(solution: Solution) -> HeadlineRecord:
+    """Key figures of a solved cam in mm, N and MPa; None where not applicable.
 
     Loads are those of the load cases in which the follower neither leaves the cam nor locks.
     """
-    first, contour = trial.cycles[0], trial.contour
+    first, contour = solution.cycles[0], solution.contour
     design = first.machine.torque
-    loaded = [cycle for cycle in trial.cycles if cycle.end is None]
+    loaded = [cycle for cycle in solution.cycles if cycle.end is None]
 
     def over(measure: Callable[[Cycle], Array]) -> float | None:
         worst = max((float(np.max(measure(cycle))) for cycle in loaded), default=np.nan)
         return worst if np.isfinite(worst) else None
 
     def contact(measure: Callable[[ContactHistory], Array], scale: float) -> float | None:
-        known = trial.mesh is not None or trial.depth < Tier.CYCLE
+        known = solution.mesh is not None or solution.tier < Tier.CYCLE
         worst = over(lambda c: measure(c.contact)) if known else None
         return None if worst is None else scale * worst
 
@@ -214,24 +214,24 @@ def headline(trial: Trial) -> HeadlineRecord:
         "torque_p2p_before_Nm": None if design is None else design.peak_to_peak,
         "torque_p2p_after_Nm": None if after is None else float(np.ptp(after)),
         "torque_mean_Nm": None if design is None else design.mean,
-        "lift_max_mm": _MM * trial.lift.highest.value,
+        "lift_max_mm": _MM * contour.lift.highest.value,
         "pressure_angle_max_deg": float(np.degrees(contour.pressure_angle_max().value)),
         "pitch_radius_of_curvature_min_mm": _MM * contour.least_convex_pitch_radius().value,
-        "normal_force_min_N": float(min(c.loads.normal_force.min() for c in trial.cycles)),
+        "normal_force_min_N": float(min(c.loads.normal_force.min() for c in solution.cycles)),
         "normal_force_max_N": over(lambda c: c.loads.normal_force),
         "p0_max_MPa": contact(lambda h: h.p0, _MPA),
         "p0_hertz_max_MPa": contact(lambda h: h.p0_hertz, _MPA),
         "half_width_max_mm": contact(lambda h: h.half_width, _MM),
-        **_body_stresses(trial, loaded),
+        **_body_stresses(solution, loaded),
         "guide_reaction_A_max_N": over(lambda c: np.abs(c.guides.reaction_a)),
         "guide_reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)),
         "friction_loss_J_per_cam_turn": float(first.loads.friction_loss)
         if first in loaded
         else None,
         "p0_difference_max_percent": contact(lambda h: np.abs(h.p0_difference), 100.0)
-        if trial.depth >= Tier.CYCLE
+        if solution.tier >= Tier.CYCLE
         else None,
-        "residual_equilibrium_max": _residual_max(trial),
+        "residual_equilibrium_max": _residual_max(solution.cycles),
     }
 
 
@@ -278,16 +278,16 @@ def figures(trial: Trial) -> CamFigures:
     }
 
 
-def _body_stresses(trial: Trial, loaded: Sequence[Cycle]) -> BodyStresses:
+def _body_stresses(solution: Solution, loaded: Sequence[Cycle]) -> BodyStresses:
     """Maximum von Mises stress below the contact with its depth, in cam and follower; ring.
 
     The contact presses on both bodies alike: in the follower stress and depth are those of the cam
     times the ratio of the half-planes of both Poisson ratios. The ring of the roller's bearing
     bends: greatest amplitude plus mean at its groove, None where it is not described.
     """
-    bodies = trial.solution.machine.bodies.values()
+    bodies = solution.machine.bodies.values()
     (own, at), (other, there) = (von_mises_peak(card.nu) for card in bodies)
-    known = [c for c in loaded if trial.mesh is not None or trial.depth < Tier.CYCLE]
+    known = [c for c in loaded if solution.mesh is not None or solution.tier < Tier.CYCLE]
     stress = depth = np.nan
     if known:
         worst = known[first_greatest([c.contact.von_mises.max() for c in known])]
@@ -313,7 +313,7 @@ def _body_stresses(trial: Trial, loaded: Sequence[Cycle]) -> BodyStresses:
     }
 
 
-def _residual_max(trial: Trial) -> float | None:
+def _residual_max(cycles: Sequence[Cycle]) -> float | None:
     """Maximum equilibrium residual of contact and guides; None if the contact is unknown."""
 
     def worst(cycle: Cycle) -> float:
@@ -325,7 +325,7 @@ def _residual_max(trial: Trial) -> float | None:
         )
         return float(np.max([np.abs(part).max() for part in parts]))
 
-    residual = float(np.max([worst(cycle) for cycle in trial.cycles]))
+    residual = float(np.max([worst(cycle) for cycle in cycles]))
     return residual if np.isfinite(residual) else None
 
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import Verdict, in_order, within_depth
@@ -15,9 +14,10 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import KEYWAY_SAFETY, TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.key_strength import keyway_root
+from camwright.pipeline.cycle.cam_balance import design_mass
 from camwright.pipeline.cycle.hub_history import hub_fatigue
-from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.records.judgement_record import DraftJudgement, PreviewJudgement, Shortfall
+from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
 from camwright.pipeline.smoothing.multistart import continued
@@ -55,7 +55,7 @@ def preview_figures(trial: Trial) -> PreviewJudgement:
     left = [check.id for check in blocking if check.status == "not_evaluated"]
     feasible = record is not None and record["feasible"]
     before, after = float(np.std(torque)), float(np.std(rest))
-    p0 = max(float(np.max(c.contact.p0)) for c in trial.cycles)
+    figures = headline(trial.solution)
     return {
         "feasible": feasible,
         "verdict": verdict_of(feasible, shortfalls, left),
@@ -63,14 +63,14 @@ def preview_figures(trial: Trial) -> PreviewJudgement:
         "ripple_left_Nm": after,
         "torque_reduction": 1.0 - after / before,
         "cam_radius_mm": in_unit(float(contour.radius_max().value), "mm"),
-        "mass_g": in_unit(_mass(drawn, contour), "g"),
+        "mass_g": in_unit(design_mass(drawn, contour), "g"),
         "prime_radius_mm": in_unit(drawn.cam.prime_radius, "mm"),
         "preload_N": drawn.spring.preload,
         "spring_rate_N_per_mm": in_unit(drawn.spring.rate, "N/mm"),
         "lift_max_mm": in_unit(float(trial.lift.highest.value), "mm"),
         "pressure_angle_max_deg": in_unit(float(contour.pressure_angle_max().value), "deg"),
-        "normal_force_max_N": max(float(c.loads.normal_force.max()) for c in trial.cycles),
-        "p0_max_MPa": in_unit(p0, "MPa") if np.isfinite(p0) else None,
+        "normal_force_max_N": figures["normal_force_max_N"],
+        "p0_max_MPa": figures["p0_max_MPa"],
         "failing": [each["check"] for each in shortfalls],
         "shortfalls": shortfalls,
         "open": left,
@@ -122,7 +122,7 @@ def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> D
         "feasible": not beyond,
         "ripple": design.ripple,
         "cam_radius": float(contour.radius_max().value),
-        "mass": _mass(case, contour),
+        "mass": design_mass(case, contour),
         "limit": limit if beyond else "",
         "utilisation": uses[limit] if beyond else 0.0,
         "prime_radius": drawn.cam.prime_radius,
@@ -162,10 +162,3 @@ def _root_shortfall(trial: Trial) -> list[Shortfall]:
 
 def _finite(value: object) -> float | None:
     return value if isinstance(value, float) else None
-
-
-def _mass(case: Case, contour: Contour) -> float:
-    """Mass of cam, follower and half of the spring, kg."""
-    cam, design = case.cam, case.spring.design
-    disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, cam.material.density).mass
-    return float(disc + case.follower.mass + (0.0 if design is None else 0.5 * design.mass))

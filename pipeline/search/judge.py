@@ -10,8 +10,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
-import numpy as np
-
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError, GeometryError
 from camwright.geometry.lift import Lift
@@ -30,7 +28,6 @@ from camwright.pipeline.checks.tolerance_corners import (
 )
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, is_body, solution
-from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.records.judgement_record import (
     ConflictJudgement,
     DraftJudgement,
@@ -49,20 +46,6 @@ NOT_STORED: Store[Any] = Store(None, JSON)
 NOT_RAISED: Mapping[str, float] = MappingProxyType({})
 R = TypeVar("R", DraftJudgement, PreviewJudgement, ConflictJudgement)
 _DECIDING = tuple(each for each in CHECKS if each.must_have and not each.evidence)
-
-
-@dataclass(frozen=True)
-class Headline:
-    """Figures of a design: torque ripple, peak pressure, mass, cam radius.
-
-    Standard deviation of the crank torque, N m, None without an engine or where the follower leaves
-    the cam or locks; peak pressure, Pa; mass of cam and follower, kg; greatest cam radius, m.
-    """
-
-    ripple: float | None
-    pressure: float
-    mass: float
-    radius: float
 
 
 class Depth(NamedTuple):
@@ -177,23 +160,6 @@ class Judgement:
 
         failing = any(one.blocks and one.status == "fail" for one in self.nominal.checks)
         return preview_figures(self.nominal if failing else self.trial)
-
-    @cached_property
-    def headline(self) -> Headline:
-        """Figures of the design."""
-        solved, contour = self.solved, self.solved.contour
-        cam, first = solved.case.cam, solved.cycles[0]
-        # as in the headline of a run: after the follower has left the cam the loads are not its own
-        sound = [cycle for cycle in solved.cycles if cycle.end is None]
-        after = first.turn.torque_after if first in sound else None
-        pressures = [float(np.max(cycle.contact.p0)) for cycle in sound]
-        disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, cam.material.density)
-        return Headline(
-            None if after is None else float(np.std(after)),
-            max(pressures, default=math.nan),
-            float(disc.mass) + solved.case.follower.mass,
-            float(contour.radius_max().value),
-        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import in_order, verdict, within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check
+from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.results.verdict_summary import WIDTH, shortened
 from camwright.pipeline.search.change import Change
@@ -230,16 +231,15 @@ def _constrained(case: Case, torques: Mapping[str, Torque]) -> Compared:
 
 
 def _record(trial: Trial) -> Record:
-    turn, checks = trial.cycles[0].turn, within_depth(trial.checks)
-    rest, before = turn.torque_after, turn.torque_before
+    figures, checks = headline(trial.solution), within_depth(trial.checks)
     return {
-        "pressure_angle_max_deg": in_unit(trial.contour.pressure_angle_max().value, "deg"),
-        "lift_max_mm": in_unit(trial.lift.highest.value, "mm"),
-        "normal_force_max_N": max(float(c.loads.normal_force.max()) for c in trial.cycles),
-        "p0_max_MPa": in_unit(max(float(np.max(c.contact.p0)) for c in trial.cycles), "MPa"),
-        "initial_std_Nm": None if before is None else float(np.std(before)),
-        "residual_std_Nm": None if rest is None else float(np.std(rest)),
-        "residual_p2p_Nm": None if rest is None else float(np.ptp(rest)),
+        "pressure_angle_max_deg": figures["pressure_angle_max_deg"],
+        "lift_max_mm": figures["lift_max_mm"],
+        "normal_force_max_N": figures["normal_force_max_N"],
+        "p0_max_MPa": figures["p0_max_MPa"],
+        "initial_std_Nm": figures["torque_std_before_Nm"],
+        "residual_std_Nm": figures["torque_std_after_Nm"],
+        "residual_p2p_Nm": figures["torque_p2p_after_Nm"],
         "verdict": verdict(checks),
         "failing": _ids(checks, "fail"),
         "missing": _ids(checks, "not_evaluated"),

@@ -181,7 +181,7 @@ def test_loads_on_a_crank_that_stalls_are_no_results() -> None:
 
 
 def test_the_headline_has_the_loads_of_the_others() -> None:
-    figures, slower = headline(trial()), headline(trial((OVERSPEED, "")))
+    figures, slower = headline(trial().solution), headline(trial((OVERSPEED, "")).solution)
     for name in ("normal_force_max_N", "p0_max_MPa", "guide_reaction_A_max_N"):
         assert figures[name] == pytest.approx(slower[name], rel=1e-12)
     assert figures["normal_force_min_N"] == 0.0
@@ -210,7 +210,7 @@ def test_loads_lost_at_a_corner_leave_the_other_corners(
 
 def test_the_headline_names_the_stress_of_each_body() -> None:
     """Half-planes of nu = 0.3: 0.558 p0 at 0.704 a, Johnson (1985) sec. 4.2(c), to its digits."""
-    figures = headline(trial())
+    figures = headline(trial().solution)
     loaded = [each for each in trial().cycles if each.load_case != "over-speed"]
     worst = max(loaded, key=lambda each: float(each.contact.p0.max()))
     k = int(worst.contact.p0.argmax())

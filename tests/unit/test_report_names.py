@@ -111,13 +111,13 @@ def columns(rolls: Trial, slides: Trial, speed: tuple[dict[str, Any], Any]) -> s
 def records(rolls: Trial, slides: Trial, speed: tuple[dict[str, Any], Any]) -> set[str]:
     """Keys of headline, trial, crank speed, and a measured engine by the schema."""
     measurement = record_schema("run")["$defs"]["Measurement"]["properties"]
-    made = [run_records.headline(rolls), speed[0], measurement]
+    made = [run_records.headline(rolls.solution), speed[0], measurement]
     made += [run_records.trial_record(trial) for trial in (rolls, slides)]
     return {key for record in made for key in keys_of(record)}
 
 
 def test_headlines_of_the_page_are_those_of_the_run(rolls: Trial, records: set[str]) -> None:
-    headline = run_records.headline(rolls)
+    headline = run_records.headline(rolls.solution)
     assert set(HEADLINE) <= set(headline)
     assert set(report_tables.HEADLINES) == set(headline)
 

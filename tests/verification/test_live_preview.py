@@ -59,7 +59,7 @@ def shares(name: str, count: int) -> dict[str, list[float]]:
     for _ in range(count):
         multiples = np.exp(draw.uniform(np.log(low), np.log(high)))
         trial = solved(case, lift, record, multiples)
-        figures, checks = headline(trial), {each.id: each for each in trial.checks}
+        figures, checks = headline(trial.solution), {each.id: each for each in trial.checks}
         for name_of, live in live_settings.values(record, multiples).items():
             if name_of in KEY_FIGURES:
                 exact = figures[KEY_FIGURES[name_of]]

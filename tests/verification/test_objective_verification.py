@@ -362,7 +362,7 @@ def test_front_of_the_shipped_study_has_less_loss_the_more_ripple_it_allows():
     for row in range(designs.count):
         values = {key: column[row].item() for key, column in columns.items()}
         trial = preview_case(with_values(case, values), corners=False)
-        record = headline(trial)
+        record = headline(trial.solution)
         points.append([record[each.column.removeprefix(HEADLINE)] for each in study.objectives])
         assert screen(trial.checks) == "open"
     left, loss = np.array(points).T

@@ -174,7 +174,7 @@ def deviations(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str
                 fails.add(check.id)
         if not close:
             assert (columns["screen"][k] == "fail") == bool(fails), (k, fails)
-        figures = headline(trial)
+        figures = headline(trial.solution)
         for what, key in (("force", "normal_force_max_N"), ("p0", "p0_hertz_max_MPa")):
             mine, solved = float(columns[f"headline.{key}"][k]), figures[key]
             assert np.isnan(mine) == (solved is None), (what, k)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from camwright.pipeline.search.judge import Headline, Judgement
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.cycle.cam_balance import design_mass
+from camwright.pipeline.results.run_records import headline
+from camwright.pipeline.search.judge import Judgement
 from camwright.pipeline.search.remedies.lever_steps import without_exponent
 
 _SLIGHT = 0.01  # relative change of a figure up to which the remedy leaves it out
@@ -22,7 +25,7 @@ def effects(name: str, before: Judgement, after: Judgement) -> tuple[str, ...]:
         if each != name and each in after.checks and after.checks[each].status == "pass"
     ]
     words = [f"fails {', '.join(failing)}"] if failing else []
-    words += _figures(before.headline, after.headline)
+    words += _changed(before, after)
     if cured:
         words.append(f"also cures {cured[0] if len(cured) == 1 else f'{len(cured)} others'}")
     return tuple(words)
@@ -38,21 +41,28 @@ def _failing(judgement: Judgement) -> list[str]:
     return [one.id for one in judgement.checks.values() if one.must_have and one.status == "fail"]
 
 
-def _figures(before: Headline, after: Headline) -> list[str]:
-    """Figures of the headline that change."""
+def _changed(before: Judgement, after: Judgement) -> list[str]:
+    """Figures of the design that change."""
     words = []
-    for label, unit, old, new in (
-        ("ripple", "N m", before.ripple, after.ripple),
-        ("p0", "MPa", before.pressure, after.pressure),
-        ("cam radius", "mm", before.radius, after.radius),
-    ):
+    for (label, unit, old), (*_, new) in zip(_figures(before), _figures(after), strict=True):
         if old is not None and new is not None and abs(new - old) > _SLIGHT * abs(old):
             digits = 4 if unit == "MPa" else 3
-            number = without_exponent(old, unit, digits).removesuffix(f" {unit}")
-            words.append(f"{label} {number} -> {without_exponent(new, unit, digits)}")
-    heavier = after.mass - before.mass
-    if abs(heavier) > _SLIGHT * before.mass:
+            numbers = (without_exponent(each, "", digits) for each in (old, new))
+            words.append(f"{label} {' -> '.join(numbers)} {unit}")
+    mass, other = (design_mass(each.solved.case, each.solved.contour) for each in (before, after))
+    heavier = other - mass
+    if abs(heavier) > _SLIGHT * mass:
         words.append(
             f"{'adds' if heavier > 0 else 'saves'} {without_exponent(abs(heavier), 'g', 3)}"
         )
     return words
+
+
+def _figures(judgement: Judgement) -> tuple[tuple[str, str, float | None], ...]:
+    """Figures with label and unit."""
+    known, contour = headline(judgement.solved), judgement.solved.contour
+    return (
+        ("ripple", "N m", known["torque_std_after_Nm"]),
+        ("p0", "MPa", known["p0_max_MPa"]),
+        ("cam radius", "mm", in_unit(contour.radius_max().value, "mm")),
+    )

@@ -22,7 +22,6 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.records.run_summary import HeadlineRecord
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.studies.batch.case_template import Template, UnpackedTemplates
 from camwright.pipeline.studies.batch.dataset import (
@@ -51,14 +50,16 @@ UNEXPECTED = "unexpected {kind}: {text}"
 _SCREENED_AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
 
 
-def row_of(trial: Trial, headline: HeadlineRecord) -> Row:
+def row_of(trial: Trial) -> Row:
     """Cells of a solved design in the units of the records."""
+    from camwright.pipeline.results.run_records import headline
+
     row: Row = {
         SCREEN.name: screen(trial.checks),
         VERDICT.name: trial.verdict,
         GOVERNING.name: governing_id(trial.checks),
     }
-    row |= {HEADLINE + key: _cell(value) for key, value in headline.items()}
+    row |= {HEADLINE + key: _cell(value) for key, value in headline(trial.solution).items()}
     if trial.mesh is not None:
         row |= {MESH + key: float(v) for key, v in asdict(trial.mesh.quality).items()}
     for one in trial.checks:
@@ -135,14 +136,11 @@ class DesignSolver:
             return lost(UNEXPECTED.format(kind=type(error).__name__, text=text))
 
     def _solved(self, task: Task, row: int) -> Row:
-        from camwright.pipeline.results.run_records import headline
-
         if task.tier is Tier.SCREENING:
             columns = self.screened(task.alone(row))
             return {name: _cell(values[0]) for name, values in columns.items()}
         case, lift = self.design(task, row)
-        trial = trial_at(case, task.tier, lift, corners=self.settings.corners)
-        return row_of(trial, headline(trial))
+        return row_of(trial_at(case, task.tier, lift, corners=self.settings.corners))
 
     def design(self, task: Task, row: int) -> tuple[Case, Lift | None]:
         """Case of one design, and the lift common to all, if the study has one.
@@ -191,13 +189,11 @@ class DesignSolver:
         wanted : Wanted   designs that may be kept; of others no files are made
         send : callable   receives the cells, then the files; none where there is no run
         """
-        from camwright.pipeline.results.run_records import headline
-
         cells: Row = {}
         files: Files = {}
         try:
             with self._begun(task, row) as (run, trial):
-                cells = row_of(trial, headline(trial))
+                cells = row_of(trial)
                 send(cells)
                 if wanted.takes(screen(trial.checks), cells):
                     files = _finished(run)
