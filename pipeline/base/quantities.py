@@ -171,6 +171,7 @@ def _bounds_in_si(quantity: In) -> tuple[float, float, float, float]:
 class Count:
     """Mark of an int field: a whole number within bounds."""
 
+    unit: ClassVar[str] = ""
     at_least: int
     at_most: int
 

@@ -60,6 +60,12 @@ def quantity_of(key: str) -> In | Count | None:
     return next((each.mark for each in keys if each.mark is not None), None)
 
 
+def unit_at(key: str) -> str:
+    """Unit of the number at a key; "" for a pure number or another value."""
+    quantity = quantity_of(key)
+    return "" if quantity is None else quantity.unit
+
+
 def _fields_at(path: str) -> tuple[Key, ...]:
     return tuple(each for each in keys_at(path) if each.is_field)
 

@@ -12,9 +12,8 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.errors import InputError, as_one
-from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.case_values import quantity_of, text_of, value_of, wound_spring
+from camwright.pipeline.case.case_values import text_of, unit_at, value_of, wound_spring
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.limits import SPEED_REDUCTION, TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
@@ -500,9 +499,7 @@ def _refusal(case: Case, rule: Rule, at: At) -> InputError:
 
 def _bound_text(rule: Rule, at: At, digits: int) -> str:
     """Bound of a rule in the unit of its key."""
-    quantity = quantity_of(rule.key)
-    unit = quantity.unit if isinstance(quantity, In) else ""
-    return shown(0.0 if rule.bound is None else float(rule.bound(at)), unit, digits)
+    return shown(0.0 if rule.bound is None else float(rule.bound(at)), unit_at(rule.key), digits)
 
 
 def _check_duty(case: Case) -> None:

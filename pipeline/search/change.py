@@ -7,14 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.levers import BEARING, BUSH_A, BUSH_B, CAM_MATERIAL
-from camwright.pipeline.base.quantities import In
+from camwright.pipeline.base.quantities import PURE
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.substitution import with_bush, with_cam_material, with_roller
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import with_values
-from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
+from camwright.pipeline.case.case_values import quantity_of, replaced, unit_at, value_of
 from camwright.pipeline.case.consistency import check_numbers
 from camwright.pipeline.case.toml_text import TomlValue
 
@@ -97,21 +98,25 @@ class Change:
         return case
 
 
-def unit_at(key: str) -> str:
-    """Unit of the number at a key; "" for a pure number or another value."""
-    quantity = quantity_of(key)
-    return quantity.unit if isinstance(quantity, In) else ""
-
-
 def number_of(key: str, value: str | float) -> float:
-    """Value at a key as a number in SI."""
+    """Value at a key as a number in SI.
+
+    Raises
+    ------
+    InputError
+        If a text is no number in a unit of the key.
+    """
     if not isinstance(value, str):
         return value
-    unit = unit_at(key)
-    return units.parse(value, unit, key) if unit else float(value)
+    if unit := unit_at(key):
+        return units.parse(value, unit, key)
+    try:
+        return float(value)
+    except ValueError:
+        raise InputError(key, value, PURE) from None
 
 
 def _entry(key: str, value: str | float) -> TomlValue:
     """Value as in the table of a case file."""
-    pure = isinstance(value, str) and not unit_at(key) and not key.endswith(".kind")
-    return float(value) if pure else value
+    mark = quantity_of(key)
+    return value if mark is None or mark.unit else number_of(key, value)

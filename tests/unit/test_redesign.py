@@ -287,6 +287,19 @@ def test_a_roller_that_fits_nowhere_is_left():
     assert [(c.spring, c.bush) for c in asked] == [("a", "b"), ("c", "b"), ("a", "d")]
 
 
+# --- changed values
+
+
+@pytest.mark.parametrize("value", ["many", "3 mm", ""])
+@pytest.mark.parametrize("quick", [False, True])
+def test_a_text_at_a_pure_number_is_refused_by_its_key(case, value, quick):
+    judge = Judge(case, engine_torques(case))
+    with pytest.raises(InputError) as refused:
+        judge.case(Change.of({"mechanism.gear_ratio": value}), quick=quick)
+    assert (refused.value.field, refused.value.value) == ("mechanism.gear_ratio", value)
+    assert "without a unit" in refused.value.limit
+
+
 # --- what is kept
 
 

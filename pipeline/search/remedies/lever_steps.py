@@ -21,16 +21,16 @@ from camwright.pipeline.base.levers import (
     Scaled,
 )
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import In, marks_of
+from camwright.pipeline.base.quantities import marks_of
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import value_of
+from camwright.pipeline.case.case_values import unit_at, value_of
 from camwright.pipeline.contact.cam_body import BalanceHole
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller_parts import Bearing
-from camwright.pipeline.search.change import Change, number_of, unit_at
+from camwright.pipeline.search.change import Change, number_of
 
 _DESIGN_DIGITS = 3  # of a value that a designer writes
 _OF_RATING = 0.05  # share of the rating in the change of a bearing; the rest is its dimensions
@@ -132,8 +132,7 @@ class Workbench:
     def unit(lever: Catalogued) -> str:
         """Unit of the rating of a lever."""
         part = {BEARING: BearingCard, CAM_MATERIAL: Material}.get(lever.key, Guide)
-        mark = marks_of(part)[lever.rating]
-        return mark.unit if isinstance(mark, In) else ""
+        return marks_of(part)[lever.rating].unit
 
     def drilled(self, lever: Drilled) -> Step:
         """Step that adds a counter-hole, counted as the smallest change."""

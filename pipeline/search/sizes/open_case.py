@@ -9,7 +9,6 @@ from pathlib import Path
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import write_atomic
-from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.case import Case, includes
 from camwright.pipeline.case.case_file import (
     case_bytes,
@@ -20,8 +19,9 @@ from camwright.pipeline.case.case_file import (
     tables_in,
     validated,
 )
-from camwright.pipeline.case.case_values import quantity_of
+from camwright.pipeline.case.case_values import unit_at
 from camwright.pipeline.case.case_writer import added_text, tables_text
+from camwright.pipeline.case.keys import written
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
 PRIME, OFFSET = "cam.prime_radius", "cam.offset"
@@ -70,7 +70,7 @@ class OpenCase:
             return self.text
         table: Tables = {}
         for key, value in values.items():
-            enter(table, key, _written(key, value))
+            enter(table, key, written(value, unit_at(key)))
         enter(table, "sources", dict(sources))
         return f"{self.text.rstrip()}\n{_HEAD}{added_text(table)}"
 
@@ -168,11 +168,6 @@ def _open(tables: Tables, key: str) -> None:
         inner = _entry(each, table) if isinstance(each, dict) else None
         if isinstance(inner, dict):
             inner.pop(name, None)
-
-
-def _written(key: str, value: float) -> str:
-    quantity = quantity_of(key)
-    return units.format(value, quantity.unit) if isinstance(quantity, In) else str(value)
 
 
 def _entry(tables: Tables, key: str) -> TomlValue | None:

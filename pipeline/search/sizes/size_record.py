@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.case.case_values import unit_at
 from camwright.pipeline.case.limits import SPRING_SURGE
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.records.size_document import SizeDocument
 from camwright.pipeline.search.sizes.open_case import GAPS, PRELOAD, RATE
 from camwright.pipeline.search.sizes.size_chart import chart_record
-from camwright.pipeline.search.sizes.sizing import Sizing, unit_of
+from camwright.pipeline.search.sizes.sizing import Sizing
 from camwright.pipeline.search.sizes.spring_choice import greatest_coil_mass
 
 _MM, _DEG = "mm", "deg"
@@ -25,8 +26,8 @@ def size_record(sizing: Sizing) -> SizeDocument:
         "verdict": sizing.verdict,
         "sized": {
             key: {
-                "value": in_unit(value, unit_of(key)),
-                "unit": unit_of(key),
+                "value": in_unit(value, unit_at(key)),
+                "unit": unit_at(key),
                 "source": sizing.sources[key],
             }
             for key, value in sizing.values.items()
@@ -51,7 +52,7 @@ def size_lines(sizing: Sizing) -> Iterator[str]:
     if not sizing.values:
         yield f"no key is open; size finds {', '.join(GAPS)}"
     for key, value in sizing.values.items():
-        yield f"{key} = {shown(value, unit_of(key), 6)}; {sizing.sources[key]}"
+        yield f"{key} = {shown(value, unit_at(key), 6)}; {sizing.sources[key]}"
     exact, drawn = sizing.exact, sizing.shape
     if exact.base_radius != drawn.base_radius:
         yield (

@@ -18,11 +18,10 @@ from camwright.geometry.figures import DrawnAxes, Figure, plotted
 from camwright.pipeline.base.columns import data_frame
 from camwright.pipeline.base.crossing import first_passing
 from camwright.pipeline.base.progress import SILENT, Progress
-from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.base.verdict import Verdict, verdict, within_depth
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import quantity_of, refused_as_written, value_of
+from camwright.pipeline.case.case_values import refused_as_written, unit_at, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.cam_shape import (
     concave_radius,
@@ -160,7 +159,7 @@ class Sizing(Displayed):
     @property
     def facts(self) -> Mapping[str, object]:
         """Case, verdict, and the sized values by key."""
-        values = {key: shown(value, unit_of(key), 6) for key, value in self.values.items()}
+        values = {key: shown(value, unit_at(key), 6) for key, value in self.values.items()}
         return {"case": self.case.name, "verdict": self.verdict} | values
 
     @cached_property
@@ -170,7 +169,7 @@ class Sizing(Displayed):
 
     def to_pandas(self) -> pd.DataFrame:
         """A row per open key: key, value, unit, source; see `Table.to_pandas`."""
-        units = [unit_of(key) for key in self.values]
+        units = [unit_at(key) for key in self.values]
         return data_frame(
             {
                 "key": list(self.values),
@@ -199,12 +198,6 @@ class Sizing(Displayed):
     def greatest_tried(self) -> float:
         """Greatest prime or base radius tried, m."""
         return self.exact.prime_radius * _SIZE_STEP**_SIZE_STEPS
-
-
-def unit_of(key: str) -> str:
-    """Unit of an open key in records."""
-    quantity = quantity_of(key)
-    return quantity.unit if isinstance(quantity, In) else ""
 
 
 def size(
