@@ -119,6 +119,11 @@ def candidates(
     folder : Path   of the torque table, the user's cards and springs
     file : str      torque table in it
     names : collection   of the rollers; None: all
+
+    Raises
+    ------
+    CamError
+        The first refusal, if the cases of all rollers are refused.
     """
     parts = catalogue_of(folder)
     wire, oils, sizes = spring_wire(task, folder), oils_of(folder), seats()
@@ -128,6 +133,7 @@ def candidates(
         key=lambda name: (rollers[name].outer_diameter, rollers[name].C),
     )
     screened: list[Candidate] = []
+    refused: list[CamError] = []
     largest = np.inf
     for k, name in enumerate(order, start=1):
         card = rollers[name]
@@ -136,12 +142,19 @@ def candidates(
             force = max(point.greatest for point in own)
             torque = _PEAK * task.ratio * task.demand.peak * max(_share(task, each) for each in own)
             frame = frame_of(name, card, torque, force, task.ratio, sizes)
-            if frame is not None:
+            if frame is None:
+                continue
+            try:
                 judged = _screened(task, frame, own, oils, folder, file, largest)
-                sizes_within = (FAR * each.size for each in judged if each.within(0.0))
-                largest = min(largest, *sizes_within, np.inf)
-                screened += judged
+            except CamError as error:
+                refused.append(error)
+                continue
+            sizes_within = (FAR * each.size for each in judged if each.within(0.0))
+            largest = min(largest, *sizes_within, np.inf)
+            screened += judged
         progress.advance(k, len(order))
+    if refused and not screened:
+        raise refused[0]
     return screened
 
 
@@ -211,11 +224,7 @@ def _screened(
     longest = max(designs, key=lambda each: each.lift)
     roomy = replace(longest, cam_radius=longest.prime_radius, task=replace(task, space=None))
     case = parse_case(case_text(roomy, "screening", file, smoothing=_SMOOTHER), folder)
-    try:
-        columns = screen_designs(case, _factors(task, designs), positions=POSITIONS)
-    except CamError:
-        return []
-    return _judged(designs, columns)
+    return _judged(designs, screen_designs(case, _factors(task, designs), positions=POSITIONS))
 
 
 def _radii(task: DesignTask, frame: MachineFrame, spring: SpringPoint) -> Array:
