@@ -116,7 +116,7 @@ class DesignDrawing(TypedDict):
 
 @form()
 class ExchangeRecord(FromTo):
-    """Exchange of a part for the next smaller of its catalogue."""
+    """Exchange of a part for a smaller one of its catalogue."""
 
     part: str
     """Part in words."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, pi
@@ -35,6 +35,7 @@ _CENTISTOKES = 1e-6
 _ROOM = Source("given: space less the height of the roller at maximum lift", confirmed=True)
 _BENCH_UNBALANCE = 3e-3  # m/s, residual unbalance of the bench
 PROFILE = 8e-6  # m, tolerance of the ground contour
+_RADIUS_STEP = 1e-4  # m, of a prime radius as a drawing states it
 SEARCHED = 72  # cam angles of a turn in the search
 WRITTEN = 144  # in a case file, for the error bars of a run
 _AROUND = 0.01  # m of room and wall between parts and outside of the housing
@@ -127,6 +128,11 @@ class Machinery:
         order = sorted(values, key=lambda name: values[name])
         name = next((name for name in order if values[name] >= wanted), order[-1])
         return name, values[name]
+
+
+def drawn_radius(length: float, whole: Callable[[float], int] = round) -> float:
+    """Prime radius, m, as a drawing states it: the nearest, or rounded up by `ceil`."""
+    return _RADIUS_STEP * whole(length / _RADIUS_STEP)
 
 
 def oils_of(folder: Path | None) -> dict[str, tuple[float, float]]:
@@ -402,7 +408,7 @@ def _roller(design: Machinery) -> str:
         hub_radius=_mm(0.25 * (card.bore + inside)), axial_offset=_mm(AXIAL_OFFSET),
         card=frame.roller, static=units.format(card.static_radial_limit or card.C0, "kN"),
         viscosity=f"{value / _CENTISTOKES:.3g} mm^2/s", grade=oil.replace("_", " ").upper(),
-        temperature=f"{design.oil_temperature - 273.15:g} degC", bore=_mm(card.bore),
+        temperature=_round(design.oil_temperature, "degC"), bore=_mm(card.bore),
         span=_mm(frame.pin_span), pin_source=_assumed("the bore of the roller"),
         cheek_width=_mm(frame.cheek_width), cheek_height=_mm(frame.cheek_height),
         cheek_length=_mm(frame.cheek_length), bridge=_mm(frame.bridge),
@@ -453,7 +459,7 @@ def _follower(design: Machinery) -> str:
         _FOLLOWER, lift=_mm(design.lift), mass=_round(design.mass, "g"), stem=stem,
         stem_length=_mm(frame.stem_length(design.lift)), overhang=_mm(frame.overhang),
         source=_assumed("proportions"), spacing=_mm(frame.spacing(design.lift)),
-        ambient=f"{design.oil_temperature - 273.15:g} degC",
+        ambient=_round(design.oil_temperature, "degC"),
     )  # fmt: skip
     bush = filled(
         _BUSH, card=_BUSH_CARD, length=_mm(frame.bush_length),

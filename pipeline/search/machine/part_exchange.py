@@ -18,7 +18,7 @@ from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.records.design_document import ExchangeRecord, ExchangesRecord
 from camwright.pipeline.records.judgement_record import is_refused, is_whole
-from camwright.pipeline.search.machine.design_case import Machinery
+from camwright.pipeline.search.machine.design_case import Machinery, drawn_radius
 from camwright.pipeline.search.machine.machine_frame import MODULES, STEMS
 from camwright.pipeline.search.machine.synthesised_points import PointStudy, Solved
 from camwright.pipeline.search.machine.wound_springs import of_catalogue
@@ -26,7 +26,6 @@ from camwright.pipeline.search.machine.wound_springs import of_catalogue
 T = TypeVar("T")
 _EXCHANGES_MAX = 24  # designs tried
 _EQUAL_LENGTHS = 1e-6  # m, of equal sizes
-_RADIUS_STEP = 1e-4  # m, of a prime radius as a drawing states it
 _RIM = 0.8  # bores in the radius of the gear, at least
 
 
@@ -98,7 +97,7 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
     each, down to the next smaller part. A hub that becomes smaller is tried with the base
     circle less by as much, then with the same one; oil, fork and housing follow from the parts. An
     exchange that passes is kept; the search ends when the next smaller of every part of the same
-    design has failed.
+    design has failed, or after `_EXCHANGES_MAX` designs.
     """
     shelves, kept = Shelves.of(study), list[Smaller]()
     failing: dict[str, tuple[Smaller, str]] = {}
@@ -166,7 +165,7 @@ def _shaft(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smaller
     smaller = replace(frame, seat=seat)
     hub = frame.least_radius - smaller.least_radius
     words = _mm(frame.seat.bore), _mm(seat.bore)
-    primes = _steps(design.prime_radius - hub), design.prime_radius
+    primes = drawn_radius(design.prime_radius - hub), design.prime_radius
     for prime in dict.fromkeys(primes):
         other = replace(design, frame=smaller, prime_radius=prime)
         yield Smaller("shaft with key and bearings", *words, _with_cam(design, other))
@@ -181,8 +180,8 @@ def _roller(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smalle
     smaller = replace(frame, roller=name, card=shelves.rollers[name])
     if smaller.stem > frame.stem:
         smaller = replace(smaller, stem_chosen=frame.stem)
-    prime = _steps(design.prime_radius - frame.radius + smaller.radius)
-    other = replace(design, frame=smaller, prime_radius=max(prime, _steps(smaller.least_radius)))
+    prime = max(design.prime_radius - frame.radius + smaller.radius, smaller.least_radius)
+    other = replace(design, frame=smaller, prime_radius=drawn_radius(prime))
     yield Smaller("roller", frame.roller, name, other)
 
 
@@ -238,13 +237,9 @@ _WAYS: tuple[Callable[[Machinery, Shelves, int], Iterator[Smaller]], ...] = (
 
 
 def _with_cam(design: Machinery, other: Machinery) -> Machinery:
-    """The other design with the cam smaller by as much as its base circle, if the room is free."""
+    """The other design, its cam smaller by as much as its prime radius."""
     less = design.prime_radius - other.prime_radius
     return replace(other, cam_radius=design.cam_radius - less)
-
-
-def _steps(length: float) -> float:
-    return _RADIUS_STEP * round(length / _RADIUS_STEP)
 
 
 def _mm(length: float) -> str:

@@ -32,7 +32,6 @@ _SLOWEST = 0.4  # of the speeds
 _SHORTEST = 0.05  # of the life
 _FREE_SPACE = 5.0  # of the space
 _COOL = 20.0  # degC of the surroundings
-_ICE = 273.15  # K
 _SIZE_SPARE = 1.005  # of the size of a design
 _EQUAL_CHANGES = 1e-9  # difference of equal changes
 _FIRST_CHANGE = 0.6  # change that is tried first, a factor of 1.8
@@ -274,7 +273,7 @@ def _levers(task: DesignTask) -> Iterator[Lever]:
         "--life", task.life, _SHORTEST * task.life,
         lambda value: {"life": _text(value, "h")}, lambda value: _text(value, "h"),
     )  # fmt: skip
-    warm = task.ambient - _ICE
+    warm = units.celsius(task.ambient)
     if warm > (1.0 + WIDTH) * _COOL:
         yield Lever("--ambient", warm, _COOL, lambda value: {"ambient": _celsius(value)}, _celsius)
     lobes = round(FULL_TURN * task.ratio / task.demand.cycle)

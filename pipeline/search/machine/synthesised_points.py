@@ -25,7 +25,12 @@ from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.front import front, thinned
 from camwright.pipeline.search.judge import Judge, judgements, refusal
 from camwright.pipeline.search.machine.candidate_search import FAR, OPTIMISTIC, Candidate
-from camwright.pipeline.search.machine.design_case import SYNTHESIS, Machinery, case_text
+from camwright.pipeline.search.machine.design_case import (
+    SYNTHESIS,
+    Machinery,
+    case_text,
+    drawn_radius,
+)
 from camwright.pipeline.search.machine.torque_task import DesignTask
 from camwright.pipeline.smoothing.constraints import check_of
 
@@ -43,6 +48,7 @@ _CURABLE = 1.2  # utilisation that a larger cam may cure
 _SHORT = 1.05  # utilisation that a synthesis with corrections may cure
 _DRAFTS_AT_ONCE = 2  # drafts solved at once where the first that passes is enough
 _FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
+_ROUND_OFF = 1e-7  # m, of a prime radius that is a drawn one already
 RESERVE = 0.01  # of the ripple allowed, for the corrections by finite elements
 
 
@@ -314,7 +320,7 @@ def settled(study: PointStudy, point: Solved) -> Solved:
     The cam radius of the synthesis is that of the room and of the counterweight.
     """
     record, design = point.figures, point.design
-    prime = 1e-4 * ceil(10.0 * record["prime_radius_mm"] - 1e-3)
+    prime = drawn_radius(1e-3 * record["prime_radius_mm"] - _ROUND_OFF, ceil)
     if study.task.space is not None:
         prime = min(prime, design.prime_radius)
     spring = replace(design.spring, preload=float(f"{record['preload_N']:.3g}"))
