@@ -260,7 +260,7 @@ class Judge:
     def _synthesised(self, case: Case) -> Judgement:
         from camwright.pipeline.preview import preview_case
 
-        drawn = preview_case(case, corners=False, torques=self.torques)
+        drawn = preview_case(case, corners=False, kept=True, torques=self.torques)
         return Judgement(drawn.solution, whole=True, drawn=drawn)
 
     def previewed(self, change: Applicable) -> PreviewJudgement | RefusedJudgement:

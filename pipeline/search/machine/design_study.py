@@ -22,6 +22,7 @@ from camwright.pipeline.base.worker_processes import Crew, crew
 from camwright.pipeline.case.cards.card_filling import USER_FILE
 from camwright.pipeline.case.cards.catalogue import SPRINGS_FILE
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.limits import SPRING_SURGE
 from camwright.pipeline.case.section import SAFE_NAME
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.cycle.machine_envelope import sizes_of
@@ -29,7 +30,6 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.records.design_document import (
     DesignDocument,
     DesignDrawing,
-    DesignFigures,
     DesignOptions,
     DesignPointRecord,
     RelaxationRecord,
@@ -162,17 +162,15 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
         "conflict": None,
     }
     if smaller is not None:
-        best = points[0]
         document["points"] = _write_points(study, points)
         document["chosen"] = {
-            **_row(best),
-            **_drawing(study, best),
+            **document["points"][0],
+            **_drawing(study, points[0]),
             "file": out.name,
             "exchanges": smaller.as_record(),
-            "envelope_mm": _envelope(study, best),
         }
         head = _summary(study, points, smaller)
-        write_atomic(out, _written(best, out.stem, file, head))
+        write_atomic(out, _written(points[0], out.stem, file, head))
     else:
         limits = _limits(task, screened, failing)
         document["conflict"] = {"limits": limits, "relaxations": changes}
@@ -253,14 +251,20 @@ def _demand_record(task: DesignTask) -> TorqueRecord:
     }
 
 
-def _row(point: Solved) -> DesignFigures:
-    design = point.design
+def _record(study: PointStudy, point: Solved, file: str = "") -> DesignPointRecord:
+    """Record of a point, in a case file or not yet."""
+    design, figures = point.design, point.whole
     spring = design.spring.spring
     name = spring.name or (
         f"wound {1e3 * spring.wire_diameter:g} x {1e3 * spring.mean_diameter:.4g} mm, "
         f"{spring.coils:g} coils"
     )
+    case = parse_case(study.text(design), study.folder)
+    radius, lift = 1e-3 * figures["cam_radius_mm"], 1e-3 * figures["lift_max_mm"]
+    lengths = sizes_of(case, radius, lift).envelope.size
     return {
+        "file": file,
+        "envelope_mm": [round(1e3 * length, 2) for length in lengths],
         "size_mm": 1e3 * point.size,
         "removed": 1.0 - point.ripple / design.task.demand.ripple,
         "roller": design.frame.roller,
@@ -268,13 +272,14 @@ def _row(point: Solved) -> DesignFigures:
         "offset_mm": 1e3 * design.offset,
         "stem_mm": 1e3 * design.frame.stem,
         "bore_mm": 1e3 * design.frame.seat.bore,
-        **point.whole,
+        **figures,
     }
 
 
 def _drawing(study: PointStudy, point: Solved) -> DesignDrawing:
     """Contour, roller and torque left of a design, for its picture; its values to be confirmed."""
-    trial = preview_case(parse_case(study.text(point.design), study.folder), corners=False)
+    case = parse_case(study.text(point.design), study.folder)
+    trial = preview_case(case, corners=False, kept=True)
     after, contour = trial.cycles[0].turn.torque_after, trial.contour
     rest = np.zeros(0) if after is None else np.asarray(after)
     theta = uniform_turn(360)
@@ -298,8 +303,7 @@ def _write_points(study: PointStudy, points: Sequence[Solved]) -> list[DesignPoi
         name = f"point_{number:02d}"
         head = f"# Point {number} of {len(points)} of the front of ripple against size.\n"
         write_atomic(study.folder / f"{name}.toml", _written(point, name, study.file, head))
-        size = _envelope(study, point)
-        rows.append({"file": f"{name}.toml", "envelope_mm": size, **_row(point)})
+        rows.append(_record(study, point, f"{name}.toml"))
     return rows
 
 
@@ -311,19 +315,11 @@ def _written(point: Solved, name: str, file: str, head: str) -> str:
     return case_text(point.design, name, file, head, positions=WRITTEN)
 
 
-def _envelope(study: PointStudy, point: Solved) -> list[float]:
-    """Lengths of the whole mechanism across and along the stem and along the camshaft, mm."""
-    case = parse_case(study.text(point.design), study.folder)
-    figures = point.figures
-    radius, lift = 1e-3 * figures["cam_radius_mm"], 1e-3 * figures["lift_max_mm"]
-    return [round(1e3 * length, 2) for length in sizes_of(case, radius, lift).envelope.size]
-
-
 def _summary(study: PointStudy, points: Sequence[Solved], smaller: Exchanged | None) -> str:
     best, task = points[0], study.task
-    row = _row(best)
+    row = _record(study, best)
     shown = "its parts are yet to be exchanged" if smaller is None else smaller.sentence
-    whole = " x ".join(f"{length:.4g}" for length in _envelope(study, best))
+    whole = " x ".join(f"{length:.4g}" for length in row["envelope_mm"])
     lines = [
         f"# Designed from {study.file}: {100 * row['removed']:.0f} % of the torque ripple removed"
         f" by closed forms,",
@@ -349,8 +345,9 @@ def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[So
     if screened:
         counts = Counter(each.governing for each in screened if each.excess > 0.0)
         return [DECLARED[name].title for name, _ in counts.most_common(3)]
+    speed = units.shown(task.cam_speed, "rpm")
     return [
         f"energy of {units.shown((task.remove) * task.demand.energy_swing, 'J')} in one spring",
-        f"surge frequency of 13 times the cam's at {units.shown(task.cam_speed, 'rpm')}",
+        f"surge frequency of {SPRING_SURGE.default:g} times the cam's at {speed}",
         "ratings of the rollers of the catalogue",
     ]
