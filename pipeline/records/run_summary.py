@@ -174,23 +174,19 @@ class TrialPointRecord(TypedDict):
 
 
 @form()
-class PriceRecord(TypedDict):
-    """Shadow price of a limit."""
+class RippleSlope(TypedDict):
+    """Decrease of the ripple by a limit or a number of the machine."""
 
-    limit: str
-    """Id of the check of the limit."""
     words: str
-    """Limit in words."""
+    """Limit or number in words."""
     value: float
-    """Value of the limit."""
+    """Its value."""
     unit: str
     """Unit of the value."""
     ripple_per_unit_Nm: float
-    """Decrease of the ripple per unit of the limit."""
+    """Decrease of the ripple per unit."""
     ripple_per_percent_Nm: float
-    """Decrease of the ripple per percent of the limit."""
-    binds_at_deg: list[tuple[float, float]]
-    """Ranges of cam angle in which the limit is active."""
+    """Decrease of the ripple per percent."""
     of: str
     """What the price is of: the ripple or the weighted objective."""
     sentence: str
@@ -198,25 +194,21 @@ class PriceRecord(TypedDict):
 
 
 @form()
-class MachinePriceRecord(TypedDict):
+class PriceRecord(RippleSlope):
+    """Shadow price of a limit."""
+
+    limit: str
+    """Id of the check of the limit."""
+    binds_at_deg: list[tuple[float, float]]
+    """Ranges of cam angle in which the limit is active."""
+
+
+@form()
+class MachinePriceRecord(RippleSlope):
     """Price of a number of the machine."""
 
     parameter: str
     """Key of the number of the machine."""
-    words: str
-    """Number in words."""
-    value: float
-    """Value of the number."""
-    unit: str
-    """Unit of the value."""
-    ripple_per_unit_Nm: float
-    """Decrease of the ripple per unit of the number."""
-    ripple_per_percent_Nm: float
-    """Decrease of the ripple per percent of the number."""
-    of: str
-    """What the price is of: the ripple or the weighted objective."""
-    sentence: str
-    """The price in words."""
 
 
 @form()

@@ -7,7 +7,6 @@ are marked *reconstructed*.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,25 +31,9 @@ RECONSTRUCTED = "reconstructed"
 _NO_YIELD = "momentary yield of eq. 6.18; no efficiency: force and velocity are both projected"
 
 
-@dataclass(frozen=True)
-class Row:
+def _row(load_case: str, name: str, value: float, unit: str, note: str) -> ValveTrainRow:
     """Value of a load case ("": of all), with a note on its source."""
-
-    load_case: str
-    name: str
-    value: float
-    unit: str
-    note: str = ""
-
-    def as_record(self) -> ValveTrainRow:
-        """The row of ``run.json``."""
-        return {
-            "load_case": self.load_case,
-            "name": self.name,
-            "value": self.value,
-            "unit": self.unit,
-            "note": self.note,
-        }
+    return {"load_case": load_case, "name": name, "value": value, "unit": unit, "note": note}
 
 
 def valve_cam(case: Case) -> ValveCam | None:
@@ -79,16 +62,16 @@ def valve_record(trial: Trial) -> ValveTrainRecord | None:
 def machine_motion(cam: ValveCam, turns: Sequence[Turn]) -> ValveTrainRecord:
     """Module of the cam, and rows of its machine motion in all load cases."""
     rows = [*_shape(cam), *(row for turn in turns for row in _motion(cam, turn))]
-    return {"module": cam.module, "rows": [row.as_record() for row in rows]}
+    return {"module": cam.module, "rows": rows}
 
 
-def _shape(cam: ValveCam) -> list[Row]:
+def _shape(cam: ValveCam) -> list[ValveTrainRow]:
     phi = (np.arange(_ANGLES) + 0.5) * (FULL_TURN / _ANGLES)
     index = cam.shape_index(phi[cam.motion(phi, 1) > 0.0])
     return [
-        Row("", "Shape index, mean over the rise", float(index.mean()), "-", _NO_YIELD),
-        Row("", "Shape index, greatest", float(index.max()), "-", _NO_YIELD),
-        Row(
+        _row("", "Shape index, mean over the rise", float(index.mean()), "-", _NO_YIELD),
+        _row("", "Shape index, greatest", float(index.max()), "-", _NO_YIELD),
+        _row(
             "",
             "Mean reduced inertia",
             in_unit(cam.mean_reduced_inertia(), "kg mm^2"),
@@ -98,18 +81,18 @@ def _shape(cam: ValveCam) -> list[Row]:
     ]
 
 
-def _motion(cam: ValveCam, turn: Turn) -> list[Row]:
+def _motion(cam: ValveCam, turn: Turn) -> list[ValveTrainRow]:
     mean, name = turn.machine.cam_speed, turn.machine.load_case
     phi, motion = turn.theta, cam.motion
     speed, turning = cam.speed(phi, mean), cam.angular_acceleration(phi, mean)
     uneven = follower_acceleration(motion(phi, 1), motion(phi, 2), speed, turning)
     uses = "work on spring and mass over work of the cam on the rise, with all friction"
     return [
-        Row(name, "True efficiency of the rise", rise_efficiency(turn.loads), "-", uses),
-        Row(name, "Shaft speed, least", float(speed.min()), "rad/s", _eq("2 and 3")),
-        Row(name, "Shaft speed, greatest", float(speed.max()), "rad/s", _eq("2 and 3")),
-        Row(name, "Angular acceleration", float(np.abs(turning).max()), "rad/s^2", _eq("5")),
-        Row(
+        _row(name, "True efficiency of the rise", rise_efficiency(turn.loads), "-", uses),
+        _row(name, "Shaft speed, least", float(speed.min()), "rad/s", _eq("2 and 3")),
+        _row(name, "Shaft speed, greatest", float(speed.max()), "rad/s", _eq("2 and 3")),
+        _row(name, "Angular acceleration", float(np.abs(turning).max()), "rad/s^2", _eq("5")),
+        _row(
             name,
             "Acceleration of the follower",
             float(np.abs(uneven).max()),
@@ -120,7 +103,7 @@ def _motion(cam: ValveCam, turn: Turn) -> list[Row]:
     ]
 
 
-def _elastic(machine: Machine, cam: ValveCam, phi: Array, speed: Array) -> list[Row]:
+def _elastic(machine: Machine, cam: ValveCam, phi: Array, speed: Array) -> list[ValveTrainRow]:
     """Deflections of the valve train at full lift."""
     follower, spring, name = elastic_follower(machine), machine.spring, machine.load_case
     train = ElasticValve(
@@ -135,14 +118,14 @@ def _elastic(machine: Machine, cam: ValveCam, phi: Array, speed: Array) -> list[
         "by the quadratic": s - train.dynamic_lift(s, slope, there),
     }
     rows = [
-        Row(name, f"Deflection at full lift, {how}", in_unit(float(value), "um"), "um",
+        _row(name, f"Deflection at full lift, {how}", in_unit(float(value), "um"), "um",
             f"{_eq('13 and 14')}; {stiff}")
         for how, value in forms.items()
     ]  # fmt: skip
     still = in_unit(s - float(train.quasi_static(s)), "um")
     return [
         *rows,
-        Row(name, "Deflection at full lift, at rest", still, "um", f"{_eq('12')}; {stiff}"),
+        _row(name, "Deflection at full lift, at rest", still, "um", f"{_eq('12')}; {stiff}"),
     ]
 
 

@@ -45,7 +45,7 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
 from camwright.pipeline.cycle.cycle import Cycle, turn_of_line
 from camwright.pipeline.cycle.length_history import ContactLoads
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.records.crown_document import CrownKind
+from camwright.pipeline.records.crown_document import CrownKind, CrownLife
 from camwright.pipeline.search.crown.least_crown import (
     KINDS,
     AxialFactor,
@@ -83,20 +83,6 @@ class AxialLine:
     def centre(self) -> float:
         """Factor at y = 0."""
         return float(np.interp(0.0, self.y, self.factor))
-
-
-@dataclass(frozen=True)
-class LifeCost:
-    """Load cycles of a body to its endurance line over those in plane strain.
-
-    Without and with the crown; exponent: of the pressure, 2 A of the line.
-    """
-
-    body: str
-    material: str
-    exponent: float
-    straight: float
-    crowned: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -191,17 +177,24 @@ class CrownDesign(Displayed):
         return straight, crowned
 
     @property
-    def lives(self) -> tuple[LifeCost, ...]:
-        """Cost in life of the bodies whose card has a line of endurance."""
+    def lives(self) -> list[CrownLife]:
+        """Load cycles to endurance of the bodies whose card has a line, over plane strain."""
         straight, crowned = float(self.chosen.straight.max()), self.chosen.ratio
-        costs = []
+        costs: list[CrownLife] = []
         for body, card in self.machine.bodies.items():
             slope = card.endurance(sliding=self.machine.follower.slides).slope
             if slope is not None:
                 power = 2.0 * slope
-                lives = straight**-power, crowned**-power
-                costs.append(LifeCost(body, card.name, power, *lives))
-        return tuple(costs)
+                costs.append(
+                    {
+                        "body": body,
+                        "material": card.name,
+                        "pressure_exponent": power,
+                        "straight": straight**-power,
+                        "crowned": crowned**-power,
+                    }
+                )
+        return costs
 
     @property
     def shape(self) -> AxialCrown | None:

@@ -41,16 +41,7 @@ def crown_record(design: CrownDesign) -> CrownDocument:
         "heaviest": _heaviest_record(design),
         "governing": _governing_record(design),
         "centre": {"straight": centre[0], "crowned": centre[1]},
-        "life": [
-            {
-                "body": each.body,
-                "material": each.material,
-                "pressure_exponent": each.exponent,
-                "straight": each.straight,
-                "crowned": each.crowned,
-            }
-            for each in design.lives
-        ],
+        "life": design.lives,
         "tilt": [{"moment_factor": factor, "ratio": value} for factor, value in design.tilts],
         "tolerance": [
             {"deviation_um": in_unit(deviation, "um"), "ratio": _finite(value)}
@@ -89,8 +80,8 @@ def crown_lines(design: CrownDesign) -> Iterator[str]:
     yield f"centre at the greatest load: {after:.4f} of plane strain, {before:.4f} without a crown"
     for each in design.lives:
         yield (
-            f"life of the {each.body}, {each.material}: {each.crowned:.3g} of that of plane strain,"
-            f" {each.straight:.3g} without a crown"
+            f"life of the {each['body']}, {each['material']}: {each['crowned']:.3g}"
+            f" of that of plane strain, {each['straight']:.3g} without a crown"
         )
     if not design.lives:
         yield "life: no material has a line of endurance"
