@@ -21,29 +21,35 @@ class RefusedJudgement(TypedDict):
 
 
 @form()
-class DraftJudgement(TypedDict):
-    """A case by its synthesis alone, SI: a search goes on with these numbers."""
+class SynthesisedCam(TypedDict):
+    """Cam and spring of a synthesis, with units in the names."""
 
     feasible: bool
-    """Whether it keeps the limits."""
-    ripple: float
+    """Whether the synthesis keeps its limits."""
+    cam_radius_mm: float
+    """Greatest radius of the contour."""
+    mass_g: float
+    """Mass of cam, follower and half of the spring."""
+    prime_radius_mm: float
+    """Prime radius of the cam."""
+    preload_N: float
+    """Preload of the spring."""
+    lift_max_mm: float
+    """Maximum lift."""
+    binding: list[str]
+    """Ids of the limits that are used up, the most binding first."""
+
+
+@form()
+class DraftJudgement(SynthesisedCam):
+    """A case by its synthesis alone."""
+
+    ripple_left_share: float
     """Torque ripple left over that of the engine."""
-    cam_radius: float
-    """Greatest radius of the contour, m."""
-    mass: float
-    """Mass of cam, follower and half of the spring, kg."""
     limit: str
     """Id of the limit furthest exceeded; empty where it is feasible."""
     utilisation: float
     """Utilisation of that limit; 0 where it is feasible."""
-    prime_radius: float
-    """Prime radius, m."""
-    preload: float
-    """Preload of the spring, N."""
-    lift_max: float
-    """Maximum lift, m."""
-    binding: list[str]
-    """Ids of the limits that are used up, the most used first."""
 
 
 @form()
@@ -65,11 +71,9 @@ class Shortfall(TypedDict):
 
 
 @form()
-class PreviewJudgement(TypedDict):
-    """A case by its preview, with units in the names."""
+class PreviewJudgement(SynthesisedCam):
+    """A case by its preview."""
 
-    feasible: bool
-    """Whether the synthesis keeps its limits."""
     verdict: Verdict
     """Verdict of the preview, without the certificate of a sign-off."""
     ripple_before_Nm: float
@@ -78,18 +82,8 @@ class PreviewJudgement(TypedDict):
     """Standard deviation of the crank torque with the cam."""
     torque_reduction: float
     """1 less the ripple left over that before."""
-    cam_radius_mm: float
-    """Greatest radius of the contour."""
-    mass_g: float
-    """Mass of cam, follower and half of the spring."""
-    prime_radius_mm: float
-    """Prime radius of the cam."""
-    preload_N: float
-    """Preload of the spring."""
     spring_rate_N_per_mm: float
     """Rate of the spring."""
-    lift_max_mm: float
-    """Maximum lift."""
     pressure_angle_max_deg: float
     """Maximum pressure angle."""
     normal_force_max_N: float | None
@@ -102,8 +96,6 @@ class PreviewJudgement(TypedDict):
     """The same with their figures."""
     open: list[str]
     """Ids of the blocking checks that lack data."""
-    binding: list[str]
-    """Ids of the limits by decreasing shadow price."""
 
 
 @form()

@@ -5,7 +5,11 @@ from typing import Literal
 from typing_extensions import TypedDict
 
 from camwright.pipeline.records.forms import Count, Sha256, form
-from camwright.pipeline.records.judgement_record import PreviewJudgement, RefusedJudgement
+from camwright.pipeline.records.judgement_record import (
+    DraftJudgement,
+    PreviewJudgement,
+    RefusedJudgement,
+)
 
 Against = Literal["size", "mass"]
 
@@ -41,29 +45,8 @@ class RefusedChoice(ChoiceRecord):
 
 
 @form()
-class TriedPoint(ChoiceRecord):
+class TriedPoint(ChoiceRecord, DraftJudgement):
     """A choice by the synthesis alone."""
-
-    feasible: bool
-    """Whether it keeps the limits."""
-    ripple_left_share: float
-    """Torque ripple left over that of the engine."""
-    cam_radius_mm: float
-    """Greatest radius of the contour."""
-    mass_g: float
-    """Mass of cam, follower and half of the spring."""
-    limit: str
-    """Id of the limit furthest exceeded; empty where it is feasible."""
-    utilisation: float
-    """Utilisation of that limit; 0 where it is feasible."""
-    prime_radius_mm: float
-    """Prime radius of the cam."""
-    preload_N: float
-    """Preload of the spring."""
-    lift_max_mm: float
-    """Maximum lift."""
-    binding: list[str]
-    """Ids of the limits that are used up, the most used first."""
 
 
 @form()

@@ -120,14 +120,14 @@ def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> D
     beyond = uses[limit] > 1.0
     return {
         "feasible": not beyond,
-        "ripple": design.ripple,
-        "cam_radius": float(contour.radius_max().value),
-        "mass": design_mass(case, contour),
+        "ripple_left_share": design.ripple,
+        "cam_radius_mm": in_unit(float(contour.radius_max().value), "mm"),
+        "mass_g": in_unit(design_mass(case, contour), "g"),
         "limit": limit if beyond else "",
         "utilisation": uses[limit] if beyond else 0.0,
-        "prime_radius": drawn.cam.prime_radius,
-        "preload": drawn.spring.preload,
-        "lift_max": float(lift.highest.value),
+        "prime_radius_mm": in_unit(drawn.cam.prime_radius, "mm"),
+        "preload_N": drawn.spring.preload,
+        "lift_max_mm": in_unit(float(lift.highest.value), "mm"),
         "binding": sorted(
             (name for name in uses if uses[name] > _BINDING_USE), key=lambda n: -uses[n]
         ),

@@ -226,7 +226,8 @@ def test_tables_of_machines_are_read_with_their_energy_swing(tmp_path: Path, nam
 def drafted(task: DesignTask, share: float) -> Solved:
     """A design that leaves a share of the ripple allowed."""
     design: Any = SimpleNamespace(task=task)
-    return Solved(design, {"ripple_left_Nm": share * task.ripple_allowed})
+    left = share * task.ripple_allowed / task.demand.ripple
+    return Solved(design, {"ripple_left_share": left})  # type: ignore[typeddict-item]
 
 
 class Searched:
@@ -427,9 +428,9 @@ def test_the_better_of_two_designs_passes_with_less_ripple_in_the_same_size() ->
     )
 
     def solved(ripple: float, verdict: str = "pass", prime: float = 40.0) -> Solved:
-        shortfalls = [] if verdict == "pass" else [{"utilisation": ripple / 2.0}]
-        record = {"verdict": verdict, "ripple_left_Nm": ripple, "lift_max_mm": 5.0,
-                  "cam_radius_mm": 35.0, "prime_radius_mm": prime,
+        shortfalls = [] if verdict == "pass" else [{"title": "", "utilisation": ripple / 2.0}]
+        record = {"feasible": True, "verdict": verdict, "ripple_left_Nm": ripple,
+                  "lift_max_mm": 5.0, "cam_radius_mm": 35.0, "prime_radius_mm": prime,
                   "shortfalls": shortfalls}  # fmt: skip
         return Solved(design, record)
 
@@ -537,9 +538,9 @@ def test_a_drafted_cam_grows_where_its_prime_radius_is_the_greatest(
     study = PointStudy(design.task, tmp_path, "torque.csv", "")
     for growth, used in ((1.0, 1.1), (1.1, 1.05)):
         record: DraftJudgement = {
-            "feasible": False, "ripple": 0.1, "cam_radius": 0.04, "mass": 1.0,
-            "limit": "pressure_angle", "utilisation": used, "binding": [], "lift_max": 9e-3,
-            "prime_radius": share * design.prime_radius, "preload": 900.0,
+            "feasible": False, "ripple_left_share": 0.1, "cam_radius_mm": 40.0, "mass_g": 1e3,
+            "limit": "pressure_angle", "utilisation": used, "binding": [], "lift_max_mm": 9.0,
+            "prime_radius_mm": 1e3 * share * design.prime_radius, "preload_N": 900.0,
         }  # fmt: skip
         drawn = synthesised_points._rounded(design)
         text = study.text(drawn, synthesised_points.freed(drawn, growth))

@@ -31,7 +31,7 @@ from camwright.pipeline.search.front import front, thinned
 from camwright.pipeline.search.judge import Judge, Judgement, judgements
 from camwright.pipeline.search.parts import redesign_study
 from camwright.pipeline.search.parts.exclusions import exclusions
-from camwright.pipeline.search.parts.part_search import RUNG, RUNGS, Pruned, RollerSearch
+from camwright.pipeline.search.parts.part_search import RUNG, RUNGS, RollerSearch
 from camwright.pipeline.search.parts.ripple_bounds import RippleBound, bearable_energy
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 
@@ -265,7 +265,7 @@ def test_a_roller_has_the_best_pair_of_every_room():
         steep = 30.0 if choice.spring == "long" else 5.0
         ripple = (0.1 if choice.spring == "long" else 0.2) + steep * (0.06 - size)
         rough = 0.0 if choice.bush == "slick" else 0.05
-        return {"feasible": True, "ripple": ripple + rough, "cam_radius": size}
+        return {"feasible": True, "ripple_left_share": ripple + rough, "cam_radius_mm": 1e3 * size}
 
     asked = walked({"long": 0.0, "short": 0.15}, ["dull", "slick"], solve)
     rooms = list(dict.fromkeys(choice.cam_radius for choice in asked))
@@ -274,9 +274,11 @@ def test_a_roller_has_the_best_pair_of_every_room():
         Choice("r", "long", "dull"), Choice("r", "short", "dull"), Choice("r", "long", "slick"),
     ]  # fmt: skip
     for room in rooms[1:]:
-        tried = {(c.spring, c.bush): solve(c)["ripple"] for c in asked if c.cam_radius == room}
+        tried = {
+            (c.spring, c.bush): solve(c)["ripple_left_share"] for c in asked if c.cam_radius == room
+        }
         known = [replace(c, cam_radius=room) for c in asked[:3]]
-        assert min(tried.values()) == min(solve(c)["ripple"] for c in known)
+        assert min(tried.values()) == min(solve(c)["ripple_left_share"] for c in known)
     assert len(asked) < 3 * RUNGS  # the bounds have saved some
 
 
@@ -429,7 +431,8 @@ def test_without_a_result_the_limit_that_excludes_most_is_named():
     refused = {"feasible": False, "why": "cam.bore = 9, must be < 8"}
     tried = [rough("a", "cam_radius", 1.4), rough("b", "cam_radius", 1.2),
              rough("c", "roller_static", 3.0), (Choice("d", "s", "b"), refused)]  # fmt: skip
-    pruned = [Pruned("weak", "too low", "torque_reduction"), Pruned("twin", "dominated")]
+    pruned = [{"part": "weak", "why": "too low", "limit": "torque_reduction"},
+              {"part": "twin", "why": "dominated", "limit": ""}]  # fmt: skip
     solved = []
 
     def conflict(choice):
@@ -464,7 +467,7 @@ def test_of_points_solved_in_full_the_demand_is_the_limit_needed():
 
 def test_without_any_choice_the_case_itself_is_solved():
     solved = []
-    pruned = [Pruned("weak", "too low", "torque_reduction")]
+    pruned = [{"part": "weak", "why": "too low", "limit": "torque_reduction"}]
     refused = {"feasible": False, "why": "no cam"}
     record = exclusions([], [], pruned, lambda choice: solved.append(choice) or refused)
     assert solved == [None]

@@ -6,16 +6,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil, inf
 from pathlib import Path
-from typing import NamedTuple, TypedDict, TypeVar
+from typing import NamedTuple, TypeVar
 
 from camwright.geometry.errors import CamError, ResultError
 from camwright.pipeline.base.progress import Progress
-from camwright.pipeline.base.verdict import Verdict
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.records.judgement_record import (
+    DraftJudgement,
     PreviewJudgement,
     RefusedJudgement,
     is_refused,
@@ -52,27 +52,6 @@ _ROUND_OFF = 1e-7  # m, of a prime radius that is a drawn one already
 RESERVE = 0.01  # of the ripple allowed, for the corrections by finite elements
 
 
-class DraftLimit(TypedDict):
-    """Limit that a synthesis exceeds most."""
-
-    title: str
-    check: str
-    utilisation: float
-
-
-class DraftRecord(TypedDict):
-    """Record of a coarse synthesis, with the keys of a preview record."""
-
-    verdict: Verdict
-    ripple_left_Nm: float
-    shortfalls: list[DraftLimit]
-    binding: list[str]
-    preload_N: float
-    cam_radius_mm: float
-    prime_radius_mm: float
-    lift_max_mm: float
-
-
 @dataclass(frozen=True)
 class PointStudy:
     """Design task with the folder of its solved points."""
@@ -93,23 +72,7 @@ class PointStudy:
 
     def drafted(self, design: Machinery, smoothing: str) -> Solved:
         """A design with the record of its synthesis on few cam angles, cached or solved."""
-        rough = self._judged(design, smoothing, lambda judge: judge.drafted(Change()))
-        if is_refused(rough):
-            return Solved(design, rough, smoothing)
-        failing: list[DraftLimit] = []
-        if check := check_of(rough["limit"]):
-            used = rough["utilisation"]
-            failing = [{"title": DECLARED[check].title, "check": check, "utilisation": used}]
-        record: DraftRecord = {
-            "verdict": "fail" if failing else "pass",
-            "ripple_left_Nm": rough["ripple"] * self.task.demand.ripple,
-            "shortfalls": failing,
-            "binding": list(rough["binding"]),
-            "preload_N": rough["preload"],
-            "cam_radius_mm": 1e3 * rough["cam_radius"],
-            "prime_radius_mm": 1e3 * rough["prime_radius"],
-            "lift_max_mm": 1e3 * rough["lift_max"],
-        }
+        record = self._judged(design, smoothing, lambda judge: judge.drafted(Change()))
         return Solved(design, record, smoothing)
 
     def _judged(
@@ -130,7 +93,7 @@ class Solved:
     """Design with its preview or draft record."""
 
     design: Machinery
-    record: PreviewJudgement | DraftRecord | RefusedJudgement
+    record: PreviewJudgement | DraftJudgement | RefusedJudgement
     smoothing: str = field(default=SYNTHESIS, repr=False)
 
     @property
@@ -139,7 +102,7 @@ class Solved:
         return not is_refused(self.record)
 
     @property
-    def figures(self) -> PreviewJudgement | DraftRecord:
+    def figures(self) -> PreviewJudgement | DraftJudgement:
         """The record of a cam.
 
         Raises
@@ -168,9 +131,9 @@ class Solved:
     def passes(self) -> bool:
         """Whether all limits are kept, the ripple with a reserve for finite elements."""
         most = (1.0 - RESERVE) * self.design.task.ripple_allowed
-        if is_refused(self.record):
+        if not self.has_cam or (is_whole(self.record) and self.record["verdict"] != "pass"):
             return False
-        return self.record["verdict"] == "pass" and self.ripple <= most
+        return not self._shortfalls and self.ripple <= most
 
     def better_than(self, other: Solved) -> bool:
         """Whether it passes where the other fails, or leaves less ripple at equal size.
@@ -197,7 +160,10 @@ class Solved:
 
     @property
     def ripple(self) -> float:
-        return self.figures["ripple_left_Nm"]
+        figures = self.figures
+        if is_whole(figures):
+            return figures["ripple_left_Nm"]
+        return figures["ripple_left_share"] * self.design.task.demand.ripple
 
     @property
     def use(self) -> float:
@@ -210,7 +176,7 @@ class Solved:
     @property
     def failing(self) -> list[str]:
         """Titles of the checks that fail."""
-        return [each["title"] for each in self.figures["shortfalls"]]
+        return [title for title, _ in self._shortfalls]
 
     @property
     def shortfall(self) -> float:
@@ -219,7 +185,16 @@ class Solved:
 
     @property
     def _uses(self) -> list[float]:
-        return [each["utilisation"] or 99.0 for each in self.figures["shortfalls"]]
+        return [used or 99.0 for _, used in self._shortfalls]
+
+    @property
+    def _shortfalls(self) -> list[tuple[str, float | None]]:
+        """Titles and utilisations of the checks that fail; of a draft the worst one alone."""
+        figures = self.figures
+        if is_whole(figures):
+            return [(each["title"], each["utilisation"]) for each in figures["shortfalls"]]
+        check = check_of(figures["limit"])
+        return [(DECLARED[check].title, figures["utilisation"])] if check else []
 
 
 def promising(task: DesignTask, screened: Sequence[Candidate]) -> list[Candidate]:

@@ -21,9 +21,9 @@ from camwright.pipeline.records.redesign_document import (
     ExcludingLimit,
     ExclusionReasons,
     ExclusionRecord,
+    PrunedRecord,
 )
 from camwright.pipeline.results.check_report import number, unit_text
-from camwright.pipeline.search.parts.part_search import Pruned
 
 _SHOWN = 3  # relaxations in a line
 _TITLES = {row.id: row.title for row in LIMITS.values()}
@@ -32,7 +32,7 @@ _TITLES = {row.id: row.title for row in LIMITS.values()}
 def exclusions(
     tried: Sequence[tuple[Choice, DraftJudgement | RefusedJudgement]],
     refused: Sequence[tuple[Choice, PreviewJudgement | RefusedJudgement]],
-    pruned: Sequence[Pruned],
+    pruned: Sequence[PrunedRecord],
     conflict: Callable[[Choice | None], ConflictJudgement | RefusedJudgement],
 ) -> ExclusionRecord:
     """Reasons why no choice is on the front.
@@ -49,7 +49,7 @@ def exclusions(
     """
     whole: dict[Choice, DraftJudgement | PreviewJudgement | RefusedJudgement] = dict(refused)
     reasons = [_reason(whole.get(choice, record)) for choice, record in tried]
-    reasons += [each.limit for each in pruned if each.limit]
+    reasons += [each["limit"] for each in pruned if each["limit"]]
     counts = Counter(reason for reason in reasons if reason)
     first = sorted(counts, key=lambda name: (-counts[name], name))
     excluded: list[ExcludingLimit] = [

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from camwright.pipeline.base.units import from_unit
 from camwright.pipeline.case.cards.catalogue import (
     Catalogue,
     better_bush,
@@ -25,6 +26,7 @@ from camwright.pipeline.records.judgement_record import (
     RefusedJudgement,
     is_refused,
 )
+from camwright.pipeline.records.redesign_document import PrunedRecord
 from camwright.pipeline.search.judge import Judge
 from camwright.pipeline.search.parts import ripple_bounds
 from camwright.pipeline.smoothing.scenario import Scenario
@@ -33,15 +35,6 @@ from camwright.pipeline.smoothing.synthesis_problem import Problem
 RUNGS, RUNG = 12, 0.93  # limits of the cam radius per roller, and their ratio to the last cam
 
 Tried = tuple[Choice, DraftJudgement | RefusedJudgement]
-
-
-@dataclass(frozen=True)
-class Pruned:
-    """Part excluded without solution, with reason and limit; "": by no limit."""
-
-    part: str
-    why: str
-    limit: str = ""
 
 
 @dataclass(frozen=True)
@@ -84,7 +77,7 @@ class RollerSearch:
         for _ in range(1, RUNGS):
             if best is None:
                 break
-            pairs, best = self._within(pairs, RUNG * best["cam_radius"])
+            pairs, best = self._within(pairs, RUNG * from_unit(best["cam_radius_mm"], "mm"))
         return self.tried
 
     def _unbounded(
@@ -98,16 +91,16 @@ class RollerSearch:
         def judge(spring: str, bush: str) -> float:
             record = self._judged(spring, bush)
             if record is not None and record["feasible"]:
-                pairs.append(Pair(spring, bush, max(record["ripple"], least[spring])))
+                pairs.append(Pair(spring, bush, max(record["ripple_left_share"], least[spring])))
                 good.append(record)
-            return 1.0 if record is None else record["ripple"]
+            return 1.0 if record is None else record["ripple_left_share"]
 
         for spring in sorted(least, key=lambda name: (least[name], name)):
             ripples[spring] = judge(spring, bushes[0])
         best = min(ripples, key=lambda name: (ripples[name], name))
         for bush in bushes[1:]:
             judge(best, bush)
-        return pairs, min(good, key=lambda record: record["ripple"], default=None)
+        return pairs, min(good, key=lambda record: record["ripple_left_share"], default=None)
 
     def _within(
         self, pairs: Sequence[Pair], room: float
@@ -116,13 +109,13 @@ class RollerSearch:
         best: DraftJudgement | None = None
         after: list[Pair] = []
         for pair in sorted(pairs, key=lambda p: (p.bound, p.spring, p.bush)):
-            if best is not None and pair.bound >= best["ripple"]:
+            if best is not None and pair.bound >= best["ripple_left_share"]:
                 after.append(pair)
                 continue
             record = self._judged(pair.spring, pair.bush, room)
             if record is not None and record["feasible"]:
-                after.append(replace(pair, bound=max(record["ripple"], pair.bound)))
-                if best is None or record["ripple"] < best["ripple"]:
+                after.append(replace(pair, bound=max(record["ripple_left_share"], pair.bound)))
+                if best is None or record["ripple_left_share"] < best["ripple_left_share"]:
                     best = record
         return after, best
 
@@ -147,7 +140,7 @@ class Selection:
 
     springs: Mapping[str, Mapping[str, float]]
     bushes: tuple[str, ...]
-    pruned: tuple[Pruned, ...]
+    pruned: tuple[PrunedRecord, ...]
 
 
 def selection(case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool) -> Selection:
@@ -185,7 +178,7 @@ def selection(case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool) 
                 f"roller load limit {force:.0f} N: too low for the required torque reduction, "
                 f"at most {most:.2f} of {required:.2f}"
             )
-            pruned.append(Pruned(name, words, TORQUE_REDUCTION.id))
+            pruned.append({"part": name, "why": words, "limit": TORQUE_REDUCTION.id})
     return Selection(tried, tuple(names), tuple(pruned))
 
 
@@ -225,6 +218,6 @@ def _bushes_known(case: Case) -> bool:
     return all(g.pressure_limit is not None and g.pv_limit is not None for g in guides)
 
 
-def _left_out(parts: Iterable[str], kept: Iterable[str], why: str) -> list[Pruned]:
+def _left_out(parts: Iterable[str], kept: Iterable[str], why: str) -> list[PrunedRecord]:
     known = set(kept)
-    return [Pruned(name, why) for name in parts if name not in known]
+    return [{"part": name, "why": why, "limit": ""} for name in parts if name not in known]

@@ -156,9 +156,7 @@ def redesign(
                 {**_named(choice), "why": _why(record, verdict)} for choice, record in refused
             ],
             "without_result": excluded,
-            "pruned": [
-                {"part": one.part, "why": one.why, "limit": one.limit} for one in parts.pruned
-            ],
+            "pruned": list(parts.pruned),
             "tried": [_tried_record(choice, record) for choice, record in tried],
         }
         write_atomic(search.out / RECORD, json_text(document) + "\n")
@@ -225,8 +223,7 @@ def _chosen(tried: Sequence[Tried], against: Against) -> list[Choice]:
     """Choices on the front of the judgements by the synthesis alone."""
     rough = [(choice, record) for choice, record in tried if not is_refused(record)]
     feasible = [(choice, record) for choice, record in rough if record["feasible"]]
-    size: Literal["cam_radius", "mass"] = "cam_radius" if against == "size" else "mass"
-    figures = [(record[size], record["ripple"]) for _, record in feasible]
+    figures = [(record[AGAINST[against]], record["ripple_left_share"]) for _, record in feasible]
     places = front(figures, ALIKE, ALIKE)  # the ripple is relative to that of the engine
     return [feasible[k][0] for k in thinned(places, figures, MOST_POINTS)]
 
@@ -295,19 +292,7 @@ def _tried_record(
     if is_refused(record):
         refused: TriedRefusal = {**_named(choice), **record}
         return refused
-    return {
-        **_named(choice),
-        "feasible": record["feasible"],
-        "ripple_left_share": record["ripple"],
-        "cam_radius_mm": in_unit(record["cam_radius"], "mm"),
-        "mass_g": in_unit(record["mass"], "g"),
-        "limit": record["limit"],
-        "utilisation": record["utilisation"],
-        "prime_radius_mm": in_unit(record["prime_radius"], "mm"),
-        "preload_N": record["preload"],
-        "lift_max_mm": in_unit(record["lift_max"], "mm"),
-        "binding": record["binding"],
-    }
+    return {**_named(choice), **record}
 
 
 def _named(choice: Choice) -> ChoiceRecord:
