@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NoReturn
@@ -25,13 +25,13 @@ from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.cycle.machine_envelope import sizes_of
+from camwright.pipeline.records.design_document import DesignOptions
 from camwright.pipeline.records.judgement_record import DraftJudgement
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.judge import Judge, judgements
 from camwright.pipeline.search.machine import (
     design_study,
     part_exchange,
-    relaxation_search,
     synthesised_points,
 )
 from camwright.pipeline.search.machine.candidate_search import Candidate, candidates, spring_wire
@@ -230,22 +230,28 @@ def drafted(task: DesignTask, share: float) -> Solved:
     return Solved(design, {"ripple_left_share": left})  # type: ignore[typeddict-item]
 
 
-class Searched:
-    """Stand-in for the search: a task passes up to a speed, for a life, or for a share removed."""
+@dataclass(frozen=True)
+class Searched(PointStudy):
+    """A study in which a task passes by its values alone; `tasks`: those tried."""
 
-    def __init__(
-        self, monkeypatch: pytest.MonkeyPatch, speed: float, life: float, remove: float
-    ) -> None:
-        self.passes: Callable[[DesignTask], bool] = lambda task: (
-            task.speed <= speed * RPM or task.life <= life * 3600.0 or task.remove <= remove
-        )
-        self.tasks: list[DesignTask] = []
-        monkeypatch.setattr(relaxation_search, "candidates", lambda *_: [])
-        monkeypatch.setattr(relaxation_search, "passing_draft", self.draft)
+    passes: Callable[[DesignTask], bool]
+    tasks: list[DesignTask] = field(default_factory=list)
 
-    def draft(self, study: PointStudy, *_: object) -> Solved | None:
-        self.tasks.append(study.task)
-        return drafted(study.task, 0.97) if self.passes(study.task) else None
+    @classmethod
+    def of(cls, task: DesignTask, passes: Callable[[DesignTask], bool]) -> Searched:
+        return cls(task, task.file.parent, task.file.name, "", passes)
+
+    def passing(self, changes: DesignOptions, *_: object) -> Solved | None:
+        task = self.task.relaxed(changes)
+        self.tasks.append(task)
+        return drafted(task, 0.97) if self.passes(task) else None
+
+
+def up_to(speed: float, life: float, remove: float) -> Callable[[DesignTask], bool]:
+    """Whether a task passes: up to a speed, for a life, or for a share removed."""
+    return lambda task: (
+        task.speed <= speed * RPM or task.life <= life * 3600.0 or task.remove <= remove
+    )
 
 
 def relaxed_by(command: str) -> DesignTask:
@@ -267,15 +273,13 @@ def relaxed_by(command: str) -> DesignTask:
 )
 def test_the_first_relaxation_is_the_smallest_of_all_options(
     tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
     speed: float,
     life: float,
     remove: float,
     nearest: float | None,
 ) -> None:
     """Least changes stated: the first passes, fails 2 % nearer, and no option has a smaller one."""
-    searched = Searched(monkeypatch, speed, life, remove)
-    study = PointStudy(task_in(tmp_path), tmp_path, "torque.csv", "")
+    study = Searched.of(task_in(tmp_path), up_to(speed, life, remove))
     near = None if nearest is None else drafted(study.task, nearest)
     first, *others = relaxations(study, near, tmp_path / "c.toml", ALONE, SILENT)
     for each in (first, *others):
@@ -288,8 +292,8 @@ def test_the_first_relaxation_is_the_smallest_of_all_options(
     least = min(sizes.values())
     assert sizes[first["option"]] <= least + WIDTH
     task, fails = relaxed_by(first["command"]), {first["option"][2:]: first["fails_at"]}
-    assert searched.passes(task)
-    assert not searched.passes(study.task.relaxed(fails))
+    assert study.passes(task)
+    assert not study.passes(study.task.relaxed(fails))
     stated = {"--speed": 300.0 * RPM, "--life": 2000.0 * 3600.0, "--remove": 0.5}[first["option"]]
     passing = getattr(task, first["option"][2:])
     failing = getattr(study.task.relaxed(fails), first["option"][2:])
@@ -298,33 +302,27 @@ def test_the_first_relaxation_is_the_smallest_of_all_options(
         name = each["option"][2:]
         task = relaxed_by(each["command"])
         fails = study.task.relaxed({name: each["fails_at"]})
-        assert searched.passes(task) and not searched.passes(fails)
+        assert study.passes(task) and not study.passes(fails)
         stated, passing, failing = (getattr(one, name) for one in (study.task, task, fails))
         # half of the change fails, as printed, and none is stricter than the task
         assert np.log(stated / passing) <= 2.02 * np.log(stated / failing) + WIDTH
         assert passing < stated
-    assert len(searched.tasks) <= 36
+    assert len(study.tasks) <= 36
 
 
-def test_without_a_relaxation_none_is_listed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    searched = Searched(monkeypatch, 0.0, 0.0, 0.0)
-    study = PointStudy(task_in(tmp_path), tmp_path, "torque.csv", "")
+def test_without_a_relaxation_none_is_listed(tmp_path: Path) -> None:
+    study = Searched.of(task_in(tmp_path), up_to(0.0, 0.0, 0.0))
     assert relaxations(study, None, tmp_path / "c.toml", ALONE, SILENT) == []
     loosest = {"remove": 0.125, "speed": 120.0 * RPM, "overspeed": 300.0 * RPM, "life": 3.6e5,
                "ambient": 293.15}  # fmt: skip
     for name, value in loosest.items():
-        assert any(getattr(task, name) == pytest.approx(value) for task in searched.tasks)
-    assert len(searched.tasks) == 9  # but for the over-speed a smaller change before
+        assert any(getattr(task, name) == pytest.approx(value) for task in study.tasks)
+    assert len(study.tasks) == 9  # but for the over-speed a smaller change before
 
 
-def test_a_slower_cam_is_offered_by_the_next_ratio_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    searched = Searched(monkeypatch, 0.0, 0.0, 0.45)
-    searched.passes = lambda task: task.remove <= 0.45 or task.ratio >= 2.0
-    study = PointStudy(task_in(tmp_path), tmp_path, "torque.csv", "")
+def test_a_slower_cam_is_offered_by_the_next_ratio_alone(tmp_path: Path) -> None:
+    task = task_in(tmp_path)
+    study = Searched.of(task, lambda each: each.remove <= 0.45 or each.ratio >= 2.0)
     offered = {each["option"]: each for each in relaxations(
         study, None, tmp_path / "c.toml", ALONE, SILENT
     )}  # fmt: skip
@@ -333,14 +331,10 @@ def test_a_slower_cam_is_offered_by_the_next_ratio_alone(
     assert relaxed_by(offered["--ratio"]["command"]).ratio == 2.0
 
 
-def test_the_space_is_that_of_a_design_with_exchanged_parts(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_space_is_that_of_a_design_with_exchanged_parts(tmp_path: Path) -> None:
     """The search finds none in any space; exchanges of parts reach one in 120 mm."""
-    searched = Searched(monkeypatch, 0.0, 0.0, 0.2)
-    searched.passes = lambda task: task.remove <= 0.2
     task = task_of(table(tmp_path), speed="300 rpm", space=0.1)
-    study = PointStudy(task, tmp_path, "torque.csv", "")
+    study = Searched.of(task, lambda each: each.remove <= 0.2)
     first, *_ = relaxations(study, None, tmp_path / "c.toml", ALONE, SILENT, room=0.12)
     assert first["option"] == "--space"
     wide, narrow = (task.relaxed({"space": first[key]}).space for key in ("to", "fails_at"))

@@ -12,16 +12,15 @@ from pathlib import Path
 
 from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.base import units
-from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.records.design_document import DesignOptions, RelaxationRecord
-from camwright.pipeline.search.machine.candidate_search import Candidate, candidates
+from camwright.pipeline.search.machine.candidate_search import Candidate
 from camwright.pipeline.search.machine.synthesised_points import (
     RESERVE,
     PointStudy,
     Solved,
     lack,
-    passing_draft,
 )
 from camwright.pipeline.search.machine.torque_task import DesignTask
 
@@ -132,13 +131,11 @@ class _Search:
         self.progress.advance(self.tried, max(_USUAL, self.tried + 1))
         self.tried += 1
         change = min(change, lever.greatest)
-        study = self.study
         if lever.name == SPACE and lever.value(change) >= self.room:
             needed = log(self.room / lever.stated)
             return Bracket(lever, self.failing.get(lever.name, 0.0), change, needed)
-        own = replace(study, task=study.task.relaxed(lever.options(lever.value(change))))
-        screened = candidates(own.task, own.folder, own.file, SILENT)
-        draft = passing_draft(own, screened, self.workers, lever.order)
+        options = lever.options(lever.value(change))
+        draft = self.study.passing(options, self.workers, lever.order)
         if draft is None:
             self.failing[lever.name] = change
             return None

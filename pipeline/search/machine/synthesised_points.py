@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from camwright.geometry.errors import CamError, ResultError
-from camwright.pipeline.base.progress import Progress
+from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.records.design_document import DesignOptions
 from camwright.pipeline.records.judgement_record import (
     DraftJudgement,
     PreviewJudgement,
@@ -24,7 +25,12 @@ from camwright.pipeline.records.judgement_record import (
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.front import front, thinned
 from camwright.pipeline.search.judge import Judge, judgements, refusal
-from camwright.pipeline.search.machine.candidate_search import FAR, OPTIMISTIC, Candidate
+from camwright.pipeline.search.machine.candidate_search import (
+    FAR,
+    OPTIMISTIC,
+    Candidate,
+    candidates,
+)
 from camwright.pipeline.search.machine.design_case import (
     SYNTHESIS,
     Machinery,
@@ -74,6 +80,14 @@ class PointStudy:
         """A design with the record of its synthesis on few cam angles, cached or solved."""
         record = self._judged(design, smoothing, lambda judge: judge.drafted(Change()))
         return Solved(design, record, smoothing)
+
+    def passing(
+        self, changes: DesignOptions, workers: Crew, order: Callable[[Candidate], float]
+    ) -> Solved | None:
+        """First draft that passes with some options of the task changed; see `passing_draft`."""
+        own = replace(self, task=self.task.relaxed(changes))
+        screened = candidates(own.task, own.folder, own.file, SILENT)
+        return passing_draft(own, screened, workers, order)
 
     def _judged(
         self, design: Machinery, smoothing: str, record: Callable[[Judge], R]
