@@ -101,8 +101,8 @@ def undrilled(cam: CamBody, contour: Contour) -> Unbalance:
 def design_mass(case: Case, contour: Contour) -> float:
     """Mass of cam, follower and half of the spring, kg."""
     spring = case.spring.design
-    own = undrilled(case.cam, contour).mass + case.follower.mass
-    return float(own + (0.0 if spring is None else 0.5 * spring.mass))
+    bodies = undrilled(case.cam, contour).mass + case.follower.mass
+    return float(bodies + (0.0 if spring is None else 0.5 * spring.mass))
 
 
 def camshaft_loads(

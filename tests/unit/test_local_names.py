@@ -32,7 +32,7 @@ MOST = {
     "pipeline/screening": 29,
     "pipeline/search": 12,
     "pipeline/search/crown": 8,
-    "pipeline/search/machine": 21,
+    "pipeline/search/machine": 19,
     "pipeline/search/parts": 7,
     "pipeline/search/remedies": 8,
     "pipeline/search/sizes": 3,

@@ -85,9 +85,9 @@ class PointStudy:
         self, changes: DesignOptions, workers: Crew, order: Callable[[Candidate], float]
     ) -> Solved | None:
         """First draft that passes with some options of the task changed; see `passing_draft`."""
-        own = replace(self, task=self.task.relaxed(changes))
-        screened = candidates(own.task, own.folder, own.file, SILENT)
-        return passing_draft(own, screened, workers, order)
+        relaxed = replace(self, task=self.task.relaxed(changes))
+        screened = candidates(relaxed.task, relaxed.folder, relaxed.file, SILENT)
+        return passing_draft(relaxed, screened, workers, order)
 
     def _judged(
         self, design: Machinery, smoothing: str, record: Callable[[Judge], R]

@@ -60,9 +60,9 @@ def _changed(before: Judgement, after: Judgement) -> list[str]:
 
 def _figures(judgement: Judgement) -> tuple[tuple[str, str, float | None], ...]:
     """Figures with label and unit."""
-    known, contour = headline(judgement.solved), judgement.solved.contour
+    figures, contour = headline(judgement.solved), judgement.solved.contour
     return (
-        ("ripple", "N m", known["torque_std_after_Nm"]),
-        ("p0", "MPa", known["p0_max_MPa"]),
+        ("ripple", "N m", figures["torque_std_after_Nm"]),
+        ("p0", "MPa", figures["p0_max_MPa"]),
         ("cam radius", "mm", in_unit(contour.radius_max().value, "mm")),
     )
