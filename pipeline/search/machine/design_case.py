@@ -440,7 +440,7 @@ card = @card@
 length = @length@
 diameter = @diameter@
 wall = @wall@
-clearance = "0.03 mm"
+clearance = @clearance@ # H7/f7, mean
 housing_resistance = "1 K/W"
 wear_rate = "3e-8 mm^3/N/m"
 source = @source@
@@ -463,7 +463,7 @@ def _follower(design: Machinery) -> str:
     )  # fmt: skip
     bush = filled(
         _BUSH, card=_BUSH_CARD, length=_mm(frame.bush_length),
-        diameter=stem, wall=_mm(frame.bush_wall),
+        diameter=stem, wall=_mm(frame.bush_wall), clearance=_mm(frame.bush_clearance),
         source=_assumed(f"size, clearance, housing, wear; card {_BUSH_CARD}"),
     )  # fmt: skip
     return text + "".join(f"\n[guides.{side}]\n{bush}" for side in "ab") + _MATERIALS

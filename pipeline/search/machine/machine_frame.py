@@ -16,9 +16,11 @@ STEMS = (8, 10, 12, 14, 16, 20, 25, 30, 35, 40)  # mm, of wrapped bushes of ISO 
 MODULES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)  # mm, ISO 54, row I
 STEEL = 7850.0  # kg/m3
 MEAN_BUSH = 1.5  # length over diameter
+_CLEARANCES = (0.0101, 30e-6), (0.0181, 35e-6), (0.0301, 40e-6), (0.0501, 50e-6)
+"""Diameter of the stem, m, below which a mean clearance of H7/f7 holds, m."""
 _KEY_STRESS = 0.45 * 370e6 * 0.6  # Pa: 0.9 R_e of C45, halved by reversals, 60 % used
 _SHAFT_STRESS = 40e6  # Pa: bending of C45 at a press fit, with safety 1.5 and scatter
-INTERFERENCE = 1.0 / 2500.0, 1.0 / 1300.0
+INTERFERENCE = 1.0 / 2500.0, 1.0 / 1400.0
 """Least and greatest interference over the diameter of a shaft that is ground to its bore."""
 _SHRINK = 33e6 * 0.12  # Pa: pressure of the least interference times friction, hub of 1.8 bores
 _TOOTH = 12e6  # Pa: T / (m^3 z b/m) of case-hardened teeth at half of their strength
@@ -64,6 +66,11 @@ class MachineFrame:
     def bush_wall(self) -> float:
         """Wall of a wrapped bush, ISO 3547."""
         return 1e-3 if self.stem < 0.019 else 1.5e-3 if self.stem < 0.029 else 2e-3
+
+    @property
+    def bush_clearance(self) -> float:
+        """Mean clearance of a stem f7 in a bore H7 of ISO 286, to 5 um."""
+        return next(gap for most, gap in _CLEARANCES if self.stem < most)
 
     @property
     def cheek_width(self) -> float:
