@@ -151,7 +151,7 @@
       `    # in the run ${digits(own, 8)} ${factor.unit}\n`));
     return [`schema_version = 1\nname = "changes"\ncase = ${text(`${home}/case.toml`)}\ndepth = "preview"\n` +
       (data.lift === "run" ? `cam = "base"    # the lift as it was ground; without this line, one of its own\n` : "") +
-      `${keys.join("")}\n[sampling]\nmethod = "list"\n`, "camwright study changes.toml --out changes"];
+      `${keys.join("")}\n[sampling]\nmethod = "list"\n`, "camwright study run changes.toml --out changes"];
   }
 
   for (const field of fields) {

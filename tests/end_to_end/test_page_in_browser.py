@@ -275,7 +275,7 @@ def test_the_changes_of_the_live_preview_are_a_study(desktop: Tab, tmp_path: Pat
     page.keyboard.press("Enter")
     toml, command = page.locator("#live-toml pre").all_text_contents()
     page.locator("#live-reset").click()
-    assert command == "camwright study changes.toml --out changes"
+    assert command == "camwright study run changes.toml --out changes"
     study = tomllib.loads(toml)
     assert study["case"] == "run/case.toml"
     assert [each["key"] for each in study["factor"]] == ["spring.preload"]

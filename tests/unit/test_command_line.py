@@ -15,12 +15,13 @@ from typing import Annotated, Any, NotRequired, TypedDict
 import pytest
 from command_lines import ran
 
+from camwright import reports
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.renamed_keys import renamed_names
 from camwright.pipeline.cli import run_line
 from camwright.pipeline.commands import arguments, completion, terminal
 from camwright.pipeline.commands.arguments import Words, arguments_of, read_arguments
-from camwright.pipeline.commands.command_tree import GROUPS, TREE, tree_text
+from camwright.pipeline.commands.command_tree import GROUPS, TREE, split_path, tree_text
 
 Run = Callable[..., tuple[int, str, str]]
 ROOT = Path(__file__).parents[2]
@@ -72,6 +73,22 @@ def test_every_help_has_purpose_options_and_an_example_that_is_read(path: str) -
     assert example.startswith(f"Example: camwright {path} ")
     words = shlex.split(example.removeprefix(f"Example: camwright {path} "))
     read_arguments(TREE[path].command, words)
+
+
+def test_the_pages_print_commands_that_the_program_knows() -> None:
+    """In sentences the words of a command; in quotes a whole line, which is read as typed."""
+    folder = Path(reports.__file__).parent
+    files = [file for kind in ("py", "js", "html") for file in folder.rglob(f"*.{kind}")]
+    printed = "\n".join(file.read_text(encoding="utf-8") for file in files)
+    named = re.findall(r"\bcamwright ([a-z]+(?: [a-z]+)?)", printed)
+    assert named
+    for words in named:
+        split_path(words.split())
+    lines = re.findall(r"\"camwright ([^\"]+)\"", printed)
+    assert lines
+    for line in lines:
+        path, texts = split_path(line.split())
+        read_arguments(TREE[path].command, texts)
 
 
 def test_an_option_is_the_same_everywhere() -> None:
