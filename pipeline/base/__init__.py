@@ -30,6 +30,7 @@ In the order of use:
 | `worker_processes` | processes with one BLAS thread and a safe import path    |                  |
 | `verdict`          | meaning of status, utilisation, verdict, governing       | utilisation      |
 | `crossing`         | least value that passes, between one that fails and more |                  |
+| `rounding`         | numbers of few significant digits, rounded up or down    |                  |
 | `formula`          | formula texts of checks: read, evaluated, written        | SI               |
 | `levers`           | levers of a check: keys, direction, range                | factor           |
 | `progress`         | progress of a run on the terminal                        | s                |

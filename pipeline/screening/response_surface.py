@@ -12,6 +12,7 @@ from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.rounding import to_digits
 
 DEGREE = 4
 """Greatest total degree of a polynomial."""
@@ -19,6 +20,7 @@ MARGIN = 1.25
 """Stated error over the greatest one at the designs held out."""
 LEAST_ERROR = 1e-6
 """Least stated error, of the greatest value."""
+_ERROR_DIGITS = 2
 _NO_SLOPE = 1e-9  # spread of the values, of the greatest, below which they are constant
 
 
@@ -78,8 +80,8 @@ class Surface:
     share: bool
 
     def with_error(self, error: float) -> Surface:
-        """With another error, to two digits."""
-        return replace(self, error=two_digits_up(error))
+        """With another error, rounded up to two digits."""
+        return replace(self, error=to_digits(error, _ERROR_DIGITS))
 
     def times(self, factor: float) -> Surface:
         """Of the values times a factor > 0, such as that of a unit."""
@@ -88,7 +90,7 @@ class Surface:
             coefficients = coefficients + np.log(factor) * (np.arange(coefficients.size) == 0)
         else:
             coefficients = coefficients * factor ** (2.0 if self.scale == "square" else 1.0)
-        error = self.error if self.share else two_digits_up(self.error * factor)
+        error = self.error if self.share else to_digits(self.error * factor, _ERROR_DIGITS)
         return replace(self, coefficients=rounded(coefficients), error=error)
 
     def __call__(self, places: Array, exponents: NDArray[np.intp]) -> Array:
@@ -157,12 +159,6 @@ class SurfaceFit:
 def rounded(coefficients: Array) -> Array:
     """Coefficients to nine digits of the greatest."""
     return np.round(coefficients, 8 - _exponent(float(np.abs(coefficients).max())))
-
-
-def two_digits_up(value: float) -> float:
-    """A number rounded up to two digits."""
-    places = 1 - _exponent(value)
-    return float(round(np.ceil(round(value * 10.0**places, 6)) / 10.0**places, max(places, 0)))
 
 
 def _exponent(value: float) -> int:

@@ -14,7 +14,6 @@ from camwright.pipeline.screening.response_surface import (
     powers,
     settings,
     terms,
-    two_digits_up,
 )
 
 COUNT, HELD = 300, 80
@@ -84,10 +83,7 @@ def test_a_surface_in_another_unit(places: Array, scale: str) -> None:
     assert again.error == (0.01 if scale == "log" else 10.0)
 
 
-def test_an_error_is_rounded_up() -> None:
-    assert [two_digits_up(v) for v in (0.01234, 0.012, 12345.0, 0.0)] == [
-        0.013,
-        0.012,
-        13000.0,
-        0.0,
-    ]
+def test_the_error_of_a_surface_is_rounded_up() -> None:
+    surface = Surface("linear", np.array([3.0]), 0.0, share=False)
+    assert surface.with_error(0.01234).error == 0.013
+    assert surface.with_error(0.012).times(1e6).error == 12000.0

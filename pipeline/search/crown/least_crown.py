@@ -19,6 +19,7 @@ from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.extrema import least_argument
 from camwright.pipeline.base.crossing import first_passing
+from camwright.pipeline.base.rounding import to_digits
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.finite_length.axial_drop import (
@@ -51,8 +52,8 @@ _SECTIONS = 12
 _STRAIGHT_PARTS, _RELIEF_ROWS = (0.4, 0.6, 0.8), 41
 # Share of half the length where a drop without bound is stated.
 _BOUNDED = 0.995
-# Digits of a radius, and of a drop, m: as they are written.
-_RADIUS_DIGITS, _DROP_DECIMALS = 4, 9
+# Digits of a design load; of a radius, and of a drop, m: as they are written.
+_LOAD_DIGITS, _RADIUS_DIGITS, _DROP_DECIMALS = 3, 4, 9
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,7 +180,7 @@ class CrownFamily:
         drop = float(bounded.drop(np.array([end]))[0])
         if self.kind == "circular":
             radius = (end**2 + drop**2) / (2.0 * drop)
-            return CircularCrown(_rounded(radius, np.floor, _RADIUS_DIGITS))
+            return CircularCrown(to_digits(radius, _RADIUS_DIGITS, up=False))
         y = np.linspace(0.0, end, _RELIEF_ROWS)
         if self.reach > end:
             y = np.append(y, self.reach)
@@ -353,7 +354,7 @@ def middle_crown(least: LeastCrown, ratio: float) -> LeastCrown:
     def beyond(load: float) -> float | None:
         return load if family.drop(load) > wanted else None
 
-    load = _rounded(first_passing(beyond, low, (high,), near=_alike) or high, np.ceil)
+    load = to_digits(first_passing(beyond, low, (high,), near=_alike) or high, _LOAD_DIGITS)
     ratios = problem.ratios(family.crown(load))
     if not ratios.max() <= ratio:
         return least
@@ -364,7 +365,10 @@ def middle_crown(least: LeastCrown, ratio: float) -> LeastCrown:
 def _ladder(problem: CrownProblem, family: CrownFamily) -> list[float]:
     """Design loads tried first, N/m."""
     scale = float(problem.states.force[problem.states.worst]) / family.length
-    return [0.0, *(_rounded(scale * 2.0**k, np.ceil) for k in range(_LIGHTEST, _HEAVIEST + 1))]
+    return [
+        0.0,
+        *(to_digits(scale * 2.0**k, _LOAD_DIGITS) for k in range(_LIGHTEST, _HEAVIEST + 1)),
+    ]
 
 
 def _of_family(
@@ -449,7 +453,7 @@ class _CrownSearch:
         within = first_passing(keeps, outside, (within,), near=_alike) or within
         if within < outside:
             return within
-        rounded = _rounded(within, np.ceil)
+        rounded = to_digits(within, _LOAD_DIGITS)
         return rounded if self.at(rounded) <= ratio else within
 
     def _lowest(self) -> float:
@@ -464,10 +468,3 @@ class _CrownSearch:
 def _alike(one: float, other: float) -> bool:
     """Whether two design loads are within `_PRECISION`."""
     return abs(one - other) <= _PRECISION * max(one, other)
-
-
-def _rounded(value: float, direction: Callable[[float], float], digits: int = 3) -> float:
-    """A positive value rounded to some digits, up or down."""
-    power = int(np.floor(np.log10(value))) + 1 - digits
-    scaled = float(direction(value / 10.0**power))
-    return scaled * 10.0**power if power >= 0 else scaled / 10.0**-power

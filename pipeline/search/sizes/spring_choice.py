@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.lift_parts import LiftParts
+from camwright.pipeline.base.rounding import to_digits
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, JUMP_SPEED, SPRING_SURGE
@@ -27,7 +26,6 @@ from camwright.pipeline.search.sizes.spring_size import (
 
 _SPRING_DIGITS = 4
 """Significant digits of a sized rate or preload."""
-_DIGIT_ROUND_OFF = 1e-12  # relative, of a value that has the digits already
 
 
 def conditions_of(case: Case) -> tuple[HoldingCondition, ...]:
@@ -95,16 +93,16 @@ def spring_of(
     if stiff is not None:
         rate, rate_by = stiff.rate, stiff.rate_by
     elif RATE in gaps and design is not None:
-        rate, rate_by = _to_digits(design.rate), "rate of spring.design"
+        rate, rate_by = _nearest(design.rate), "rate of spring.design"
     elif RATE in gaps and PRELOAD not in gaps:
         preload = case.spring.preload
-        rate = _up_to_digits(least_rate(lift, preload, conditions, force))
+        rate = to_digits(least_rate(lift, preload, conditions, force), _SPRING_DIGITS)
         rate_by = "no follower jump over the speed range at the stated preload"
         if rate == 0.0:
-            rate = _to_digits(preload / lift.stroke)
+            rate = _nearest(preload / lift.stroke)
             rate_by = "least energy at full lift; the stated preload alone holds the follower"
     elif RATE in gaps:
-        rate = _to_digits(smallest_spring(lift, conditions, force=force).rate)
+        rate = _nearest(smallest_spring(lift, conditions, force=force).rate)
         rate_by = "least energy of the spring at full lift without follower jump"
     if PRELOAD not in gaps:
         return ChosenSpring(rate, case.spring.preload, rate_by)
@@ -115,30 +113,24 @@ def spring_of(
         preload_by = f"share of {PRELOAD_SHARE:g} of the force at full lift"
         if not needed > 0.0:
             preload_by += "; the rate alone holds the follower"
-        return ChosenSpring(rate, _up_to_digits(spring.preload), rate_by, preload_by)
+        return ChosenSpring(rate, to_digits(spring.preload, _SPRING_DIGITS), rate_by, preload_by)
     preload_by = "no follower jump over the speed range"
-    return ChosenSpring(rate, _up_to_digits(needed), rate_by, preload_by)
+    return ChosenSpring(rate, to_digits(needed, _SPRING_DIGITS), rate_by, preload_by)
 
 
 def more_preload(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
     """Spring with its preload multiplied by `factor` and rounded up; reason in words."""
-    return spring._replace(preload=_up_to_digits(factor * spring.preload), preload_by=reason)
+    preload = to_digits(factor * spring.preload, _SPRING_DIGITS)
+    return spring._replace(preload=preload, preload_by=reason)
 
 
 def stiffer(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
     """Spring with its rate multiplied by `factor` and rounded up; reason in words."""
-    return spring._replace(rate=_up_to_digits(factor * spring.rate), rate_by=reason)
+    rate = to_digits(factor * spring.rate, _SPRING_DIGITS)
+    return spring._replace(rate=rate, rate_by=reason)
 
 
-def _up_to_digits(value: float) -> float:
-    """A rate or preload, >= 0, to four digits, not below it."""
-    if value == 0.0:
-        return 0.0
-    step = 10.0 ** (np.floor(np.log10(value)) - _SPRING_DIGITS + 1)
-    return _to_digits(float(np.ceil(value / step * (1.0 - _DIGIT_ROUND_OFF)) * step))
-
-
-def _to_digits(value: float) -> float:
+def _nearest(value: float) -> float:
     return float(f"{value:.{_SPRING_DIGITS}g}")
 
 
