@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,6 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.length_history import (
     ContactLoads,
-    FactorRange,
     factor_range,
     moment_compliance,
     raised_load,
@@ -36,6 +35,9 @@ _KEYS = (
 )
 _STRAIGHT = ("cam.width", "roller.width", "follower.face.depth")
 _SHAPES = 16
+# Cam angles at which the factors are solved first, and share of the greatest pressure within which
+# others are; angles on either side of them that the vertex of the greatest one reads.
+_FIRST_ANGLES, _NEAR, _BESIDE = 36, 0.05, 2
 
 
 class DesignValues(Protocol):
@@ -52,16 +54,30 @@ class DesignValues(Protocol):
     def numbers(self) -> Numbers: ...
 
 
+class LineFactors(NamedTuple):
+    """Axial pressure factors (m, n) in the middle of the line, and the greatest along it."""
+
+    centre: Array
+    greatest: Array
+
+
 def factors_of(
-    designs: DesignValues, force: Array, radius: Array, rubbing: tuple[Array, Array], shaft: Array
-) -> FactorRange | None:
-    """Axial pressure factors (m, n) of the designs; 1 without contact, NaN for no closed contour.
+    designs: DesignValues,
+    plane: Array,
+    force: Array,
+    radius: Array,
+    rubbing: tuple[Array, Array],
+    shaft: Array,
+) -> LineFactors | None:
+    """Axial pressure factors of the designs; 1 without contact, NaN for no closed contour.
 
     None where the case lacks an end, or the designs have too many shapes of contact, see
-    `has_many_shapes`.
+    `has_many_shapes`. Of a line without crown, whose greatest pressure over the turn counts alone,
+    they are solved at the angles near that one; between others they are linear.
 
     Parameters
     ----------
+    plane : array (m, n)           contact pressure of plane strain, Pa
     force, radius : array (m, n)   normal force, N; relative radius, m
     rubbing : two arrays (m, n)    normal loads of guides A and B, N
     shaft : array (m, n)           slope of the camshaft at the cam, rad, as of `LineTilt`
@@ -74,22 +90,60 @@ def factors_of(
         np.broadcast_to(each, force.shape)
         for each in (tilt.greatest, tilt.forced, _yields(designs), _held_couple(designs, rubbing))
     )
-    one, still = np.ones(force.shape), np.zeros(force.shape)
-    whole = FactorRange(one, one.copy(), one.copy(), still, np.zeros(force.shape, dtype=bool))
-    for number, shape in enumerate(shapes):
-        machine = _of_shape(designs.machine, dict(zip(varied, shape[1:].tolist(), strict=True)))
-        at = (member == number)[:, None] & (force > 0) & np.isfinite(radius)
-        if not at.any():
-            continue
-        held = couple[at] + force[at] * machine.stem_offset
-        raised = raised_load(force[at])
-        turned = greatest[at], forced[at], yields[at]
-        known = ContactLoads(1.0 / radius[at], force[at], *turned, held, raised)
-        mean = machine.limits[END_MEAN_LENGTH]
-        worst = worst_of([factor_range(pair, mean, known) for pair in machine.finite_pairs])
-        for whole_values, values in zip(whole, worst, strict=True):
-            whole_values[at] = values
+    whole = LineFactors(np.ones(force.shape), np.ones(force.shape))
+    contact = (force > 0) & np.isfinite(radius)
+    raised = np.ones(force.shape)
+    if contact.any():
+        raised[contact] = raised_load(force[contact])
+
+    def solve(chosen: NDArray[np.bool_]) -> None:
+        for number, shape in enumerate(shapes):
+            machine = _of_shape(designs.machine, dict(zip(varied, shape[1:].tolist(), strict=True)))
+            at = (member == number)[:, None] & chosen
+            if not at.any():
+                continue
+            held = couple[at] + force[at] * machine.stem_offset
+            turned = greatest[at], forced[at], yields[at]
+            loads = ContactLoads(1.0 / radius[at], force[at], *turned, held, raised[at])
+            mean = machine.limits[END_MEAN_LENGTH]
+            worst = worst_of([factor_range(pair, mean, loads) for pair in machine.finite_pairs])
+            whole.centre[at] = worst.centre
+            whole.greatest[at] = np.maximum(worst.level, worst.tilted)
+
+    if designs.machine.is_crowned:
+        solve(contact)
+        return whole
+    first = np.zeros(force.shape, dtype=bool)
+    first[:, :: max(1, force.shape[1] // _FIRST_ANGLES)] = True
+    solve(first & contact)
+    between, bound = _between(whole.greatest, first, contact)
+    whole.greatest[...] = between
+    pressure = np.where(contact, plane, 0.0)
+    known = np.max(np.where(first, pressure * between, 0.0), axis=1, keepdims=True)
+    near = pressure * bound >= (1.0 - _NEAR) * known
+    steps = range(-_BESIDE, _BESIDE + 1)
+    near = np.any([np.roll(near, step, axis=1) for step in steps], axis=0)
+    solve(near & contact & ~first)
     return whole
+
+
+def _between(
+    factors: Array, first: NDArray[np.bool_], contact: NDArray[np.bool_]
+) -> tuple[Array, Array]:
+    """Factors (m, n) linear between those at the first angles, and their upper bound there.
+
+    The greater of both neighbours; beside one without contact the greatest of the design.
+    """
+    columns, count = np.flatnonzero(first[0]), factors.shape[1]
+    at = np.arange(count)
+    left = np.searchsorted(columns, at, side="right") - 1
+    right = (left + 1) % columns.size
+    share = (at - columns[left]) / ((columns[right] - columns[left] - 1) % count + 1)
+    before, after = factors[:, columns[left]], factors[:, columns[right]]
+    both = contact[:, columns[left]] & contact[:, columns[right]]
+    most = factors[:, columns].max(axis=1, keepdims=True)
+    bound = np.where(both, np.maximum(before, after), most)
+    return before + share * (after - before), bound
 
 
 def has_many_shapes(designs: DesignValues) -> bool:

@@ -11,11 +11,15 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.follower_path import Motion
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
-from camwright.pipeline.cycle.length_history import FactorRange
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
 from camwright.pipeline.follower.follower_forces import REST, LoadEnds, ends_of, share_left
 from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany
-from camwright.pipeline.screening.design_lengths import DesignValues, factors_of, has_many_shapes
+from camwright.pipeline.screening.design_lengths import (
+    DesignValues,
+    LineFactors,
+    factors_of,
+    has_many_shapes,
+)
 
 
 class ScreenedState(NamedTuple):
@@ -167,9 +171,9 @@ class ScreenedCam(LoadedCam):
         return np.sqrt(peak_pressure_square(load, 1.0 / self.block.relative_radius, modulus))
 
     @cached_property
-    def _factors(self) -> FactorRange | None:
-        radius = self.block.relative_radius
-        return factors_of(self.block, self.normal, radius, self.rubbing, self.shaft_tilt)
+    def _factors(self) -> LineFactors | None:
+        loads = self.normal, self.block.relative_radius, self.rubbing, self.shaft_tilt
+        return factors_of(self.block, self.p0_line, *loads)
 
     @property
     def thrown(self) -> tuple[Array, Array]:
@@ -191,7 +195,7 @@ class ScreenedCam(LoadedCam):
         factors = self._factors
         if factors is None:
             return self._unsolved
-        return self.p0_line * np.maximum(factors.level, factors.tilted)
+        return self.p0_line * factors.greatest
 
     @property
     def half_width(self) -> Array:

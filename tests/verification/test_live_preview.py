@@ -15,6 +15,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import live_settings
 from record_validation import schema_errors
 
+from camwright.geometry.extrema import sampled_greatest
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.units import from_unit, in_unit
 from camwright.pipeline.case.case import Case
@@ -23,7 +24,7 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.screening import live_preview
+from camwright.pipeline.screening import design_lengths, live_preview
 from camwright.pipeline.solver import solve
 
 FEW, MANY = 3, 200
@@ -120,6 +121,23 @@ def test_ranges_end_where_the_case_refuses() -> None:
     roller = next(each for each in record["factors"] if each["name"] == "Roller radius")
     assert (roller["low"], roller["high"]) == (1.0, pytest.approx(1.2))
     assert record["refused"] == 0
+
+
+def test_the_greatest_edge_pressure_is_that_of_every_angle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Factors along the line are solved near the greatest pressure alone; it is the same."""
+    case, lift, record = live_settings.fitted("gx120")
+    near = live_preview._in_range(case, lift.values)
+    ends = np.array([(each["low"], each["high"]) for each in record["factors"]])
+    multiples = np.random.default_rng(4).uniform(ends[:, 0], ends[:, 1], (20, len(ends)))
+
+    def greatest() -> np.ndarray:
+        ((rows, designs),) = near.solved(multiples)
+        assert len(rows) == len(multiples)
+        return np.array([sampled_greatest(cam.p0_signed) for cam in designs.cams])
+
+    chosen = greatest()
+    monkeypatch.setattr(design_lengths, "_FIRST_ANGLES", live_preview.POSITIONS)
+    assert chosen == pytest.approx(greatest(), rel=1e-12)
 
 
 def test_a_few_settings_are_within_the_stated_error() -> None:
