@@ -85,11 +85,10 @@ def values(record: Mapping[str, Any], multiples: Sequence[float]) -> dict[str, L
         best, holds, margin = None, True, 0.0
         sign = 1.0 if each["worst"] == "greatest" else -1.0
         for part in each["parts"]:
-            least, error = held.get(part["state"], (1.0, 0.0))
-            if each["rests"] and part["state"] >= 0:
-                holds &= abs(least) > error
-                if least <= 0.0:
-                    continue
+            contacts = [held[state] for state in part["loads"]]
+            holds &= all(abs(least) > error for least, error in contacts)
+            if any(least <= 0.0 for least, _ in contacts):
+                continue
             if part["surface"] is None:
                 holds = False
                 continue

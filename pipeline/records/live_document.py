@@ -45,11 +45,23 @@ class LiveSurface(TypedDict):
 
 
 @form()
+class LiveContact(TypedDict):
+    """Contact in a load case."""
+
+    state: Least0Count
+    """Number of the load case in `states`."""
+    surface: LiveSurface
+    """Least force that holds the follower on the cam, N."""
+
+
+@form()
 class LivePart(TypedDict):
     """Quantity in a load case."""
 
     state: int
-    """Number of the load case in `states`; -1: of none."""
+    """Number of the load case in `states`; -1: of none, or of several together."""
+    loads: list[Least0Count]
+    """Load cases on whose loads it rests: no value where the follower leaves the cam in one."""
     surface: LiveSurface | None
     """Its values; null where too few designs have one."""
 
@@ -66,8 +78,6 @@ class LiveQuantity(TypedDict):
     """Unit of value and limit; - for a pure number."""
     worst: Literal["greatest", "least"]
     """Which value of the load cases counts."""
-    rests: bool
-    """It rests on the loads: none in a load case in which the follower leaves the cam."""
     parts: Annotated[list[LivePart], JsonBound(minItems=1)]
     """Values by load case."""
     limit: LiveSurface | None
@@ -88,8 +98,8 @@ class LiveDocument(TypedDict):
     """Degrees of the Chebyshev polynomials in each term, a number a factor."""
     states: list[str]
     """Load cases, standstill and over-speed."""
-    contact: list[LivePart]
-    """Least force that holds the follower on the cam, N, by load case; below zero it leaves."""
+    contact: list[LiveContact]
+    """Contact by load case; below zero the follower leaves the cam."""
     quantities: list[LiveQuantity]
     """Key figures, then checks by the utilisation in the run."""
     left_out: dict[str, str]

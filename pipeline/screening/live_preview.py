@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypeVar
 
@@ -20,7 +20,7 @@ from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.base.quantities import In
-from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import in_order
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import quantity_of, value_of
@@ -30,6 +30,7 @@ from camwright.pipeline.case.load_case_torque import has_torque
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.records.live_document import (
+    LiveContact,
     LiveDocument,
     LiveFactor,
     LivePart,
@@ -64,7 +65,7 @@ SETTINGS, HELD_OUT = 3.5, 120
 POSITIONS = 180
 """Cam angles of the loads."""
 WORST_ERROR = 0.1
-"""Error of a check, as a share of demand or limit, beyond which it is not followed."""
+"""Error of a check or its limit, as a share of demand or limit, beyond which it is left out."""
 _SAMPLING_SEED = 7
 _DESIGNS_A_BLOCK = 250  # designs solved at once
 _RANGES = {"preload": 1.3, "rate": 1.3, "prime": 1.15, "roller": 1.2, "speed": 1.25, "stroke": 1.2}
@@ -90,9 +91,17 @@ class _Factor(NamedTuple):
     def is_stroke(self) -> bool:
         return self.kind == "stroke"
 
+    @property
+    def is_speed(self) -> bool:
+        return self.kind == "speed"
+
     def drawn_in(self, below: float, above: float) -> _Factor:
         """With shares of its range below and above the value of the run."""
         return self._replace(low=self.low**below, high=self.high**above)
+
+    def of_less_speed(self) -> _Factor:
+        """With a narrower range of the speed; any other number as it is."""
+        return self.drawn_in(_SHRINK, _SHRINK) if self.is_speed else self
 
 
 def _factors(case: Case) -> Iterator[_Factor]:
@@ -137,7 +146,7 @@ class _Neighbours:
     case : Case             with the cam of the run
     lift : array (N,)       of the run, m
     factors : tuple
-    torques : mapping       engine torque by number of the load case
+    torques : mapping       engine torque by number of the load case; none bears on the contact
     """
 
     case: Case
@@ -145,19 +154,29 @@ class _Neighbours:
     factors: tuple[_Factor, ...]
     torques: Mapping[int, TorqueOfSpeed]
 
-    @classmethod
-    def of(cls, case: Case, lift: Array, factors: Sequence[_Factor]) -> _Neighbours:
-        speed = next((each for each in factors if each.kind == "speed"), None)
+    def with_torques(self) -> _Neighbours:
+        """With their engine torques, in the widest range of speeds at which all can be solved."""
+        near = self
+        for _ in range(_TRIES):
+            try:
+                return replace(near, torques=near._solved_torques())
+            except CamError:
+                near = replace(near, factors=tuple(each.of_less_speed() for each in near.factors))
+        near = replace(near, factors=tuple(each for each in self.factors if not each.is_speed))
+        return replace(near, torques=near._solved_torques())
+
+    def _solved_torques(self) -> dict[int, TorqueOfSpeed]:
+        speed = next((each for each in self.factors if each.is_speed), None)
         torques = {}
-        for k, state in enumerate(case.load_cases):
-            if not (case.balances and has_torque(case, state)):
+        for k, state in enumerate(self.case.load_cases):
+            if not (self.case.balances and has_torque(self.case, state)):
                 continue
             stated = None if speed is None else speed.values.get(f"load_case[{k}].speed")
             wanted = None
             if speed is not None and stated is not None:
                 wanted = stated * np.linspace(speed.low, speed.high, _DESIGNS_A_BLOCK)
-            torques[k] = TorqueOfSpeed.of(case, k, wanted)
-        return cls(case, lift, tuple(factors), torques)
+            torques[k] = TorqueOfSpeed.of(self.case, k, wanted)
+        return torques
 
     def multiples(self, places: Array) -> Array:
         """Factors (m, d) on the values of the run at places (m, d) in [-1, 1]."""
@@ -244,10 +263,10 @@ class _Neighbours:
 
 
 def _in_range(case: Case, lift: Array) -> _Neighbours:
-    """Neighbours in the widest ranges whose ends and corners are accepted."""
+    """Neighbours in the widest ranges whose ends and corners are accepted, with their torques."""
     factors = list(_factors(case))
     steps = (0.25, 0.5, 0.75, 1.0)
-    near = _Neighbours.of(case, lift, factors)
+    near = _Neighbours(case, lift, tuple(factors), {})
     trials: list[list[float]] = []
     for k, each in enumerate(factors):
         for end in (each.low, each.high):
@@ -257,7 +276,7 @@ def _in_range(case: Case, lift: Array) -> _Neighbours:
                 trials.append(list(row))
     good = near.accepted(np.array([*trials, [1.0] * len(factors)]))
     if not good[-1]:
-        return _Neighbours.of(case, lift, ())
+        return replace(near, factors=())
     reached = np.minimum.accumulate(good[:-1].reshape(len(factors), 2, len(steps)), axis=2)
     shares = np.concatenate([[0.0], steps])[reached.sum(axis=2)]
     factors = [each.drawn_in(*ends) for each, ends in zip(factors, shares, strict=True)]
@@ -266,15 +285,19 @@ def _in_range(case: Case, lift: Array) -> _Neighbours:
         near = replace(near, factors=tuple(factors))
         corners = np.array(list(itertools.product((-1.0, 1.0), repeat=len(factors))))
         if near.accepted(near.multiples(corners)).all():
-            return _Neighbours.of(case, lift, factors)
+            return near.with_torques()
         factors = [each.drawn_in(_SHRINK, _SHRINK) for each in factors]
-    return _Neighbours.of(case, lift, ())
+    return replace(near, factors=())
 
 
 class _Figures(NamedTuple):
-    """Values of designs (m,) by load case, -1: of none; limits (m,), NaN without."""
+    """Values of designs (m,) by load case, -1: of none or of several; limits (m,).
+
+    loads: numbers of the load cases on whose loads the values rest, by load case as the values
+    """
 
     parts: Mapping[int, Array]
+    loads: Mapping[int, Sequence[int]]
     limit: Array | None
 
 
@@ -294,8 +317,7 @@ def _check_figures(screened: Screened) -> Measured:
         states = range(len(designs.cams)) if of_turns else (-1,)
         parts, limits = {}, []
         for state in states:
-            chosen = [k == state for k in range(len(designs.cams))]
-            part = designs if state < 0 else designs.in_load_cases(chosen)
+            part = designs if state < 0 else _in_load_case(designs, state)
             judged = screened.judged(part)
             if judged is None or judged[1] is None:
                 return None
@@ -308,9 +330,22 @@ def _check_figures(screened: Screened) -> Measured:
             limits.append(limit)
         if any(not np.array_equal(each, limits[0]) for each in limits):
             return None
-        return _Figures(parts, limits[0])
+        loads: dict[int, Sequence[int]] = {k: (k,) if declared.rests_on else () for k in parts}
+        if declared.rests_on and not of_turns:
+            loads[-1] = _judged_alone(screened, designs)
+        return _Figures(parts, loads, limits[0])
 
     return figures
+
+
+def _in_load_case(designs: Designs, number: int) -> Designs:
+    return designs.in_load_cases([k == number for k in range(len(designs.cams))])
+
+
+def _judged_alone(screened: Screened, designs: Designs) -> list[int]:
+    """Numbers of the load cases that a check over several judges, such as those with a duty."""
+    alone = [screened.judged(_in_load_case(designs, k)) for k in range(len(designs.cams))]
+    return [k for k, each in enumerate(alone) if each and not np.isnan(each[0]).all()]
 
 
 class _Headline(NamedTuple):
@@ -329,7 +364,8 @@ class _Headline(NamedTuple):
         cams = designs.cams if self.of_turns else designs.cams[:1]
         values = {k: self.value(designs, cam) for k, cam in enumerate(cams)}
         parts = {k if self.of_turns else -1: v for k, v in values.items() if v is not None}
-        return _Figures(parts, None) if parts else None
+        loads = {k: (k,) if self.rests else () for k in parts}
+        return _Figures(parts, loads, None) if parts else None
 
 
 def _ripple(designs: Designs, cam: ScreenedCam) -> Array | None:
@@ -370,18 +406,21 @@ class _Sample:
     """Values of every quantity (m,) at the settings of a fit, NaN where a design is refused."""
 
     count: int
-    lost: dict[int, NDArray[np.bool_]]
-    held: dict[int, Array]
     parts: dict[str, dict[int, Array]]
-    limits: dict[str, Array]
-    unknown: set[str]
+    lost: dict[int, NDArray[np.bool_]] = field(default_factory=dict)
+    held: dict[int, Array] = field(default_factory=dict)
+    loads: dict[str, dict[int, set[int]]] = field(default_factory=dict)
+    limits: dict[str, Array] = field(default_factory=dict)
+    unknown: set[str] = field(default_factory=set)
+    states: Sequence[str] = ()
     follower: str = ""
 
     @classmethod
     def of(cls, near: _Neighbours, multiples: Array, measures: Mapping[str, Measured]) -> _Sample:
         """Designs of factors (m, d), solved block by block."""
-        sample = cls(len(multiples), {}, {}, {name: {} for name in measures}, {}, set())
+        sample = cls(len(multiples), {name: {} for name in measures})
         for rows, designs in near.solved(multiples):
+            sample.states = sample.states or _state_names(designs)
             sample.follower = designs.machine.follower.word
             for k, cam in enumerate(designs.cams):
                 sample._enter(sample.held, k, rows, sampled_least(cam.required))
@@ -391,8 +430,10 @@ class _Sample:
                 if figures is None:
                     sample.unknown.add(name)
                     continue
+                loads = sample.loads.setdefault(name, {})
                 for state, values in figures.parts.items():
                     sample._enter(sample.parts[name], state, rows, values)
+                    loads.setdefault(state, set()).update(figures.loads[state])
                 if figures.limit is not None:
                     sample._enter(sample.limits, name, rows, figures.limit)
         return sample
@@ -401,6 +442,11 @@ class _Sample:
         self, into: dict[Key, Array], key: Key, rows: NDArray[np.intp], values: Array
     ) -> None:
         into.setdefault(key, np.full(self.count, np.nan))[rows] = values
+
+    def valued(self, name: str, state: int) -> NDArray[np.bool_]:
+        """Designs (m,) with a value in a load case: the follower stays on the cam for it."""
+        lost = [self.lost[k] for k in self.loads[name][state]]
+        return np.isfinite(self.parts[name][state]) & ~np.any([np.zeros(self.count), *lost], axis=0)
 
 
 def live_record(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | None:
@@ -414,12 +460,16 @@ def live_record(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument 
 
     Returns
     -------
-    LiveDocument   None where no design about that of the run can be solved
+    LiveDocument   None where no design about that of the run can be solved, or a check of one
     """
     try:
-        near = _in_range(case, lift)
+        return _fitted(case, lift, checks)
     except CamError:
         return None
+
+
+def _fitted(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | None:
+    near = _in_range(case, lift)
     if not near.factors:
         return None
     count = int(SETTINGS * len(powers(len(near.factors))))
@@ -447,9 +497,9 @@ def live_record(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument 
         "lift": "run" if case.lift is None else "case",
         "factors": [_factor_record(each) for each in near.factors],
         "powers": fit.exponents.tolist(),
-        "states": _state_names(near),
+        "states": list(sample.states),
         "contact": [
-            {"state": k, "surface": _surface_record(each, 1.0)}
+            LiveContact(state=k, surface=_surface_record(each, 1.0))
             for k, each in contact.items()
             if each is not None
         ],
@@ -465,6 +515,7 @@ SCREENED_BY_ID: Mapping[str, Screened] = {each.check: each for each in SCREENED}
 _DEEPER = "the screening does not know it"
 _BOUND = "the screening knows a bound of it alone"
 _UNEVEN = "it bends too much over the ranges"
+_UNEVEN_LIMIT = "its limit bends too much over the ranges"
 
 
 def greatest(final: TrialRecord) -> list[str]:
@@ -481,16 +532,16 @@ def greatest(final: TrialRecord) -> list[str]:
 def _key_figure(figure: _Headline, sample: _Sample, fit: SurfaceFit) -> LiveQuantity | None:
     if figure.id in sample.unknown:
         return None
-    scale = in_unit(1.0, figure.unit)
     values = sample.parts[figure.id]
     rank = values if figure.worst == "greatest" else {k: -v for k, v in values.items()}
-    away = _Away(scale, figure.rests, _DEVIATION[figure.deviation], np.zeros(sample.count))
-    parts = _parts(sample, fit, values, rank, away)
+    deviation, limit = _DEVIATION[figure.deviation], np.zeros(sample.count)
+    away = _Away(in_unit(1.0, figure.unit), deviation, limit)
+    parts = _parts(figure.id, sample, fit, rank, away)
     if not parts:
         return None
     return {
         "id": figure.id, "title": figure.title, "unit": figure.unit, "worst": figure.worst,
-        "rests": figure.rests, "parts": parts, "limit": None,
+        "parts": parts, "limit": None,
     }  # fmt: skip
 
 
@@ -509,80 +560,87 @@ def _check(name: str, sample: _Sample, fit: SurfaceFit) -> LiveQuantity | str:
     bound = fit.surface(limit)
     if bound is None:
         return _BOUND
-    away = _Away(scale, bool(declared.rests_on), screened.deviation, limit)
-    parts = _parts(sample, fit, demands, rank, away)
+    away = _Away(scale, screened.deviation, limit)
+    parts = _parts(name, sample, fit, rank, away)
     if not parts:
         return _BOUND
-    if any(away.beyond(part, demands[part["state"]]) for part in parts):
-        return _UNEVEN
+    allowed = _surface_record(bound, scale)
+    for part in parts:
+        demand, valued = demands[part["state"]], sample.valued(name, part["state"])
+        if part["surface"] is not None and away.beyond(part["surface"], demand, demand, valued):
+            return _UNEVEN
+        if away.beyond(allowed, limit, demand, valued):
+            return _UNEVEN_LIMIT
     return {
         "id": name,
         "title": declared.title.format(follower=sample.follower),
         "unit": declared.unit or "-",
         "worst": "greatest" if at_most else "least",
-        "rests": bool(declared.rests_on),
         "parts": parts,
-        "limit": _surface_record(bound, scale),
+        "limit": allowed,
     }
 
 
 class _Away(NamedTuple):
     """Unit of a quantity, and its deviation from the preview.
 
-    scale: unit of the record over that of SI; rests: on the loads; deviation: of the screening from
-    the preview, over the greater of value and limit; limit (m,), SI
+    scale: unit of the record over that of SI; deviation: of the screening from the preview, over
+    the greater of value and limit; limit (m,), SI
     """
 
     scale: float
-    rests: bool
     deviation: float
     limit: Array
 
-    def record(self, surface: Surface | None, values: Array) -> LiveSurface | None:
-        """Surface of values (m,) with its error from the preview; None without a finite one."""
+    def record(
+        self, surface: Surface | None, values: Array, valued: NDArray[np.bool_]
+    ) -> LiveSurface | None:
+        """Surface of values (m,) with its error from the preview; None without a finite one.
+
+        Of the designs (m,) that have a value, to which the surface is fitted.
+        """
         if surface is None:
             return None
-        size = np.abs(values)
-        more = self.deviation * np.fmax(size, np.abs(self.limit))
+        size = np.abs(values[valued])
+        more = self.deviation * np.fmax(size, np.abs(self.limit[valued]))
         more = more / size if surface.share else more  # a share is of values above zero
-        error = surface.error + float(np.nanmax(more))
+        error = surface.error + float(more.max())
         if not np.isfinite(error):
             return None
         return _surface_record(surface.with_error(error), self.scale)
 
-    def beyond(self, part: LivePart, values: Array) -> bool:
-        """Whether a part deviates from its values (m,), SI, by more than `WORST_ERROR`."""
-        surface = part["surface"]
-        if surface is None:
-            return False
-        size = np.abs(values)
-        away = surface["error"] * size if surface["share"] else surface["error"] / self.scale
-        return not float(np.nanmax(away / np.fmax(size, np.abs(self.limit)))) <= WORST_ERROR
+    def beyond(
+        self, surface: LiveSurface, values: Array, demand: Array, valued: NDArray[np.bool_]
+    ) -> bool:
+        """Whether a surface of demands or limits (m,), SI, errs by more than `WORST_ERROR`."""
+        size = np.fmax(np.abs(demand), np.abs(self.limit))[valued]
+        error = surface["error"]
+        away = error * np.abs(values[valued]) if surface["share"] else error / self.scale
+        return not float(np.nanmax(away / size)) <= WORST_ERROR
 
 
 def _parts(
-    sample: _Sample,
-    fit: SurfaceFit,
-    known: Mapping[int, Array],
-    rank: Mapping[int, Array],
-    away: _Away,
+    name: str, sample: _Sample, fit: SurfaceFit, rank: Mapping[int, Array], away: _Away
 ) -> list[LivePart]:
-    """Values by load case, those that govern nowhere left out.
+    """Values of a quantity by load case, those that govern nowhere left out.
 
     Parameters
     ----------
-    known, rank : mapping   by load case: values (m,), and what is greatest where one governs
+    rank : mapping   by load case: what is greatest (m,) where one governs
     """
-    everywhere = np.ones(sample.count, dtype=bool)
-    there = {k: ~sample.lost[k] if away.rests and k >= 0 else everywhere for k in known}
+    valued = {k: sample.valued(name, k) for k in rank}
     ranked = {
-        k: np.where(there[k] & ~np.isnan(rank[k]), np.minimum(rank[k], _FAR), -np.inf)
-        for k in known
+        k: np.where(valued[k] & ~np.isnan(each), np.minimum(each, _FAR), -np.inf)
+        for k, each in rank.items()
     }
     most = np.max(list(ranked.values()), axis=0)
     return [
-        {"state": k, "surface": away.record(fit.surface(values, there[k]), values)}
-        for k, values in known.items()
+        {
+            "state": k,
+            "loads": sorted(sample.loads[name][k]),
+            "surface": away.record(fit.surface(values, valued[k]), values, valued[k]),
+        }
+        for k, values in sample.parts[name].items()
         if (np.isfinite(most) & (ranked[k] >= most - (1.0 - _NEVER) * np.abs(most))).any()
     ]
 
@@ -610,14 +668,15 @@ def _factor_record(factor: _Factor) -> LiveFactor:
     }
 
 
-def _state_names(near: _Neighbours) -> list[str]:
-    """Names of the load cases; standstill and over-speed at each preload follow."""
-    designs = near.at(np.ones((1, len(near.factors))))
-    names = [each.name for each in near.case.load_cases]
-    for state in designs.states[len(names) :]:
+def _state_names(designs: Designs) -> list[str]:
+    """Names of the load cases; standstill and over-speed at the preload of each follow."""
+    stated = [each.name for each in designs.case.load_cases]
+    names = list(stated)
+    for state in designs.states[len(stated) :]:
         word = "over-speed" if float(state.speed[0, 0]) > 0.0 else "standstill"
-        preload = shown(float(state.preload[0, 0]), "N")
-        names.append(f"{word}, preload {preload}" if word in names else word)
+        alike = (np.array_equal(each.preload, state.preload) for each in designs.states)
+        first = stated[next(k for k, equal in enumerate(alike) if equal)]
+        names.append(f"{word}, preload of {first}" if word in names else word)
     return names
 
 
@@ -639,24 +698,36 @@ def write_live(folder: Path, record: LiveDocument | None) -> None:
         write_atomic(folder / LIVE, f"{json_text(record)}\n")
 
 
-def _corner_values(record: Any) -> Iterator[Array]:
-    """Values of every surface at the corners of the ranges, on its scale."""
-    exponents = np.array(record["powers"])
-    axes = exponents.shape[1]
-    places = np.array([*itertools.product((-1.0, 1.0), repeat=axes), (0.0,) * axes])
-    at_places = terms(places, exponents)
+def _surfaces(record: Any) -> list[Surface]:
+    """Every surface of a record: of the contact, of the quantities, of the limits."""
     parts = [*record["contact"], *(p for each in record["quantities"] for p in each["parts"])]
-    surfaces = [each["surface"] for each in parts if each["surface"] is not None]
-    for surface in (*surfaces, *(each["limit"] for each in record["quantities"] if each["limit"])):
-        coefficients = np.array(surface["coefficients"], dtype=float)
-        yield coefficients if coefficients.size == 1 else at_places @ coefficients
+    stated = [each["surface"] for each in parts if each["surface"] is not None]
+    stated += [each["limit"] for each in record["quantities"] if each["limit"] is not None]
+    return [
+        Surface(
+            each["scale"],
+            np.array(each["coefficients"], dtype=float),
+            float(each["error"]),
+            share=bool(each["share"]),
+        )
+        for each in stated
+    ]
+
+
+def _alike(one: Surface, other: Surface, at_places: Array) -> bool:
+    """Whether two surfaces have the same values on their scale, of terms (m, p) at places."""
+    if one.coefficients.shape != other.coefficients.shape:
+        return False
+    values = one.on_scale(at_places)
+    away = np.abs(other.on_scale(at_places) - values).max()
+    return bool(away <= SAME * np.abs(values).max())
 
 
 def live_differences(folder: Path) -> Iterator[str]:
     """Differences of ``8_live.json`` of a run from one fitted again, in words.
 
-    Which checks are followed is that of the file. Surfaces are compared by their values at the ends
-    of the ranges and in the middle.
+    Which checks are followed is that of the file. Surfaces are compared by their values at three
+    times as many settings of the ranges as they have terms: equal there, they are equal everywhere.
 
     Raises
     ------
@@ -667,14 +738,21 @@ def live_differences(folder: Path) -> Iterator[str]:
     case, contour = drawn_cam(folder)
     try:
         names = [each["id"] for each in stored["quantities"] if each["limit"] is not None]
-        again = live_record(case, contour.pitch.lift.values, [*names, *stored["left_out"]])
-        if again is None:
-            yield "is none of the run"
-            return
-        yield from record_differences(stored, again, left_out=("coefficients",))
-        ours, theirs = (list(_corner_values(each)) for each in (again, stored))
-        pairs = zip(ours, theirs, strict=True)
-        if any(np.abs(one - two).max() > SAME * np.abs(one).max() for one, two in pairs):
-            yield "a surface differs"
+        theirs, left_out = _surfaces(stored), list(stored["left_out"])
+        if not all(isinstance(each, str) for each in (*names, *left_out)):
+            raise TypeError
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         yield f"cannot be read ({type(error).__name__})"
+        return
+    again = live_record(case, contour.pitch.lift.values, [*names, *left_out])
+    if again is None:
+        yield "is none of the run"
+        return
+    yield from record_differences(stored, again, left_out=("coefficients",))
+    exponents, ours = np.array(again["powers"]), _surfaces(again)
+    count, axes = exponents.shape
+    at_places = terms(settings(3 * count, axes, count, _SAMPLING_SEED), exponents)
+    if len(ours) != len(theirs) or not all(
+        _alike(one, other, at_places) for one, other in zip(ours, theirs, strict=True)
+    ):
+        yield "a surface differs"

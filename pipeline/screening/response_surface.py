@@ -93,11 +93,16 @@ class Surface:
         error = self.error if self.share else to_digits(self.error * factor, _ERROR_DIGITS)
         return replace(self, coefficients=rounded(coefficients), error=error)
 
-    def __call__(self, places: Array, exponents: NDArray[np.intp]) -> Array:
-        """Values (m,) at places (m, d)."""
+    def on_scale(self, at_places: Array) -> Array:
+        """Values (m,) on its scale, of terms (m, p) at places."""
         if self.coefficients.size == 1:
-            return np.full(len(places), self.coefficients[0])
-        return SCALES[self.scale].back(terms(places, exponents) @ self.coefficients)
+            return np.full(len(at_places), self.coefficients[0])
+        return np.asarray(at_places @ self.coefficients)
+
+    def __call__(self, at_places: Array) -> Array:
+        """Values (m,) of terms (m, p) at places."""
+        values = self.on_scale(at_places)
+        return values if self.coefficients.size == 1 else SCALES[self.scale].back(values)
 
 
 class SurfaceFit:
@@ -114,18 +119,18 @@ class SurfaceFit:
         self._terms = terms(places, self.exponents)
         self._held = np.arange(len(places)) >= len(places) - held_out
 
-    def surface(self, values: Array, known: NDArray[np.bool_] | None = None) -> Surface | None:
+    def surface(self, values: Array, valued: NDArray[np.bool_] | None = None) -> Surface | None:
         """Surface of values (m,) on the scale of the least error.
 
         Parameters
         ----------
-        known : array (m,)   designs that have a value; None: all
+        valued : array (m,)   designs that have a value; None: all
 
         Returns
         -------
         Surface   None where too few designs have a value
         """
-        there = np.isfinite(values) if known is None else known & np.isfinite(values)
+        there = np.isfinite(values) if valued is None else valued & np.isfinite(values)
         fitted, held = there & ~self._held, there & self._held
         if fitted.sum() < 2 * len(self.exponents) or held.sum() < 0.25 * self._held.sum():
             return None
@@ -146,14 +151,12 @@ class SurfaceFit:
         """Rank and surface on a scale; errors below `LEAST_ERROR` rank alike."""
         scale = SCALES[name]
         solved = np.linalg.lstsq(self._terms[fitted], scale.to(values[fitted]))
-        coefficients: Array = np.asarray(solved[0], dtype=float)
-        apart = np.abs(scale.back(self._terms[held] @ coefficients) - values[held])
+        surface = Surface(name, np.asarray(solved[0], dtype=float), 0.0, share=name == "log")
+        apart = np.abs(surface(self._terms[held]) - values[held])
         most = float(np.abs(values[fitted | held]).max())
-        share = name == "log"
-        size = np.abs(values[held]) if share else most
+        size = np.abs(values[held]) if surface.share else most
         worst = max(MARGIN * float((apart / size).max()), LEAST_ERROR)
-        error = worst if share else worst * most
-        return worst, Surface(name, coefficients, error, share)
+        return worst, replace(surface, error=worst if surface.share else worst * most)
 
 
 def rounded(coefficients: Array) -> Array:

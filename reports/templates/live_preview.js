@@ -19,14 +19,14 @@
       for (let k = 2; k <= most; k++) row.push(2 * z * row[k - 1] - row[k - 2]);
       return row;
     });
-    return data.powers.map((degrees) => degrees.reduce((made, k, axis) => made * table[axis][k], 1));
+    return data.powers.map((degrees) => degrees.reduce((product, k, axis) => product * table[axis][k], 1));
   }
 
-  /* Value and error of a surface. */
-  function at(surface, made) {
+  /* Value and error of a surface, of the products of its terms. */
+  function at(surface, products) {
     let value = surface.coefficients[0];
     if (surface.coefficients.length > 1) {
-      value = surface.coefficients.reduce((sum, c, k) => sum + c * made[k], 0);
+      value = surface.coefficients.reduce((sum, c, k) => sum + c * products[k], 0);
       if (surface.scale === "log") value = Math.exp(value);
       if (surface.scale === "square") value = Math.sqrt(Math.max(value, 0));
     }
@@ -34,26 +34,29 @@
   }
 
   /* A quantity at a setting: the worst of its load cases; why it does not hold there. */
-  function quantity(one, made, held) {
-    const sign = one.worst === "greatest" ? 1 : -1, parts = [];
+  function quantity(one, products, contacts) {
+    const sign = one.worst === "greatest" ? 1 : -1, parts = [], lost = new Set();
     let doubt = "";
     for (const part of one.parts) {
       const name = part.state < 0 ? "" : data.states[part.state];
-      const contact = one.rests && part.state >= 0 ? held.get(part.state) : null;
-      if (contact && Math.abs(contact.value) <= contact.error) doubt = `the follower may leave the cam, ${name}`;
-      if (contact && contact.value <= 0) continue;
+      const near = part.loads.filter((state) => Math.abs(contacts.get(state).value) <= contacts.get(state).error);
+      if (near.length) doubt = `the follower may leave the cam, ${data.states[near[0]]}`;
+      const without = part.loads.filter((state) => contacts.get(state).value <= 0);
+      without.forEach((state) => lost.add(data.states[state]));
+      if (without.length) continue;
       if (!part.surface) doubt = `not known, ${name}`;
-      else parts.push({ name, ...at(part.surface, made) });
+      else parts.push({ name, ...at(part.surface, products) });
     }
     parts.sort((a, b) => sign * (b.value - a.value));
     const worst = parts[0];
-    if (!worst) return { doubt: doubt || "the follower leaves the cam in every load case" };
+    if (!worst) return { doubt: doubt || `the follower leaves the cam, ${[...lost].join(", ")}` };
     const error = Math.max(...parts.map((part) => part.error));
     const rival = parts.find((part) => part !== worst && sign * (worst.value - part.value) <= error);
-    const limit = one.limit && at(one.limit, made).value;
-    const used = one.limit === null ? null : sign > 0 ? worst.value / limit :
-      worst.value > 0 ? limit / worst.value : Infinity;
-    return { ...worst, error, limit, used, doubt, rival: rival && rival.name !== worst.name ? rival.name : "" };
+    const limit = one.limit && at(one.limit, products);
+    const used = limit === null ? null : sign > 0 ? worst.value / limit.value :
+      worst.value > 0 ? limit.value / worst.value : Infinity;
+    const atLimit = limit !== null && Math.abs(worst.value - limit.value) <= error + limit.error;
+    return { ...worst, error, atLimit, used, doubt, rival: rival && rival.name !== worst.name ? rival.name : "" };
   }
 
   function all(values) {
@@ -61,9 +64,9 @@
       const low = Math.log(factor.low), high = Math.log(factor.high);
       return (2 * Math.log(values[k] / run) - low - high) / (high - low);
     });
-    const made = terms(places);
-    const held = new Map(data.contact.map((part) => [part.state, at(part.surface, made)]));
-    return { places, held, figures: data.quantities.map((one) => quantity(one, made, held)) };
+    const products = terms(places);
+    const contacts = new Map(data.contact.map((part) => [part.state, at(part.surface, products)]));
+    return { places, contacts, figures: data.quantities.map((one) => quantity(one, products, contacts)) };
   }
 
   /* A value to the digits that its error leaves, and the error to two. */
@@ -98,22 +101,23 @@
     bar.classList.toggle("over", used >= 1.5);
     bar.classList.toggle("beyond", used > 1);
     bar.firstElementChild.style.width = `${Math.min(used / 1.5, 1) * 100}%`;
-    const near = !none && Math.abs(figure.value - figure.limit) <= figure.error;
-    cell(row, "over").textContent = near ? "at the limit within the error" : used > 1 ? "over the limit" : "";
+    cell(row, "over").textContent = !none && figure.atLimit ? "at the limit within the error" : used > 1 ? "over the limit" : "";
   }
 
   function follow() {
-    const { places, held, figures } = all(fields.map((field) => field.value));
+    const { places, contacts, figures } = all(fields.map((field) => field.value));
     const out = fields.filter((field, k) => !(Math.abs(places[k]) <= 1 + 1e-9));
     figures.forEach((figure, k) => shown(rows[k], data.quantities[k], figure, out.length > 0));
-    const lost = data.contact.filter((part) => held.get(part.state).value <= 0)
+    const lost = data.contact.filter((part) => contacts.get(part.state).value <= 0)
       .map((part) => data.states[part.state]);
-    const over = figures.filter((figure) => figure.used > 1 && !figure.doubt).length;
+    const checks = figures.filter((_, k) => data.quantities[k].limit !== null);
+    const valued = checks.filter((check) => check.value !== undefined && !check.doubt);
+    const over = valued.filter((check) => check.used > 1).length, without = checks.length - valued.length;
     const words = out.length ? [`Outside the fitted range, where nothing holds: ${
       out.map((field) => field.factor.name).join(", ")}.`] : [
-      `${over || "None"} of ${figures.filter((figure) => figure.used !== null && figure.used !== undefined).length
-      } followed checks ${over === 1 ? "is" : "are"} over ${over === 1 ? "its" : "their"} limit. Preview, no verdict.`];
-    if (!out.length && lost.length) words.push(`The follower leaves the cam: ${lost.join(", ")}; its figures are those of the other load cases.`);
+      `${over || "None"} of ${valued.length} followed checks ${over === 1 ? "is" : "are"} over ${
+      over === 1 ? "its" : "their"} limit${without ? `, ${without} without a value here` : ""}. Preview, no verdict.`];
+    if (!out.length && lost.length) words.push(`The follower leaves the cam: ${lost.join(", ")}; no figure rests on its loads.`);
     status.textContent = words.join(" ");
     status.classList.toggle("remark", out.length > 0 || lost.length > 0);
     changes.hidden = true;
@@ -144,9 +148,9 @@
 
   /* A study of one design, with the command that runs it. */
   function study() {
-    const moved = fields.filter((field) => field.value !== field.run);
+    const changed = fields.filter((field) => field.value !== field.run);
     const text = (words) => JSON.stringify(words);
-    const keys = moved.flatMap(({ factor, value, run }) => Object.entries(factor.keys).map(([key, own]) =>
+    const keys = changed.flatMap(({ factor, value, run }) => Object.entries(factor.keys).map(([key, own]) =>
       `\n[[factor]]\nkey = ${text(key)}\nlist = [${text(`${digits(own * value / run, 8)} ${factor.unit}`.trim())}]` +
       `    # in the run ${digits(own, 8)} ${factor.unit}\n`));
     return [`schema_version = 1\nname = "changes"\ncase = ${text(`${home}/case.toml`)}\ndepth = "preview"\n` +
@@ -171,14 +175,14 @@
     follow();
   });
   document.getElementById("live-show").addEventListener("click", () => {
-    const [toml, command] = study(), moved = fields.some((field) => field.value !== field.run);
+    const [toml, command] = study(), changed = fields.some((field) => field.value !== field.run);
     changes.hidden = false;
-    changes.querySelector("p").textContent = moved ?
+    changes.querySelector("p").textContent = changed ?
       `Save as changes.toml beside the folder ${home} and run the command there; it needs camwright[study].` : "Nothing is changed.";
     const [block, line] = changes.querySelectorAll("pre");
-    block.textContent = moved ? toml : "";
-    line.textContent = moved ? command : "";
-    block.hidden = line.hidden = !moved;
+    block.textContent = changed ? toml : "";
+    line.textContent = changed ? command : "";
+    block.hidden = line.hidden = !changed;
     changes.focus();
   });
   window.livePreview = { all, names: data.quantities.map((one) => one.id) };

@@ -257,6 +257,12 @@ def test_the_live_preview_says_where_it_does_not_hold(desktop: Tab) -> None:
     entry = page.locator("#live-0-value")
     run = entry.input_value()
     assert "leaves the cam: over-speed" in page.locator(STATUS).text_content()
+    checks = page.locator("#live [data-quantity]:has([data-cell='safety'])")
+    values = checks.locator("[data-cell='value']").all_text_contents()
+    valued = len(values) - values.count("–")
+    words = re.search(r"of (\d+) followed checks[^.]*", page.locator(STATUS).text_content())
+    assert int(words[1]) == valued > 0
+    assert ("without a value" in words[0]) == (valued < len(values))
     entry.fill(str(3.0 * float(run)))
     assert "Outside the fitted range" in page.locator(STATUS).text_content()
     assert set(page.locator("#live [data-cell='value']").all_text_contents()) == {"–"}

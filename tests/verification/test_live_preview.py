@@ -15,6 +15,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import live_settings
 from record_validation import schema_errors
 
+from camwright.geometry.errors import ContactError
 from camwright.geometry.extrema import sampled_greatest
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.units import from_unit, in_unit
@@ -25,9 +26,11 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.screening import design_lengths, live_preview
+from camwright.pipeline.screening.response_surface import Surface, SurfaceFit, settings
 from camwright.pipeline.solver import solve
 
 FEW, MANY = 3, 200
+HELD = 60
 WITHIN, TINY = 0.95, 1e-12
 KEY_FIGURES = {
     "torque_ripple": "torque_std_after_Nm", "contact_force": "normal_force_max_N",
@@ -96,7 +99,15 @@ def test_the_same_run_has_the_same_surfaces(
     live_preview.write_live(tmp_path, record)
     assert list(live_preview.live_differences(tmp_path)) == []
     force = next(each for each in record["quantities"] if each["id"] == "contact_force")
+    first, third = (record["powers"].index([k, 0, 0, 0, 0]) for k in (1, 3))
+
+    def exchanged(one: dict[str, Any]) -> None:
+        """Exchange two terms that are alike at both ends of the range and in the middle."""
+        terms = one["parts"][0]["surface"]["coefficients"]
+        terms[first], terms[third] = terms[third], terms[first]
+
     for change, words in (
+        (exchanged, "a surface differs"),
         (lambda one: one["parts"][0]["surface"]["coefficients"].__setitem__(0, 1.0), "surface"),
         (lambda one: one["parts"][0]["surface"].update(error=0.0), "error"),
     ):
@@ -104,9 +115,81 @@ def test_the_same_run_has_the_same_surfaces(
         change(forged["quantities"][record["quantities"].index(force)])
         live_preview.write_live(tmp_path, forged)
         assert any(words in each for each in live_preview.live_differences(tmp_path))
+    forged["left_out"] = [1]
+    live_preview.write_live(tmp_path, forged)
+    assert list(live_preview.live_differences(tmp_path)) == ["cannot be read (TypeError)"]
+    forged = deepcopy(record)
     forged["factors"][0]["high"] = 9.0
     live_preview.write_live(tmp_path, forged)
     assert any("factors[0].high" in each for each in live_preview.live_differences(tmp_path))
+
+
+def test_without_surfaces_a_run_has_no_live_preview(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A check that cannot be measured ends no run."""
+    case, lift, record = live_settings.fitted("gx120")
+
+    def refused(*_: object) -> None:
+        raise ContactError("no equilibrium")
+
+    monkeypatch.setattr(live_preview._Sample, "of", refused)
+    made = live_preview.live_record(case, lift.values, list(record["left_out"]))
+    assert made is None
+    live_preview.write_live(tmp_path, made)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_check_over_several_load_cases_rests_on_each() -> None:
+    """It has no value where the follower leaves the cam in one of them."""
+    case, _, record = live_settings.fitted("papers/c25_preload")
+    by_id = {each["id"]: each for each in record["quantities"]}
+    (part,) = by_id["torque_reduction"]["parts"]
+    assert (part["state"], part["loads"]) == (-1, list(range(len(case.load_cases))))
+    run = [1.0] * len(record["factors"])
+    assert live_settings.values(record, run)["torque_reduction"].holds
+    lost = deepcopy(record)
+    lost["contact"][part["loads"][-1]]["surface"] = {
+        "scale": "linear", "coefficients": [-1.0], "error": 0.0, "share": False,
+    }  # fmt: skip
+    values = live_settings.values(lost, run)
+    assert not values["torque_reduction"].holds
+    assert values["contact_force"].holds and values["torque_ripple"].holds
+
+
+def test_designs_that_leave_the_cam_have_no_value_and_no_error() -> None:
+    sample = live_preview._Sample(3, {"life": {-1: np.array([1.0, 2.0, np.nan])}})
+    sample.lost = {k: np.array([k == 1, False, False]) for k in (0, 1)}
+    sample.loads = {"life": {-1: {0, 1}}}
+    assert sample.valued("life", -1).tolist() == [False, True, False]
+    away = live_preview._Away(1.0, 0.1, np.array([9.0, 2.0, np.nan]))
+    surface = Surface("linear", np.array([1.0]), 0.1, share=False)
+    valued = sample.valued("life", -1)
+    error = away.record(surface, sample.parts["life"][-1], valued)["error"]
+    assert error == pytest.approx(0.1 + 0.1 * 2.0)  # the limit of 9 is of a design without a value
+
+
+def test_a_check_whose_limit_bends_too_much_is_not_followed() -> None:
+    places = settings(HELD + 200, 1, HELD, 3)
+    fit = SurfaceFit(places, HELD)
+    demand, kink = 1.0 + 0.1 * places[:, 0], 1.0 + 4.0 * np.abs(places[:, 0] - 0.2)
+    sample = live_preview._Sample(len(places), {"edge_pressure": {0: demand}})
+    sample.lost = {0: np.zeros(len(places), dtype=bool)}
+    sample.loads = {"edge_pressure": {0: {0}}}
+    sample.limits = {"edge_pressure": np.full(len(places), 2.0)}
+    assert live_preview._check("edge_pressure", sample, fit)["parts"][0]["loads"] == [0]
+    sample.limits = {"edge_pressure": kink}
+    assert "limit bends" in live_preview._check("edge_pressure", sample, fit)
+
+
+def test_load_cases_have_the_names_of_the_case() -> None:
+    """Standstill and over-speed follow, by the load case whose preload they have."""
+    case, _, record = live_settings.fitted("papers/c25_preload")
+    stated = [each.name for each in case.load_cases]
+    assert record["states"][: len(stated)] == stated
+    others = record["states"][len(stated) :]
+    assert others[0] == "standstill" and len(set(record["states"])) == len(record["states"])
+    assert {each.split(", preload of ")[1] for each in others if "of" in each} <= set(stated)
 
 
 def test_a_record_has_its_form() -> None:
