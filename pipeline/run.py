@@ -75,7 +75,8 @@ class CaseRun:
     """Run of a case in steps: solve, write, certify, finish; a context manager.
 
     The steps in order: `solve`, `write`, `certify`, `finish`; pages are drawn from the folder of
-    `draft` while it is written. A run that is left before `finish` can be resumed.
+    `draft` while it is written. The live preview of a certified run is fitted meanwhile. A run that
+    is left before `finish` can be resumed.
 
     Parameters
     ----------
@@ -116,6 +117,7 @@ class CaseRun:
         self._last: Trial | None = None  # until its files are written
         self._final: Trial | None = None  # until its solution is released
         self._remedies: list[PendingCall] = []
+        self._live: PendingCall | None = None
         self._statement = ""
         self._points: tuple[TrialPoint, ...] = ()
         self._solved: SolvedSummary | None = None
@@ -221,6 +223,8 @@ class CaseRun:
         final = _made(self._final)
         if self.depth < Tier.CERTIFIED:
             return final
+        self._folder.write_summary(self._summary())
+        self._live = self.workers.submit(_write_live, self._folder.path)
         store = self._folder.contact_store(final.number)
         certified = certify_trial(final, self.workers, store=store, progress=self._watch)
         self._statement = restated(self._statement, _failing(final), _failing(certified))
@@ -259,6 +263,9 @@ class CaseRun:
             return
         self._final = None
         if self.depth is Tier.CERTIFIED:
+            if self._live is not None:
+                self._watch.stage("live preview")
+                self._live.result()  # it reads the checks before the certificate
             if self._remedies:
                 self._watch.stage("remedies")
                 texts = {
@@ -300,6 +307,13 @@ def run_case(case: Case, out: str | Path, **options: Unpack[RunOptions]) -> Run:
         run.write()
         run.certify()
         return run.finish()
+
+
+def _write_live(folder: Path) -> None:
+    """Fit and write the live preview of a run; the process that does so imports the screening."""
+    from camwright.pipeline.screening.live_preview import live_of, write_live
+
+    write_live(folder, live_of(folder))
 
 
 def _made(trial: Trial | None) -> Trial:

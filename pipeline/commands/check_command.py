@@ -432,13 +432,15 @@ def recomputed(folder: Path, **options: Any) -> Recomputation:
     from camwright.pipeline.base import disk_cache
     from camwright.pipeline.recomputation import copy_without, page_differences, recompute
     from camwright.pipeline.results.run_reader import LIVE
-    from camwright.pipeline.screening.live_preview import live_differences
     from camwright.reports.page import PAGE
     from camwright.reports.sections import redraw
 
     made = recompute(folder, **options)
-    surfaces = live_differences(folder) if (folder / LIVE).is_file() else ()
-    differences = (*made.differences, *(f"{LIVE}: {each}" for each in surfaces))
+    differences = tuple(made.differences)
+    if (folder / LIVE).is_file():
+        from camwright.pipeline.screening.live_preview import live_differences
+
+        differences += tuple(f"{LIVE}: {each}" for each in live_differences(folder))
     if not made.pages:
         return replace(made, differences=differences)
     with disk_cache.left_out(), TemporaryDirectory(prefix="camwright-") as home:

@@ -83,7 +83,6 @@ def run(
     if not (resume and _finished(out, design.sha256, depth)):
         from camwright.pipeline.results.field_output import Shown
         from camwright.pipeline.run import CaseRun
-        from camwright.pipeline.screening.live_preview import live_of, write_live
         from camwright.reports import sections
 
         drawings = None if no_report else sections.Ahead(sections.chosen(png=png))
@@ -103,14 +102,9 @@ def run(
         ):
             made.solve()
             made.write()
-            live = None
             if drawings is not None and tier is Tier.CERTIFIED:
-                folder = made.draft()
-                live = made.workers.submit(live_of, folder)
-                drawings.begin(folder, made.workers)
+                drawings.begin(made.draft(), made.workers)
             made.certify()
-            if live is not None:
-                write_live(folder, live.result())
             if drawings is not None:
                 drawings.write(made.draft())
             made.finish()

@@ -31,6 +31,7 @@ from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.solution import CONTACT
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.run import run_case
+from camwright.pipeline.screening.live_preview import live_differences
 from camwright.pipeline.smoothing.required_lift import cam_lift
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -180,6 +181,17 @@ def test_records_keep_their_schemas(finished: tuple[Case, Path, dict[str, Any]])
 
 def object_of_another_type(value: object) -> object:
     return 7 if isinstance(value, (str, dict, list)) or value is None else "seven"
+
+
+def test_a_run_of_the_library_has_its_live_preview(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    """Written without a command; it is the one of the finished run, and signed with it."""
+    _, out, summary = finished
+    assert "live preview" in summary["timings_s"]
+    assert schema_errors("live", json.loads((out / run_reader.LIVE).read_text())) == []
+    assert list(live_differences(out)) == []
+    assert run_reader.LIVE in json.loads((out / "signoff.json").read_text())["files"]
 
 
 def test_run_folder_holds_what_was_promised(

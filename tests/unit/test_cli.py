@@ -27,7 +27,6 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.contact_store import kept_piece
 from camwright.pipeline.results.run_folder import RunFolder
-from camwright.pipeline.screening import live_preview
 from camwright.reports import sections
 
 Command = Callable[..., tuple[int, str, str]]
@@ -37,15 +36,13 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture
 def runner(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Any]], None]:
-    """Puts a stand-in in the place of the run itself, its live preview and its pages."""
+    """Puts a stand-in in the place of the run itself and its pages."""
 
     def install(run: Callable[..., Any]) -> None:
         module = ModuleType("camwright.pipeline.run")
         module.CaseRun = run  # type: ignore[attr-defined]
         monkeypatch.setitem(sys.modules, "camwright.pipeline.run", module)
 
-    monkeypatch.setattr(live_preview, "live_of", lambda _: {})
-    monkeypatch.setattr(live_preview, "write_live", lambda *_: None)
     monkeypatch.setattr(sections.Ahead, "begin", lambda *_: None)
     monkeypatch.setattr(sections.Ahead, "write", _page)
     return install

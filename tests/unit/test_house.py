@@ -58,11 +58,12 @@ ORDER = (
     "pipeline.cli",
 )
 # Packages of one floor: the case reads its cards, and a card is a table of a case; a run searches
-# remedies, which are judged by previews.
+# remedies, which are judged by previews, and fits its live preview to screened designs.
 RANK = {name: place for place, name in enumerate(ORDER)} | {
     "pipeline.case.cards": ORDER.index("pipeline.case"),
     "pipeline.search": ORDER.index("pipeline"),
     "pipeline.search.remedies": ORDER.index("pipeline"),
+    "pipeline.screening": ORDER.index("pipeline"),
 }
 NAMED_AS_TEXT = re.compile(
     r"(?:camwright\.)?(?:geometry|meshes|pipeline|reports|validation)(?:\.[a-z_0-9]+)+"
