@@ -306,19 +306,19 @@ class Contour(Displayed, ABC):
         return np.asarray(np.interp(theta, *self._lengths))
 
     def plot(self) -> DrawnAxes:
-        """Contour in the cam frame: under a roller with pitch curve and prime circle, under a flat
-        face with the base circle; see `Table.plot`."""
+        """Contour in the cam frame: under a round follower with pitch curve and prime circle, under
+        a flat face with the base circle; see `Table.plot`."""
         return plotted(self.figure())
 
     def figure(self, *more: Curve) -> Figure:
         """The figure of `plot` with further outlines, mm."""
         theta = np.linspace(0.0, FULL_TURN, _DRAWN)
         curves = [outline(1e3 * self.points(theta), "contour")]
-        if self.rolls:
+        if self.follower_curvature > 0.0:
             path = 1e3 * self.pitch.points(theta)
             curves.append(outline(path, "pitch curve", "vermillion", "dashed"))
         circle = 1e3 * cam_axes(theta, np.asarray(self.pitch.radius_base), 0.0)
-        name = "prime circle" if self.rolls else "base circle"
+        name = "prime circle" if self.follower_curvature > 0.0 else "base circle"
         curves.append(outline(circle, name, "muted", "dotted"))
         panel = outline_panel((*curves, *more), names=("x (along cam angle zero)", "y"))
         return Figure("contour", "Contour", "", (panel,))
@@ -352,8 +352,68 @@ class Contour(Displayed, ABC):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RollerContour(Contour):
-    """Cam surface under a roller: the pitch curve offset inwards by the roller radius.
+class RoundContour(Contour):
+    """Cam surface under a follower that is round about its reference point.
+
+    The path of that point offset inwards by the radius of the follower's surface.
+
+    References
+    ----------
+    Rothbart, Cam Design Handbook (2004), sec. 6.4.
+    """
+
+    @property
+    @abstractmethod
+    def follower_radius(self) -> float:
+        """Radius of the follower's surface, m."""
+
+    @property
+    def follower_curvature(self) -> float:
+        return 1 / self.follower_radius
+
+    def follower_gap(self, xi: Array) -> Array:
+        radius = self.follower_radius
+        return xi**2 / (radius + np.sqrt(radius**2 - xi**2))
+
+    def factor(self, theta: ArrayLike) -> Array:
+        """Undercut factor 1 - radius x path curvature; zero at a cusp, 1 if straight."""
+        return 1.0 - self.motion(self.lift.jet(theta, 2)).sharpness
+
+    def undercut(self) -> Undercut:
+        curvature, theta = self.pitch.curvature_max()
+        return Undercut(theta, 1.0 - self.follower_radius * curvature)
+
+    def curvature(self, theta: ArrayLike) -> Array:
+        curvature = self.pitch.curvature(theta)
+        return curvature * reciprocal(1.0 - self.follower_radius * curvature)
+
+    def radius_of_curvature(self, theta: ArrayLike) -> Array:
+        """Signed radius of curvature, m, positive where convex; infinite at an inflection.
+
+        Negative both on a concave flank and where a convex one is undercut.
+        """
+        return self.pitch.radius_of_curvature(theta) - self.follower_radius
+
+    def concave_radius_min(self) -> Extremum:
+        curvature, theta = self.pitch.curvature_min()
+        if curvature >= 0:
+            return Extremum(np.inf, theta)
+        return Extremum(self.follower_radius - 1.0 / curvature, theta)
+
+    @property
+    def fitting_tool(self) -> float:
+        """The radius of the follower's surface, m."""
+        return self.follower_radius
+
+    def _gap(self, contact: Array, other: Array) -> Array:
+        away = self.points(other) - self.pitch.points(contact)
+        gap: Array = np.hypot(away[0], away[1]) - self.follower_radius
+        return gap
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RollerContour(RoundContour):
+    """Cam surface under the roller of a translating follower.
 
     Parameters
     ----------
@@ -364,32 +424,21 @@ class RollerContour(Contour):
     ------
     InputError
         If the roller does not fit; NaN included. An undercut is a result, not an error.
-
-    References
-    ----------
-    Rothbart, Cam Design Handbook (2004), sec. 6.4.
     """
 
     pitch: PitchCurve
     roller_radius: float
 
     def __post_init__(self) -> None:
-        positive("roller.radius", self.roller_radius, "m")
-        if not self.roller_radius < self.pitch.prime_radius:
-            shown, most = in_millimetres(self.roller_radius, self.pitch.prime_radius)
-            raise InputError("roller.radius", shown, f"below the prime radius of {most}")
+        require_round("roller.radius", self.roller_radius, self.pitch.prime_radius)
 
     @property
     def rolls(self) -> bool:
         return True
 
     @property
-    def follower_curvature(self) -> float:
-        return 1 / self.roller_radius
-
-    def follower_gap(self, xi: Array) -> Array:
-        radius = self.roller_radius
-        return xi**2 / (radius + np.sqrt(radius**2 - xi**2))
+    def follower_radius(self) -> float:
+        return self.roller_radius
 
     def require_roller(self) -> RollerContour:
         return self
@@ -417,38 +466,8 @@ class RollerContour(Contour):
     def motion(self, jet: Jet, friction: Value = 0.0) -> RollerMotion:  # noqa: ARG002
         return RollerMotion(jet, self.pitch.height_base, self.pitch.offset, self.roller_radius)
 
-    def factor(self, theta: ArrayLike) -> Array:
-        """Undercut factor 1 - roller radius x pitch curvature; zero at a cusp, 1 if straight."""
-        return 1.0 - self.motion(self.lift.jet(theta, 2)).sharpness
-
-    def undercut(self) -> Undercut:
-        curvature, theta = self.pitch.curvature_max()
-        return Undercut(theta, 1.0 - self.roller_radius * curvature)
-
-    def curvature(self, theta: ArrayLike) -> Array:
-        curvature = self.pitch.curvature(theta)
-        return curvature * reciprocal(1.0 - self.roller_radius * curvature)
-
     def curvature_slope(self, theta: ArrayLike) -> Array:
         return self.pitch.curvature_slope(theta) * reciprocal(self.factor(theta) ** 2)
-
-    def radius_of_curvature(self, theta: ArrayLike) -> Array:
-        """Signed radius of curvature, m, positive where convex; infinite at an inflection.
-
-        Negative both on a concave flank and where a convex one is undercut.
-        """
-        return self.pitch.radius_of_curvature(theta) - self.roller_radius
-
-    def concave_radius_min(self) -> Extremum:
-        curvature, theta = self.pitch.curvature_min()
-        if curvature >= 0:
-            return Extremum(np.inf, theta)
-        return Extremum(self.roller_radius - 1.0 / curvature, theta)
-
-    @property
-    def fitting_tool(self) -> float:
-        """The roller radius, m."""
-        return self.roller_radius
 
     def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
         return roller_height(polygon, self.roller_radius, self.pitch.offset, theta)
@@ -467,7 +486,16 @@ class RollerContour(Contour):
         tangent = np.stack([along * cos - across * sin, along * sin + across * cos]) / speed
         return point, tangent, speed - self.roller_radius * turning
 
-    def _gap(self, contact: Array, other: Array) -> Array:
-        away = self.points(other) - self.pitch.points(contact)
-        gap: Array = np.hypot(away[0], away[1]) - self.roller_radius
-        return gap
+
+def require_round(field: str, radius: float, prime_radius: float) -> None:
+    """Check that a round follower of a radius, m, is within its prime circle.
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive, or not below the prime radius; NaN included.
+    """
+    positive(field, radius, "m")
+    if not radius < prime_radius:
+        shown, most = in_millimetres(radius, prime_radius)
+        raise InputError(field, shown, f"below the prime radius of {most}")

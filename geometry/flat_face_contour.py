@@ -208,19 +208,13 @@ class FaceMotion:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FlatFaceContour(Contour):
-    """Cam surface under a flat face: the envelope of the face's line.
-
-    Parameters
-    ----------
-    pitch : FacePath    path of the contact point
+class PlaneContour(Contour):
+    """Cam surface under a plane face: the envelope of its line, convex in every part.
 
     References
     ----------
     Norton, Cam Design and Manufacturing Handbook (2009), ch. 7: flat-faced followers.
     """
-
-    pitch: FacePath
 
     @property
     def rolls(self) -> bool:
@@ -241,11 +235,8 @@ class FlatFaceContour(Contour):
     def local_frame(self, theta: ArrayLike) -> Frame:
         return Frame(self.pitch.points(theta), self.normal(theta), self.tangent(theta))
 
-    def motion(self, jet: Jet, friction: Value = 0.0) -> FaceMotion:
-        return FaceMotion(jet, self.pitch.base_radius, self.pitch.offset, friction)
-
     def factor(self, theta: ArrayLike) -> Array:
-        """Undercut factor (r + s + s'')/(r + s); zero at a cusp, 1 in a dwell."""
+        """Undercut factor, radius of curvature over height of the face; zero at a cusp."""
         return 1.0 - self.motion(self.lift.jet(theta, 2)).sharpness
 
     def undercut(self) -> Undercut:
@@ -259,13 +250,8 @@ class FlatFaceContour(Contour):
     def curvature(self, theta: ArrayLike) -> Array:
         return reciprocal(self.radius_of_curvature(theta))
 
-    def curvature_slope(self, theta: ArrayLike) -> Array:
-        _, s1, _, s3 = self.lift.derivatives(theta, 3)
-        slope: Array = -(s1 + s3) * self.curvature(theta) ** 2
-        return slope
-
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
-        """Radius of curvature r + s + s'', m; negative where undercut."""
+        """Radius of curvature, m; negative where undercut."""
         return self.pitch.radius_of_curvature(theta)
 
     def concave_radius_min(self) -> Extremum:
@@ -275,7 +261,33 @@ class FlatFaceContour(Contour):
     @property
     def fitting_tool(self) -> float:
         """The base circle's radius, m: any tool reaches a convex contour."""
-        return self.pitch.base_radius
+        return self.pitch.radius_base
+
+    def face_width_min(self) -> float:
+        """Minimum width of a face centred on its reference point, m: twice the travel from it."""
+        count = self.lift.search_count
+        low, high = least(self.pitch.push_arm, count), greatest(self.pitch.push_arm, count)
+        return 2.0 * max(high.value, -low.value)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FlatFaceContour(PlaneContour):
+    """Cam surface under the flat face of a translating follower.
+
+    Parameters
+    ----------
+    pitch : FacePath    path of the contact point
+    """
+
+    pitch: FacePath
+
+    def motion(self, jet: Jet, friction: Value = 0.0) -> FaceMotion:
+        return FaceMotion(jet, self.pitch.base_radius, self.pitch.offset, friction)
+
+    def curvature_slope(self, theta: ArrayLike) -> Array:
+        _, s1, _, s3 = self.lift.derivatives(theta, 3)
+        slope: Array = -(s1 + s3) * self.curvature(theta) ** 2
+        return slope
 
     def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
         return face_height(polygon, theta)
@@ -289,12 +301,6 @@ class FlatFaceContour(Contour):
             self.normal(contact) * self.points(other), 0
         )
         return gap
-
-    def face_width_min(self) -> float:
-        """Minimum width 2 max|s' - e| of a face centred on the stem, m."""
-        count = self.lift.search_count
-        low, high = least(self.pitch.push_arm, count), greatest(self.pitch.push_arm, count)
-        return 2.0 * max(high.value, -low.value)
 
     def require_face(self, width: float) -> None:
         """Check that the contact stays on a face of `width`, m; see `require_face_width`."""

@@ -6,6 +6,7 @@ them, and the synthesis differentiates the same functions by a complex step.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -105,32 +106,41 @@ class PitchCurve(FollowerPath):
         return reciprocal(self.curvature(theta))
 
 
-@dataclass(frozen=True, eq=False)
-class RollerMotion:
-    """Kinematics and force ratios of a roller on the unloaded cam; see `Motion`.
+class RoundMotion(ABC):
+    """Kinematics and force ratios of a follower whose surface is round about its reference point.
 
-    Parameters
-    ----------
-    jet : Jet             lift and its derivatives
-    base_height : float   height of the roller centre at zero lift, sqrt(r^2 - e^2)
-    offset : float        e
-    size : float          roller radius
+    See `Motion`. At each angle it is a translating follower of its own height and offset along the
+    travel of the reference point, whose line turns with an arm.
     """
 
     jet: Jet
-    base_height: Value
-    offset: Value
     size: Value
+    """radius of the surface, m"""
 
-    @cached_property
-    def along(self) -> Array:
-        """Velocity of the roller centre along the follower axis, s' - e, m/rad."""
-        return self.jet.slope - self.offset
-
-    @cached_property
+    @property
+    @abstractmethod
     def height(self) -> Array:
-        """Height of the roller centre, m; also its velocity across the follower axis, m/rad."""
-        return self.base_height + self.jet.lift
+        """Height of the reference point, m; also its velocity across its travel, m/rad."""
+
+    @property
+    @abstractmethod
+    def _offset(self) -> Value:
+        """Offset of the line of travel, m."""
+
+    @property
+    @abstractmethod
+    def along(self) -> Array:
+        """Velocity of the reference point along its travel, s' - e, m/rad."""
+
+    @property
+    @abstractmethod
+    def _path(self) -> tuple[Array, Array]:
+        """Speed, m/rad, and curvature, 1/m, of the path."""
+
+    @property
+    @abstractmethod
+    def _path_curvature_slope(self) -> Array:
+        """Derivative of the path's curvature by the cam angle, 1/(m rad)."""
 
     @cached_property
     def tangent(self) -> Array:
@@ -147,41 +157,32 @@ class RollerMotion:
 
     @property
     def arm(self) -> Array:
-        """Zero: the contact force passes through the roller centre, on the stem's axis."""
+        """Zero: the contact force passes through the reference point."""
         return np.zeros(self.jet.slope.shape)
-
-    @cached_property
-    def _path(self) -> tuple[Array, Array]:
-        return speed_and_curvature(self.along, self.height, self.jet.slope, self.jet.lift_d2)
 
     @property
     def path_speed(self) -> Array:
-        """Path length of the roller centre per radian, m/rad."""
+        """Path length of the reference point per radian, m/rad."""
         return self._path[0]
 
     @property
     def path_curvature(self) -> Array:
-        """Curvature of the pitch curve, 1/m, positive where convex."""
+        """Curvature of the path, 1/m, positive where convex."""
         return self._path[1]
 
     @cached_property
     def sharpness(self) -> Array:
-        """Roller radius times curvature of the pitch curve: 1 at a cusp."""
+        """Radius of the surface times curvature of the path: 1 at a cusp."""
         return self.size * self.path_curvature
 
     @cached_property
     def gain(self) -> Array:
         return np.sqrt(1.0 + self.tangent**2)
 
-    @property
-    def sliding(self) -> float:
-        """Zero: the roller rolls."""
-        return 0.0
-
     @cached_property
     def contact_point(self) -> tuple[Array, Array]:
         inset = self.size / self.path_speed
-        return self.height * (1.0 - inset), self.offset + inset * self.along
+        return self.height * (1.0 - inset), self._offset + inset * self.along
 
     @property
     def contour_radius(self) -> Array:
@@ -196,11 +197,53 @@ class RollerMotion:
     def curvature_slope(self) -> Array:
         """Derivative of the contour's curvature by its arc length, 1/m^2.
 
-        The contour is shorter than the pitch curve by the undercut factor, its curvature greater.
+        The contour is shorter than the path by the undercut factor, its curvature greater.
         """
+        return self._path_curvature_slope / ((1.0 - self.sharpness) ** 3 * self.path_speed)
+
+
+@dataclass(frozen=True, eq=False)
+class RollerMotion(RoundMotion):
+    """Kinematics and force ratios of a roller on the unloaded cam; see `Motion`.
+
+    Parameters
+    ----------
+    jet : Jet             lift and its derivatives
+    base_height : float   height of the roller centre at zero lift, sqrt(r^2 - e^2)
+    offset : float        e
+    size : float          roller radius
+    """
+
+    jet: Jet
+    base_height: Value
+    offset: Value
+    size: Value
+
+    @property
+    def _offset(self) -> Value:
+        return self.offset
+
+    @cached_property
+    def along(self) -> Array:
+        return self.jet.slope - self.offset
+
+    @cached_property
+    def height(self) -> Array:
+        return self.base_height + self.jet.lift
+
+    @cached_property
+    def _path(self) -> tuple[Array, Array]:
+        return speed_and_curvature(self.along, self.height, self.jet.slope, self.jet.lift_d2)
+
+    @property
+    def _path_curvature_slope(self) -> Array:
         jet = self.jet
-        change = curvature_slope(self.along, self.height, jet.slope, jet.lift_d2, jet.jerk)
-        return change / ((1.0 - self.sharpness) ** 3 * self.path_speed)
+        return curvature_slope(self.along, self.height, jet.slope, jet.lift_d2, jet.jerk)
+
+    @property
+    def sliding(self) -> float:
+        """Zero: the roller rolls."""
+        return 0.0
 
     @property
     def rolling(self) -> Array:
