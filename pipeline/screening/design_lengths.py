@@ -37,7 +37,7 @@ _STRAIGHT = ("cam.width", "roller.width", "follower.face.depth")
 _SHAPES = 16
 # Cam angles at which the factors are solved first, and share of the greatest pressure within which
 # others are; angles on either side of them that the vertex of the greatest one reads.
-_FIRST_ANGLES, _NEAR, _BESIDE = 36, 0.05, 2
+_FIRST_ANGLES, _NEAR_GREATEST, _BESIDE_GREATEST = 36, 0.05, 2
 
 
 class DesignValues(Protocol):
@@ -120,8 +120,8 @@ def factors_of(
     whole.greatest[...] = between
     pressure = np.where(contact, plane, 0.0)
     known = np.max(np.where(first, pressure * between, 0.0), axis=1, keepdims=True)
-    near = pressure * bound >= (1.0 - _NEAR) * known
-    steps = range(-_BESIDE, _BESIDE + 1)
+    near = pressure * bound >= (1.0 - _NEAR_GREATEST) * known
+    steps = range(-_BESIDE_GREATEST, _BESIDE_GREATEST + 1)
     near = np.any([np.roll(near, step, axis=1) for step in steps], axis=0)
     solve(near & contact & ~first)
     return whole

@@ -46,7 +46,7 @@ _STATES = 16
 # States of the greatest ratios at which the sensitivity is computed.
 _TOP = 8
 # Golden sections of the search of the lowest ratio: 0.3 % of the range is left.
-_SECTIONS = 12
+_LOAD_SECTIONS = 12
 # Straight middle parts over the length of the crown that are tried for a relief of the ends, and
 # rows of its table on the contact.
 _STRAIGHT_PARTS, _RELIEF_ROWS = (0.4, 0.6, 0.8), 41
@@ -461,7 +461,7 @@ class _CrownSearch:
         best, last = min(self._ladder, key=self.at), len(self._ladder) - 1
         place = self._ladder.index(best)
         left, right = self._ladder[max(place - 1, 0)], self._ladder[min(place + 1, last)]
-        least_argument(self.at, left, right, _SECTIONS)
+        least_argument(self.at, left, right, _LOAD_SECTIONS)
         return min(self._values, key=lambda load: (self._values[load], load))
 
 
