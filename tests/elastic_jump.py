@@ -1,10 +1,16 @@
-"""Jump speed of an elastic follower, by a search over the speed."""
+"""Jump speed of an elastic follower by a search over the speed, and the energy of its motion."""
 
 import numpy as np
 from scipy.optimize import brentq
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.follower.elastic_follower import ElasticFollower, harmonic_response
+from camwright.pipeline.follower.follower_flight import Bounce
+
+
+def energy_error(motion: Bounce) -> float:
+    """Range of energy plus losses over maximum energy."""
+    return float(np.ptp(motion.energy + motion.dissipated) / np.abs(motion.energy).max())
 
 
 def elastic_jump_speed(

@@ -38,22 +38,6 @@ def stick_half_width(ratio: ArrayLike) -> Array:
     return np.sqrt(1 - _ratio(ratio))
 
 
-def rolling_traction(x: ArrayLike, ratio: float) -> Array:
-    """Carter's traction (...) of steady rolling; the stick zone starts at the leading edge x = -1.
-
-    References
-    ----------
-    Carter (1926); Johnson, Contact Mechanics (1985), sec. 8.3.
-    """
-    stick = float(stick_half_width(ratio))
-    at = np.asarray(x, dtype=float)
-    full = np.sqrt(np.maximum(1 - at**2, 0.0))
-    if stick == 0:
-        return np.asarray(full)
-    in_stick = np.sqrt(np.maximum(1 - ((at - (stick - 1)) / stick) ** 2, 0.0))
-    return np.asarray(full - stick * in_stick)
-
-
 def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Array, Array]:
     """Increase of maximum in-plane shear and von Mises stress by Carter's traction.
 

@@ -25,19 +25,6 @@ class CycleBalance:
     exhaust_mass: float  # net, out of the cylinder
     mass_change: float
 
-    @property
-    def energy_residual(self) -> float:
-        """Residual of the first law over the heat released, heat lost and work."""
-        left = self.heat_released - self.heat_lost - self.work + self.enthalpy_in
-        turned = abs(self.heat_released) + abs(self.heat_lost) + abs(self.work)
-        return (left - self.energy_change) / max(turned, 1e-12)
-
-    @property
-    def mass_residual(self) -> float:
-        """Residual of the mass balance over the intake mass."""
-        left = self.intake_mass - self.exhaust_mass - self.mass_change
-        return left / max(abs(self.intake_mass), 1e-12)
-
 
 @dataclass(frozen=True, eq=False)
 class CylinderCycle:

@@ -69,12 +69,6 @@ class Bounce:
         names = set(self.__dataclass_fields__) - {"flights"}
         freeze(self, **{name: getattr(self, name) for name in names})
 
-    @property
-    def energy_error(self) -> float:
-        """Range of energy plus losses over maximum energy."""
-        balance = self.energy + self.dissipated
-        return float(np.ptp(balance) / np.abs(self.energy).max())
-
 
 def bounce(
     lift: Lift,

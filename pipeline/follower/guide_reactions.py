@@ -279,19 +279,16 @@ class GuideReactions(Displayed):
     knots_b: Array
     rubbing_load_a: Array
     rubbing_load_b: Array
-    stem_diameter: float
     force_residual: Array
     moment_residual: Array
     complementarity_residual: Array
 
     def __post_init__(self) -> None:
-        names = set(self.__dataclass_fields__) - {"stem_diameter"}
-        freeze(self, **{name: getattr(self, name) for name in names})
+        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
 
     def part(self, first: int, end: int) -> GuideReactions:
         """Reactions at the positions from `first` to before `end`."""
-        unsplit = ("stem_diameter", "knots_a", "knots_b")
-        names = set(self.__dataclass_fields__) - set(unsplit)
+        names = set(self.__dataclass_fields__) - {"knots_a", "knots_b"}
         return replace(self, **{name: getattr(self, name)[..., first:end] for name in names})
 
     @cached_property
@@ -328,16 +325,6 @@ class GuideReactions(Displayed):
         push, length = _pushes(load[:, [position]], np.asarray(knots))
         side = int(_mean(push, length)[:, 0].argmax())
         return float(push[side, 0]), float(length[side, 0])
-
-    @property
-    def pressure_max_a(self) -> Array:
-        """Maximum projected pressure in guide A (n,), Pa: line pressure over stem diameter."""
-        return self.line_pressure_max_a / self.stem_diameter
-
-    @property
-    def pressure_max_b(self) -> Array:
-        """Maximum projected pressure in guide B (n,), Pa: line pressure over stem diameter."""
-        return self.line_pressure_max_b / self.stem_diameter
 
 
 def mean_line_load(line_load: ArrayLike, knots: ArrayLike) -> Array:
@@ -548,7 +535,6 @@ def guide_reactions(
         knots_b=from_b,
         rubbing_load_a=carried.rubbing_a,
         rubbing_load_b=carried.rubbing_b,
-        stem_diameter=stem.diameter,
         force_residual=carried.force_residual(force),
         moment_residual=carried.moment_residual(moment, reach, guides.spacing),
         complementarity_residual=line.law_residual(push, rigid),

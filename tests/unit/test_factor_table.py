@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from half_spaces import half_space_factors
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
@@ -28,7 +29,6 @@ from camwright.pipeline.contact.finite_length.length_tiers import (
     MEAN_LENGTH,
     block_grid,
     cycle_sizes,
-    half_space_factors,
     meshes_of,
     plane_strain,
 )

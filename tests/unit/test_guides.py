@@ -89,16 +89,16 @@ def test_equilibrium_from_the_pressures_themselves():
 
 def test_no_load_gives_zeros():
     solved = guide_reactions(np.zeros(3), 0.04, STEM, PAIR)
-    for name in ("reaction_a", "reaction_b", "pressure_max_a", "slope_a", "roller_deflection"):
+    for name in ("reaction_a", "reaction_b", "line_pressure_max_a", "slope_a", "roller_deflection"):
         np.testing.assert_array_equal(getattr(solved, name), 0.0)
     np.testing.assert_array_equal(solved.moment_residual, 0.0)
 
 
-def test_pressure_is_line_pressure_over_the_stem():
+def test_the_greatest_line_pressure_is_above_its_mean():
     solved = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
-    peak = np.abs(solved.line_pressure_b).max(axis=0) / 0.01
-    np.testing.assert_allclose(solved.pressure_max_b, peak)
-    assert (solved.pressure_max_a >= np.abs(solved.reaction_a) / (0.02 * 0.01) - 1e-9).all()
+    peak = np.abs(solved.line_pressure_b).max(axis=0)
+    np.testing.assert_allclose(solved.line_pressure_max_b, peak)
+    assert (solved.line_pressure_max_a >= np.abs(solved.reaction_a) / 0.02 - 1e-11).all()
 
 
 def test_a_bore_pushes_from_one_side_only_at_a_knot_and_not_within_its_play():
@@ -111,7 +111,7 @@ def test_reversing_the_load_mirrors_the_answer():
     one, two = (guide_reactions(sign * FORCE, OVERHANG, STEM, PAIR) for sign in (1, -1))
     np.testing.assert_allclose(two.reaction_a, -one.reaction_a, rtol=1e-9)
     np.testing.assert_allclose(two.roller_deflection, -one.roller_deflection, rtol=1e-9)
-    np.testing.assert_allclose(two.pressure_max_b, one.pressure_max_b, rtol=1e-7)
+    np.testing.assert_allclose(two.line_pressure_max_b, one.line_pressure_max_b, rtol=1e-7)
 
 
 @pytest.mark.parametrize("size", [1e-15, 1e-6, 1e4])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from half_spaces import half_space_factors
 
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.contact.axial_shape import BodyEnd
@@ -22,7 +23,6 @@ from camwright.pipeline.contact.finite_length.half_space import (
 )
 from camwright.pipeline.contact.finite_length.length_tiers import (
     block_grid,
-    half_space_factors,
     plane_strain,
 )
 from camwright.pipeline.contact.finite_length.pressure_cells import (

