@@ -37,7 +37,7 @@ _STRAIGHT = ("cam.width", "roller.width", "follower.face.depth")
 _SHAPES = 16
 # Cam angles at which the factors are solved first, and share of the greatest pressure within which
 # others are; angles on either side of them that the vertex of the greatest one reads.
-_FIRST_ANGLES, _NEAR_GREATEST, _BESIDE_GREATEST = 36, 0.05, 2
+_FIRST_ANGLES, _NEAR_GREATEST, _BESIDE_GREATEST = 24, 0.02, 2
 
 
 class DesignValues(Protocol):

@@ -118,6 +118,7 @@ class SurfaceFit:
         self.exponents = powers(places.shape[1])
         self._terms = terms(places, self.exponents)
         self._held = np.arange(len(places)) >= len(places) - held_out
+        self._inverses: dict[bytes, Array] = {}
 
     def surface(self, values: Array, valued: NDArray[np.bool_] | None = None) -> Surface | None:
         """Surface of values (m,) on the scale of the least error.
@@ -138,20 +139,32 @@ class SurfaceFit:
         if np.ptp(values[there]) <= _NO_SLOPE * most:
             middle = float(np.median(values[there]))
             return Surface("linear", np.array([middle]), LEAST_ERROR * most, share=False)
+        inverse = self._inverse(fitted)
         fits = [
-            self._on(name, values, fitted, held)
+            self._on(name, values, fitted, held, inverse)
             for name, scale in SCALES.items()
             if scale.takes(values[there])
         ]
         return min(fits, key=lambda one: one[0])[1]
 
+    def _inverse(self, fitted: NDArray[np.bool_]) -> Array:
+        """Inverse (p, k) of the terms at k designs, of least squares; most values share theirs."""
+        key = fitted.tobytes()
+        if key not in self._inverses:
+            self._inverses[key] = np.asarray(np.linalg.pinv(self._terms[fitted]))
+        return self._inverses[key]
+
     def _on(
-        self, name: ScaleName, values: Array, fitted: NDArray[np.bool_], held: NDArray[np.bool_]
+        self,
+        name: ScaleName,
+        values: Array,
+        fitted: NDArray[np.bool_],
+        held: NDArray[np.bool_],
+        inverse: Array,
     ) -> tuple[float, Surface]:
         """Rank and surface on a scale; errors below `LEAST_ERROR` rank alike."""
         scale = SCALES[name]
-        solved = np.linalg.lstsq(self._terms[fitted], scale.to(values[fitted]))
-        surface = Surface(name, np.asarray(solved[0], dtype=float), 0.0, share=name == "log")
+        surface = Surface(name, inverse @ scale.to(values[fitted]), 0.0, share=name == "log")
         apart = np.abs(surface(self._terms[held]) - values[held])
         most = float(np.abs(values[fitted | held]).max())
         size = np.abs(values[held]) if surface.share else most
