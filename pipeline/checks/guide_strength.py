@@ -77,10 +77,6 @@ def _rubbing_load(cycle: Cycle, side: Side) -> Array:
     return cycle.guides.rubbing_load_a if side == "A" else cycle.guides.rubbing_load_b
 
 
-def _bearing_load(cycle: Cycle, side: Side) -> Array:
-    return cycle.guides.bearing_load_a if side == "A" else cycle.guides.bearing_load_b
-
-
 def _heat_in(side: Side) -> Measure:
     index = GUIDES.index(side)
 
@@ -192,17 +188,18 @@ def _guide_pressure(side: Side) -> Declaration:
         title=f"Mean bearing pressure in guide {side}",
         unit="MPa",
         source=Source("limit of the bush's maker, source of the guide", confirmed=True),
-        method="greatest push on one side of the bore over diameter x loaded length; at most"
-        " the limit at the temperature of the guide",
+        method="greatest push on one side of the bore over diameter x loaded length, with that of a"
+        " forced tilt at right angles; at most the limit at the temperature of the guide",
         lift_can_help=True,
         fails_from=Tier.SCREENING,
         error="guide_edges",
         part="guides",
         kept_as=f"bearing pressure of guide {side}",
         formula="F / (d l) <= p R(T) / R(T_p); F: push on one side of the bore, the integral of its"
-        " line load, l: loaded length of that side, d: diameter of the bore, of the side and angle"
-        " with the greatest quotient; p: guides.*.pressure_limit, R: yield strength of the bush at"
-        " its temperature T and at T_p, guides.*.pressure_limit_temperature.",
+        " line load, with that of the moment of a forced tilt at right angles, l: loaded length of"
+        " that side, d: diameter of the bore, of the side and angle with the greatest quotient; p:"
+        " guides.*.pressure_limit, R: yield strength of the bush at its temperature T and at T_p,"
+        " guides.*.pressure_limit_temperature.",
         symbols={
             "F": f"{STATED} [N]",
             "d": f"{table_of(side)}.diameter",
@@ -212,6 +209,7 @@ def _guide_pressure(side: Side) -> Declaration:
         " at both ends of a guide load it although they cancel in the reaction.",
         values=(
             *given.LOADS,
+            *given.TILT,
             *given.of_guide(
                 side, "pressure_limit*", "material.yield_strength", "material.strength_at"
             ),
@@ -238,9 +236,12 @@ def _maker(guide: Guide) -> Source:
 
 
 def _loaded_side(solution: Solution, side: Side, worst: Extreme) -> dict[str, float]:
-    """Push on the side of the bore that governs, N, and its loaded length, m."""
+    """Push in the bore that governs, N, and the loaded length of its greater side, m."""
     cycle, k = row_of(solution.cycles, worst)
-    push, length = cycle.guides.loaded_side(GUIDES.index(side), k)
+    index = GUIDES.index(side)
+    push, length = cycle.guides.loaded_side(index, k)
+    if cycle.sideways is not None:
+        push = float(cycle.guide_pushes[index][k]) * length / guide_of(cycle.machine, side).length
     return {"F": push, "l": length}
 
 
@@ -250,11 +251,15 @@ def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
     Their sum is the rubbing load, their difference the reaction.
     """
     cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
-    k = first_greatest(_bearing_load(cycle, side))
+    k = first_greatest(cycle.guide_pushes[GUIDES.index(side)])
     both, net = float(_rubbing_load(cycle, side)[k]), abs(float(_reaction(cycle, side)[k]))
     greater, less = (shown(0.5 * each, "N", 4) for each in (both + net, both - net))
     alone = shown(net / guide_of(cycle.machine, side).projected_area, "MPa", 3)
-    return f"pushes of {greater} and {less} on opposite sides; {alone} by the net reaction"
+    tilted = ""
+    if (across := cycle.sideways) is not None:
+        load = float((across.reaction_a if side == "A" else across.reaction_b)[k])
+        tilted = f"; {shown(abs(load), 'N', 4)} across them by the forced tilt of the contact"
+    return f"pushes of {greater} and {less} on opposite sides; {alone} by the net reaction{tilted}"
 
 
 def _pv_in(side: Side) -> Measure:
@@ -374,8 +379,8 @@ def _guide_edge_pressure(side: Side) -> Declaration:
             confirmed=True,
         ),
         method="pin in a bore with clearance, bush in a rigid housing, at the greatest line load of"
-        " the beam; modulus at 20 degC, an upper bound; yield strength at the temperature of the"
-        " guide",
+        " the beam, with that of a forced tilt at right angles; modulus at 20 degC, an upper bound;"
+        " yield strength at the temperature of the guide",
         lift_can_help=True,
         tier=Tier.PREVIEW,
         error="guide_edges",
@@ -388,6 +393,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         " length and its clearance.",
         values=(
             *given.LOADS,
+            *given.TILT,
             *given.of_guide(side, "material.yield_strength", "material.strength_at"),
             *given.heat(side),
         ),

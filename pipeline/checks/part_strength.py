@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -27,11 +27,12 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check, of_key
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, normal_force
-from camwright.pipeline.checks.extremes import cycle_of, worst_case
+from camwright.pipeline.checks.extremes import Measure, cycle_of, worst_case
 from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import pin_strength
@@ -58,13 +59,28 @@ def _described(numbers: Numbers) -> tuple[Roller, Pin]:
     return _pin_of(numbers.known_case.roller)
 
 
-def _bending(numbers: Numbers) -> Value:
-    return numbers.each(_bent, ("roller.width",))[0]
+Stress = Callable[[Value, Value, Numbers], Array]
+"""Stress of a part at the pin, Pa, by force, N, and moment, N m, on the roller: of degree 1."""
 
 
-def _bent(numbers: Numbers) -> tuple[float]:
-    key, (roller, _) = "roller.width", _described(numbers)
-    return (roller.with_values({key: float(numbers[key])}).pin_stress_per_newton or 0.0,)
+def _of_force(stress: Stress) -> PerLoad:
+    """Stress per newton in the middle of the roller."""
+    return PerLoad(lambda numbers: stress(1.0, 0.0, numbers))
+
+
+def _level_force(stress: Stress) -> Measure:
+    def level_force(cam: LoadedCam) -> Array:
+        """Force in the middle of the roller that stresses the part as the contact does, N."""
+        numbers, force = cam.numbers, not_negative(cam.normal)
+        return stress(force, cam.follower_moment, numbers) / stress(1.0, 0.0, numbers)
+
+    return level_force
+
+
+def _bending(force: Value, moment: Value, numbers: Numbers) -> Array:
+    pin = _described(numbers)[1]
+    bent = pin_strength.pin_moment(force, moment, numbers["roller.width"], pin.span, pin.overhung)
+    return bent * pin_strength.bending_per_moment(pin.diameter)
 
 
 def _bending_allowed(numbers: Numbers) -> Allowed:
@@ -74,44 +90,59 @@ def _bending_allowed(numbers: Numbers) -> Allowed:
 
 def _pin_in_words(demand: Demand, solution: Solution) -> Demand:
     pin = _pin_of(solution.machine.roller)[1]
-    method = f"32 M/(pi d^3), {pin.mounting}, load uniform over the bearing width"
+    method = f"32 M/(pi d^3), {pin.mounting}, load linear along the bearing"
     return replace(demand, figures=_sources(pin.material), method=method)
 
 
-_of_bending = PerLoad(_bending)
+_of_bending = _of_force(_bending)
+_ON_ROLLER = {"N": "normal_force", "C": "follower_moment"}
+_ROLLER_LOAD = (
+    "N, C: force and moment of the contact on the middle of the roller, by its ends, tilt and axial"
+    " offset, of all load cases and angles where they stress it most"
+)
 roller_pin = check(
     PIN_SHARE,
     id="roller_pin",
     title="Bending stress of the roller pin",
     unit="MPa",
-    method="32 M/(pi d^3), load uniform over the bearing width",
+    method="32 M/(pi d^3), load linear along the bearing",
     lift_can_help=True,
     tier=Tier.SCREENING,
     needs="roller",
     part="pin",
     kept_as="normal force at the maximum stress of the roller pin",
-    formula="32 M/(pi d^3) <= x Y; M: N (l/4 - b/8) of a pin held at both ends, N l of an overhung"
-    " one, N: greatest normal force over all load cases and angles, l: span, b: roller width, d:"
-    " pin diameter, Y: yield strength, x: limits.pin_share. Fatigue: roller_pin_fatigue.",
+    formula="32 M/(pi d^3) <= x Y; M = N (l/4 - b/8 - b u^2/2) + C u (k/2 - 2 u^2): of a pin held"
+    " at both ends, N l + C of an overhung one, u = k e/(1 + sqrt(1 + 12 k e^2)): place of M over b"
+    " from the middle, e = C/(N b): of the contact, k = 3 - 2 b/l: of the pin, "
+    + _ROLLER_LOAD
+    + ","
+    " l: span, b: roller width, d: pin diameter, Y: yield strength, x: limits.pin_share. Fatigue:"
+    " roller_pin_fatigue.",
     symbols={
         "?": "roller.pin.mounting straddled",
-        "M": "normal_force (roller.pin.span/4 - roller.width/8) [N m]",
+        **_ON_ROLLER,
+        **dict.fromkeys(("u", "e", "k"), "[-]"),
+        "M": "[N m]",
+        "l": "roller.pin.span",
+        "b": "roller.width",
         "d": "roller.pin.diameter",
         "Y": "roller.pin.material.yield_strength",
     },
     reason="a bent pin drops the roller",
-    values=(*given.LOADS, "roller.pin.material.yield_strength"),
+    values=(*given.LENGTH, "roller.pin.material.yield_strength"),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
     page="Roller",
+    scales_with=(NORMAL_FORCE, 1.0),
 ).measured(
     "angles",
     value=_of_bending.value,
     bound=_of_bending.bound,
     allowed=_bending_allowed,
     remark=_pin_in_words,
-    deviation=0.005,
+    deviation=0.02,
+    bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(normal_force)
+)(_level_force(_bending))
 
 
 _PIN_FIBRES = 180  # around the pin; between two of them the stress differs by 1e-4 at most
@@ -129,8 +160,8 @@ def _with_card_of_pin(demand: Demand, solution: Solution) -> Demand:
     PIN_FATIGUE_SAFETY,
     id="roller_pin_fatigue",
     title="Fatigue safety factor of the roller pin in bending",
-    method="Goodman line, bending stress of each fibre of the pin at rest over the turn, as force"
-    " and pressure angle change",
+    method="Goodman line, bending stress of each fibre of the pin at rest over the turn, as force,"
+    " moment and pressure angle change",
     lift_can_help=True,
     needs="roller",
     part="pin",
@@ -145,7 +176,7 @@ def _with_card_of_pin(demand: Demand, solution: Solution) -> Demand:
     },
     reason="force and direction change with each turn of the cam, and bend the pin to and fro",
     values=(
-        *given.LOADS,
+        *given.LENGTH,
         "roller.pin.material.tensile_strength",
         "roller.pin.material.fatigue_bending",
     ),
@@ -156,7 +187,7 @@ def _with_card_of_pin(demand: Demand, solution: Solution) -> Demand:
 def roller_pin_fatigue(solution: Solution) -> Demand:
     """Fatigue safety factor of the roller pin."""
     roller, pin = _pin_of(solution.machine.roller)
-    card, per_newton = pin.material, roller.pin_stress_per_newton
+    card = pin.material
     tensile, endured = card.tensile_strength, card.fatigue_bending
     missing = lacking_of_card(card, "fatigue_bending", "tensile_strength")
     along, across = np.cos(uniform_turn(_PIN_FIBRES)), np.sin(uniform_turn(_PIN_FIBRES))
@@ -164,13 +195,20 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     def of_fibres(cycle: Cycle) -> tuple[Array, Array]:
         """Amplitude and mean of the stress, Pa."""
         loads = cycle.loads
+        greatest = roller.pin_stress(loads.normal_force, cycle.follower_moment)
+        per_newton = np.divide(
+            np.full_like(loads.normal_force, np.nan) if greatest is None else greatest,
+            loads.normal_force,
+            out=np.zeros_like(loads.normal_force),
+            where=loads.normal_force > 0.0,
+        )
         force = np.outer(loads.axial_force, along) + np.outer(loads.tangential_force, across)
-        stress = (np.nan if per_newton is None else per_newton) * force
+        stress = per_newton[:, None] * force
         high, low = stress.max(axis=0), stress.min(axis=0)
         return 0.5 * (high - low), 0.5 * (high + low)
 
     def safety(cycle: Cycle) -> float:
-        if tensile is None or endured is None or per_newton is None:
+        if tensile is None or endured is None:
             return np.nan
         worst = float(np.max(goodman(*of_fibres(cycle), tensile)))
         return np.inf if worst == 0.0 else endured / worst
@@ -184,9 +222,10 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     return Demand(worst.value, limit, worst, missing, figures=_sources(card), stated=stated)
 
 
-def _shear(numbers: Numbers) -> float:
+def _shear(force: Value, moment: Value, numbers: Numbers) -> Array:
     pin = _described(numbers)[1]
-    return pin_strength.pin_shear_stress(1.0, pin.diameter, pin.overhung)
+    across = pin_strength.support_force(force, moment, pin.span, pin.overhung)
+    return pin_strength.pin_shear_stress(across, pin.diameter)
 
 
 def _shear_allowed(numbers: Numbers) -> Allowed:
@@ -195,7 +234,7 @@ def _shear_allowed(numbers: Numbers) -> Allowed:
     return Allowed(None if bending is None else bending / 3.0**0.5)
 
 
-_of_shear = PerLoad(_shear)
+_of_shear = _of_force(_shear)
 roller_pin_shear = check(
     PIN_SHARE,
     id="roller_pin_shear",
@@ -207,32 +246,36 @@ roller_pin_shear = check(
     needs="roller",
     part="pin",
     kept_as="normal force at the maximum shear stress of the roller pin",
-    formula="4 Q/(3 A) <= x Y/sqrt(3); Q: N/2 of a pin held at both ends, N of an overhung one, N:"
-    " greatest normal force over all load cases and angles, A: section, Y: yield strength, x:"
-    " limits.pin_share.",
+    formula="4 Q/(3 A) <= x Y/sqrt(3); Q = N/2 + C/l: of a pin held at both ends, N of an overhung"
+    " one, l: span, " + _ROLLER_LOAD + ", A: section, Y: yield strength, x: limits.pin_share.",
     symbols={
         "?": "roller.pin.mounting straddled",
-        "Q": "normal_force/2 [N]",
+        **_ON_ROLLER,
+        "Q": "[N]",
+        "l": "roller.pin.span",
         "A": "pi roller.pin.diameter^2/4 [mm^2]",
         "Y": "roller.pin.material.yield_strength",
     },
     reason="a short pin shears before it bends",
-    values=(*given.LOADS, "roller.pin.material.yield_strength"),
+    values=(*given.LENGTH, "roller.pin.material.yield_strength"),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
     page="Roller",
+    scales_with=(NORMAL_FORCE, 1.0),
 ).measured(
     "angles",
     value=_of_shear.value,
     bound=_of_shear.bound,
     allowed=_shear_allowed,
     remark=_with_card_of_pin,
-    deviation=0.005,
+    deviation=0.02,
+    bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(normal_force)
+)(_level_force(_shear))
 
 
-def _seat(numbers: Numbers) -> Value:
-    return 1.0 / (_described(numbers)[1].diameter * numbers["roller.width"])
+def _seat(force: Value, moment: Value, numbers: Numbers) -> Array:
+    diameter = _described(numbers)[1].diameter
+    return pin_strength.seat_pressure(force, moment, diameter, numbers["roller.width"])
 
 
 def _share_of_tensile(row: Limit, cards: Sequence[Material], numbers: Numbers) -> Allowed:
@@ -242,35 +285,37 @@ def _share_of_tensile(row: Limit, cards: Sequence[Material], numbers: Numbers) -
     return Allowed(None, missing) if missing else Allowed(numbers.limit(row) * min(strengths))
 
 
-_of_seat = PerLoad(_seat)
+_of_seat = _of_force(_seat)
 roller_pin_pressure = check(
     PIN_PRESSURE_SHARE,
     id="roller_pin_pressure",
     title="Pressure of the roller pin in the bore of its bearing",
     unit="MPa",
-    method="normal force over the projected area of the seat",
+    method="force and moment of the contact over the projected area of the seat, linear along it",
     lift_can_help=True,
     tier=Tier.SCREENING,
     needs="roller",
     part="pin",
     kept_as="normal force at the maximum pressure in the bearing's bore",
-    formula="N/(d b) <= x R_m; N: greatest normal force over all load cases and angles, d: pin"
-    " diameter, b: roller width, R_m: tensile strength of the pin, softer than the ring, x:"
-    " limits.pin_pressure_share.",
+    formula="N/(d b) + 6 C/(d b^2) <= x R_m; "
+    + _ROLLER_LOAD
+    + ", d: pin diameter, b: roller width,"
+    " R_m: tensile strength of the pin, softer than the ring, x: limits.pin_pressure_share.",
     symbols={
-        "N": "normal_force",
+        **_ON_ROLLER,
         "d": "roller.pin.diameter",
         "b": "roller.width",
         "R_m": "roller.pin.material.tensile_strength",
     },
     reason="a seat that yields comes loose and frets",
     values=(
-        *given.LOADS,
+        *given.LENGTH,
         "roller.pin.material.tensile_strength",
         "roller.fork.material.*_strength",
     ),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
     page="Roller",
+    scales_with=(NORMAL_FORCE, 1.0),
 ).measured(
     "angles",
     value=_of_seat.value,
@@ -279,9 +324,10 @@ roller_pin_pressure = check(
         PIN_PRESSURE_SHARE, (_described(numbers)[1].material,), numbers
     ),
     remark=_with_card_of_pin,
-    deviation=0.005,
+    deviation=0.02,
+    bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(normal_force)
+)(_level_force(_seat))
 
 
 def _fork_and_pin(roller: Roller) -> tuple[Fork, Pin] | None:
@@ -291,12 +337,13 @@ def _fork_and_pin(roller: Roller) -> tuple[Fork, Pin] | None:
     return roller.fork, roller.pin
 
 
-def _cheek(numbers: Numbers) -> float:
+def _cheek(force: Value, moment: Value, numbers: Numbers) -> Array:
     both = _fork_and_pin(numbers.known_case.roller)
     if both is None:
-        return np.nan
+        return np.full_like(force, np.nan)
     fork, pin = both
-    return pin_strength.cheek_pressure(1.0, pin.diameter, fork.cheek_width, pin.span, pin.overhung)
+    seat = pin.diameter, fork.cheek_width, pin.span, pin.overhung
+    return pin_strength.cheek_pressure(force, moment, *seat)
 
 
 def _cheek_allowed(numbers: Numbers) -> Allowed:
@@ -319,7 +366,7 @@ def _cheek_in_words(demand: Demand, solution: Solution) -> Demand:
     return replace(demand, figures=_sources(fork.material, pin.material))
 
 
-_of_cheek = PerLoad(_cheek)
+_of_cheek = _of_force(_cheek)
 cheek_pressure = check(
     PIN_PRESSURE_SHARE,
     id="cheek_pressure",
@@ -331,23 +378,28 @@ cheek_pressure = check(
     needs="roller",
     part="fork",
     kept_as="normal force at the maximum pressure of the pin in its fork",
-    formula="p <= roller.fork.pressure_limit, else x R_m; p: N/(2 d t) under a pin held at both"
-    " ends, N (6 l + 4 t)/(d t^2) beside an overhung one, N: greatest normal force over all load"
-    " cases and angles, d: pin diameter, t: cheek width, l: cheek to bearing centre, R_m: lower"
-    " tensile strength of fork and pin, x: limits.pin_pressure_share.",
+    formula="p <= roller.fork.pressure_limit, else x R_m; p = (N/2 + C/l)/(d t): under a pin held"
+    " at both ends, (N (6 l + 4 t) + 6 C)/(d t^2) beside an overhung one, " + _ROLLER_LOAD + ", d:"
+    " pin diameter, t: cheek width, l: span, or cheek to bearing centre, R_m: lower tensile"
+    " strength of fork and pin, x: limits.pin_pressure_share.",
     symbols={
         "?": "roller.pin.mounting straddled",
-        "p": "normal_force/(2 roller.pin.diameter roller.fork.cheek_width) [MPa]",
+        **_ON_ROLLER,
+        "p": "[MPa]",
+        "l": "roller.pin.span",
+        "d": "roller.pin.diameter",
+        "t": "roller.fork.cheek_width",
     },
     reason="a seat that yields lets the pin tilt and the roller run on its edge",
     values=(
-        *given.LOADS,
+        *given.LENGTH,
         "roller.pin.material.tensile_strength",
         "roller.fork.material.*_strength",
         "roller.fork.pressure_limit",
     ),
     levers=(levers.one("roller.fork.cheek_width"), *levers.LOAD),
     page="Roller",
+    scales_with=(NORMAL_FORCE, 1.0),
 ).measured(
     "angles",
     value=_of_cheek.value,
@@ -355,9 +407,10 @@ cheek_pressure = check(
     allowed=_cheek_allowed,
     needed=(Pin.table,),
     remark=_cheek_in_words,
-    deviation=0.005,
+    deviation=0.02,
+    bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(normal_force)
+)(_level_force(_cheek))
 
 
 @check(

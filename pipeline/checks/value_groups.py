@@ -43,12 +43,14 @@ def bodies(*keys: str) -> tuple[str, ...]:
 
 
 CONTACT = (*LOADS, *bodies("E", "nu"))
+AXES = ("limits.axis_parallelism", "limits.cam_run_out")
+TILT = (*AXES, "camshaft.material.E")
 LENGTH = (
     *CONTACT,
     *("cam.end.*", "roller.end.*", "follower.face.end.*"),
     *("cam.crown.*", "roller.crown.*", "follower.face.crown.*"),
     *("guides.a.clearance", "guides.b.clearance", "roller.axial_offset"),
-    *("limits.axis_parallelism", "limits.cam_run_out", "limits.roller_clearance"),
+    *(*AXES, "limits.roller_clearance"),
     *("camshaft.drag", "camshaft.material.E", "cam.material.density", *BENCH),
 )
 

@@ -37,7 +37,7 @@ from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.camshaft_loads import ShaftLoads
 from camwright.pipeline.follower.follower_forces import Loads, follower_loads, share_left
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
-from camwright.pipeline.follower.guide_reactions import GuideReactions
+from camwright.pipeline.follower.guide_reactions import GuideReactions, guide_reactions
 from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
 from camwright.pipeline.follower.spring import Spring
 
@@ -90,6 +90,7 @@ class Cycle(Tabled):
         unchanged = (
             "parts",
             "shaft",
+            "sideways",
             "elastic",
             *(() if self.machine.is_crowned else ("rolling",)),
         )
@@ -191,6 +192,52 @@ class Cycle(Tabled):
         return None if self.contact.tier is None else _lengths([self])[0]
 
     @property
+    def follower_moment(self) -> Array:
+        """Greatest moment (n,) of the contact about the middle of the follower, N m.
+
+        In the plane of its normal and the cam axis. An upper bound without the ends, and where the
+        loads end: the line of contact is not solved there.
+        """
+        length = None if self.end is not None else self.length
+        return turn_of_line(self).rigid_moment if length is None else length.follower_moment
+
+    @KeptResult
+    def sideways(self) -> GuideReactions | None:
+        """Reactions of the guides across the plane of the cam, under a tilt that they force.
+
+        Of the part of `follower_moment` that bends the stem; None where none is forced.
+        """
+        forced = turn_of_line(self).tilt.forced > 0.0
+        couple = np.where(forced, self.follower_moment, 0.0) * np.cos(self.loads.pressure_angle)
+        if not couple.any():
+            return None
+        machine, knots = self.machine, self.guides.knots_a.size
+        still, reach = np.zeros(couple.size), self.loads.overhang
+        return guide_reactions(still, reach, machine.stem, machine.guides, couple, knots)
+
+    @property
+    def guide_pushes(self) -> tuple[Array, Array]:
+        """`bearing_load_a` and `_b` of the guides (n,), N, with those across the cam's plane."""
+        guides, across = self.guides, self.sideways
+        loads = guides.bearing_load_a, guides.bearing_load_b
+        if across is None:
+            return loads
+        others = across.bearing_load_a, across.bearing_load_b
+        return np.hypot(loads[0], others[0]), np.hypot(loads[1], others[1])
+
+    @property
+    def guide_lines(self) -> tuple[Array, Array]:
+        """Greatest line loads in guides A and B (n,), N/m, with those across the cam's plane."""
+        guides, across = self.guides, self.sideways
+        if across is None:
+            return guides.line_pressure_max_a, guides.line_pressure_max_b
+        both = (
+            np.hypot(guides.line_pressure_a, across.line_pressure_a),
+            np.hypot(guides.line_pressure_b, across.line_pressure_b),
+        )
+        return both[0].max(axis=0), both[1].max(axis=0)
+
+    @property
     def signed_pressure(self) -> Array:
         """Signed contact pressure (n,), Pa, ends and tilt included; NaN without the ends."""
         factor = np.full(self.theta.size, np.nan) if self.length is None else self.length.factor
@@ -213,7 +260,14 @@ class Cycle(Tabled):
     @KeptResult
     def parts(self) -> PartLoads:
         """Loads of guides, stem, spring, pin, key and shaft over the turn."""
-        return part_loads(self.turn, self.contour, self.pair.width, self.shaft)
+        return part_loads(
+            self.turn,
+            self.contour,
+            self.pair.width,
+            self.shaft,
+            self.guide_lines,
+            self.follower_moment,
+        )
 
     @KeptResult
     def shaft(self) -> ShaftLoads | None:
@@ -404,6 +458,10 @@ class Cycle(Tabled):
                     "tilt_moment", "N mm", "Greatest moment of the contact force about its middle"
                 ): length.moment,
             }
+        moment = Column(
+            "follower_moment", "N mm", "Greatest moment of the contact about the follower's middle"
+        )
+        columns[moment] = self.follower_moment
         # An engine at rest has no torque in its load case.
         if turn.torque_before is not None and turn.torque_after is not None:
             before, after = (
@@ -465,6 +523,14 @@ class _ThinnedCycle(Cycle):
     @KeptResult
     def length(self) -> LengthHistory | None:
         return _at_every(self.whole.length, self.whole.theta.size, self.step)
+
+    @property
+    def follower_moment(self) -> Array:
+        return self.whole.follower_moment[:: self.step]
+
+    @KeptResult
+    def sideways(self) -> GuideReactions | None:
+        return _at_every(self.whole.sideways, self.whole.theta.size, self.step)
 
     @KeptResult
     def rolling(self) -> RollingHistory:

@@ -37,7 +37,12 @@ from camwright.pipeline.contact.finite_length.length_contact import (
     SignedPressure,
     signed_pressure,
 )
-from camwright.pipeline.cycle.line_tilt import LineTilt, line_tilt
+from camwright.pipeline.cycle.line_tilt import (
+    LineTilt,
+    follower_moment,
+    line_tilt,
+    rigid_moment,
+)
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 from camwright.pipeline.follower.shaft_strength import slope_of
 
@@ -58,9 +63,9 @@ class LengthHistory:
 
     centre: in the middle, untilted; level, tilted: signed, without a moment and at the greatest
     one, `moment` (N m); at_corner: whether the greater of both is the mean over `mean_length` (m)
-    at a corner. 1 and no moment without contact. tilt: its parts; couple (n,): greatest that
-    friction of the guides and axial offset hold, N m. correction: of the half-spaces by finite
-    elements, included in the pressures; None: half-spaces alone.
+    at a corner. 1 and no moment without contact. tilt: its parts; held, aside (n,): couple that
+    friction of the guides holds, and that of the axial offset, N m. correction: of the half-spaces
+    by finite elements, included in the pressures; None: half-spaces alone.
     """
 
     centre: Array
@@ -70,7 +75,8 @@ class LengthHistory:
     at_corner: NDArray[np.bool_]
     mean_length: float
     tilt: LineTilt
-    couple: Array
+    held: Array
+    aside: Array
     is_crowned: bool
     correction: EndCorrection | None = None
 
@@ -85,6 +91,16 @@ class LengthHistory:
             column[rows] = values
             changed[name] = column
         return replace(self, **changed)
+
+    @property
+    def couple(self) -> Array:
+        """Greatest couple (n,) that friction of the guides and axial offset hold, N m."""
+        return self.held + self.aside
+
+    @property
+    def follower_moment(self) -> Array:
+        """Greatest moment (n,) about the middle of the follower, N m."""
+        return follower_moment(self.moment, self.tilt.forced, self.held, self.aside)
 
     @property
     def factor(self) -> Array:
@@ -201,14 +217,32 @@ class TurnOfLine(NamedTuple):
         radius = self.contact.relative_radius[rows]
         return ContactLoads(
             1.0 / radius, force, tilt.greatest[rows], tilt.forced[rows],
-            np.full(rows.size, self.tilt_compliance), self.couple[rows], raised_load(force),
+            np.full(rows.size, self.tilt_compliance), self.couple[rows],
+            raised_load(force),
         )  # fmt: skip
+
+    @property
+    def held(self) -> Array:
+        """Couple (n,), N m, that friction of the guides holds."""
+        return held_couple(self.machine, self.guides)
+
+    @property
+    def aside(self) -> Array:
+        """Couple (n,), N m, of the force at the middle of the line about the stem."""
+        return np.asarray(self.force * self.machine.stem_offset)
 
     @property
     def couple(self) -> Array:
         """Greatest couple (n,), N m, of guide friction and axial offset."""
-        machine = self.machine
-        return held_couple(machine, self.guides) + self.force * machine.stem_offset
+        return self.held + self.aside
+
+    @property
+    def rigid_moment(self) -> Array:
+        """Upper bound (n,) of the moment about the middle of the follower, N m; ends not known."""
+        forced, held = self.tilt.forced, self.held
+        most = GREATEST_MOMENT * self.force * self.machine.contact_width
+        line = rigid_moment(forced, self.tilt_compliance, held, most)
+        return follower_moment(line, forced, held, self.aside)
 
     @property
     def tilt_compliance(self) -> float:
@@ -225,7 +259,8 @@ class TurnOfLine(NamedTuple):
             *(blank, blank, blank, np.zeros(count), np.zeros(count, dtype=bool)),
             self.machine.limits[END_MEAN_LENGTH],
             self.tilt,
-            self.couple,
+            self.held,
+            self.aside,
             self.machine.is_crowned,
         )
         return history if solved is None else history.with_rows(self.rows, solved)

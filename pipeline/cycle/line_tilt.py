@@ -1,4 +1,4 @@
-"""Tilt of the line of contact: its parts, and the tilt that the guides force on it."""
+"""Tilt of the line of contact: its parts, what the guides force of it, and its moment."""
 
 from __future__ import annotations
 
@@ -91,3 +91,35 @@ def line_tilt(
     """
     roller = 0.0 if bearing_length is None else clearance / bearing_length
     return LineTilt(shaft, parallelism, run_out / (2.0 * base_radius), roller, guides)
+
+
+def rigid_moment(forced: Array, compliance: Value, held: Array, most: Array) -> Array:
+    """Greatest moment (...) about the middle of a line of contact that does not yield, N m.
+
+    An upper bound of that of the pressure along the line.
+
+    Parameters
+    ----------
+    forced : array (...)        see `LineTilt`, rad
+    compliance : float, array   of stem and camshaft, rad/(N m)
+    held, most : array (...)    couple that friction of the guides holds; force near an end, N m
+    """
+    return np.asarray(np.minimum(np.maximum(forced / compliance, held), most))
+
+
+def follower_moment(line: Array, forced: Array, held: Array, aside: Array) -> Array:
+    """Greatest moment (...) of the contact about the middle of the follower, N m, >= 0.
+
+    Stem, pin and fork carry it. Within the clearances of the guides the stem turns until their
+    friction holds what is left; beyond them the moment about the middle of the line and that of its
+    distance from the stem add up.
+
+    Parameters
+    ----------
+    line : array (...)     moment about the middle of the line of contact, N m
+    forced : array (...)   see `LineTilt`, rad
+    held : array (...)     greatest couple that friction of the guides holds, N m
+    aside : array (...)    force times the distance of the middle of the line from the stem, N m
+    """
+    moment = line + aside
+    return np.asarray(np.where(forced > 0.0, moment, np.minimum(moment, held)))

@@ -383,6 +383,14 @@ class LoadedCam:
         bent = slope.under(pushed + on_cam, gear_force(self.torque, shaft), held)
         return in_the_normal(bent, self.motion.pressure_angle)
 
+    @cached_property
+    def follower_moment(self) -> Array:
+        """Greatest moment of the contact about the middle of the follower, N m, >= 0.
+
+        In the plane of its normal and the cam axis; here of a level line of contact.
+        """
+        return 0.0 * self.normal
+
     @property
     def pressure_factor(self) -> Value:
         """Contact pressure over that of plane-strain half-planes."""

@@ -130,7 +130,12 @@ class PartLoads(Displayed):
 
 
 def part_loads(
-    turn: Turn, contour: Contour, contact_width: float, shaft: ShaftLoads | None
+    turn: Turn,
+    contour: Contour,
+    contact_width: float,
+    shaft: ShaftLoads | None,
+    guide_lines: tuple[Array, Array],
+    moment: Array,
 ) -> PartLoads:
     """Loads of all parts over a turn.
 
@@ -138,6 +143,8 @@ def part_loads(
     ----------
     shaft : ShaftLoads      of the turn; None without a camshaft
     contact_width : float   of the line contact, m
+    guide_lines : pair      greatest line loads in guides A and B (n,), N/m
+    moment : array (n,)     of the contact about the middle of the follower, N m
     """
     machine, loads, guides = turn.machine, turn.loads, turn.guides
     friction = turn.friction
@@ -146,10 +153,9 @@ def part_loads(
     motion = machine.follower.rolling(contour, loads.theta, machine.cam_speed)
     pair = machine.guides
     nominal, worst = machine.friction.nominal, friction.greatest
-    pin = machine.follower.pin_stress_per_newton
     return PartLoads(
-        guide_edge_pressure_a=edge_pressure_of(machine, pair.a)(guides.line_pressure_max_a),
-        guide_edge_pressure_b=edge_pressure_of(machine, pair.b)(guides.line_pressure_max_b),
+        guide_edge_pressure_a=edge_pressure_of(machine, pair.a)(guide_lines[0]),
+        guide_edge_pressure_b=edge_pressure_of(machine, pair.b)(guide_lines[1]),
         heat_a=friction_power(nominal[0] * guides.rubbing_load_a, loads.velocity),
         heat_b=friction_power(nominal[1] * guides.rubbing_load_b, loads.velocity),
         heat_max_a=friction_power(worst.friction_force_a, worst.velocity),
@@ -167,7 +173,7 @@ def part_loads(
         shaft_bearing_2=None if shaft is None else shaft.load_2,
         spring_stress=None if spring is None else spring.stress(loads.spring_force),
         surge_force=spring_surge(machine, loads.lift),
-        pin_stress=None if pin is None else pin * loads.normal_force,
+        pin_stress=machine.follower.pin_stress(loads.normal_force, moment),
         roller_spin=None if motion is None else motion.spin,
         roller_spin_acceleration=None if motion is None else motion.spin_acceleration,
         ring_amplitude=amplitude,

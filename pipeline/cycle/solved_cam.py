@@ -205,8 +205,11 @@ class SolvedCam(ForcesCam):
 
     @property
     def bearing(self) -> OfGuides:
-        guides = self.cycle.guides
-        return OfGuides(guides.bearing_load_a, guides.bearing_load_b)
+        return OfGuides(*self.cycle.guide_pushes)
+
+    @cached_property
+    def follower_moment(self) -> Array:
+        return self.cycle.follower_moment
 
     @property
     def heat(self) -> OfGuides:

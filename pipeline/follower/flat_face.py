@@ -34,7 +34,6 @@ class FlatFace(Part):
     axial_offset: ClassVar[None] = None
     parts: ClassVar[Mapping[str, Part | None]] = {}
     drag: ClassVar[None] = None
-    pin_stress_per_newton: ClassVar[None] = None
     defaults: ClassVar[Mapping[str, str]] = {
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
     }
@@ -117,6 +116,9 @@ class FlatFace(Part):
     def turns(self, path: Array | float) -> float:  # noqa: ARG002
         """Zero: the face does not turn with the cam."""
         return 0.0
+
+    def pin_stress(self, force: Array, moment: Array) -> None:
+        """None: a face has no pin; see `FollowerKind`."""
 
     def rolling(self, contour: Contour, theta: Array, speed: float) -> None:
         """None: the face slides."""

@@ -66,7 +66,7 @@ class FollowerKind(Protocol):
     the cam, not rolls; `end`: of its surface, None where it is not stated; `crown`: None for a
     straight one; `axial_offset`: of its middle from that of the cam, m, None where it is not
     stated; `parts`: those of the scope by their names there, None: not described; `drag`: against
-    rolling, None without it; `pin_stress_per_newton`: in bending, Pa/N, None without a pin.
+    rolling, None without it.
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[object]]]
@@ -98,10 +98,15 @@ class FollowerKind(Protocol):
     @property
     def drag(self) -> Drag | None: ...
     @property
-    def pin_stress_per_newton(self) -> float | None: ...
-    @property
     def moving(self) -> MovingParts: ...
     def with_values(self, values: Mapping[str, float]) -> Self: ...
+
+    def pin_stress(self, force: Array, moment: Array) -> Array | None:
+        """Bending stress of the pin (n,), Pa; None without one.
+
+        Under a contact force (n,), N, and its moment about the middle of the follower (n,), N m.
+        """
+        ...
 
     @property
     def side_friction(self) -> float:

@@ -30,6 +30,7 @@ _FORCES = np.geomspace(0.1, 1e6, 155)
 """Nodes of the load, N: 22 a decade. Below the first the stem only tilts in its clearance."""
 _OVERHANG_STEP = 0.03  # of the overhang over the spacing
 _DIRECTION_STEP = np.pi / 120.0  # of the angle of moment over spacing against side force
+_COUPLE_ALONE = 60.0  # steps of the direction: a right angle
 _SPACING_STEP = 0.03  # of the logarithm of the spacing
 
 
@@ -203,6 +204,18 @@ _STATED = -(10**6)  # number of the spacing of the guides themselves
 def _table(kind: type[GuideTable], stem: Stem, guides: GuidePair) -> GuideTable:
     """Tables of a stem in guides, kept by both."""
     return kind(stem, guides)
+
+
+def bearing_under_couple(
+    stem: Stem, guides: GuidePair, couple: Array, spacing: Array
+) -> tuple[Array, Array]:
+    """Bearing loads of guides A and B (...), N, under a couple on the stem (...), N m, alone.
+
+    spacing : array (...)   of the guides, m
+    """
+    table, load = _table(MomentTable, stem, guides), couple / spacing
+    ratios = table.ratios(load, table.between(np.full(load.shape, _COUPLE_ALONE), spacing))
+    return ratios.bearing_a * load, ratios.bearing_b * load
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,7 +27,7 @@ from camwright.pipeline.follower.follower_stiffness import (
     fork_compliance,
     pin_compliance,
 )
-from camwright.pipeline.follower.pin_strength import pin_bending_stress
+from camwright.pipeline.follower.pin_strength import bending_per_moment, pin_moment
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls, ring_on_balls, solid_reason
 from camwright.pipeline.follower.roller_motion import RollingRoller, roller_motion
 from camwright.pipeline.follower.roller_parts import Bearing, Fork, Pin
@@ -175,14 +175,13 @@ class Roller(Part):
             },
         )
 
-    @property
-    def pin_stress_per_newton(self) -> float | None:
-        """Bending stress of the pin per newton of contact force, Pa/N; None without a pin."""
+    def pin_stress(self, force: Array, moment: Array) -> Array | None:
+        """Bending stress of the pin (n,), Pa; see `FollowerKind`."""
         pin = self.pin
         if pin is None:
             return None
-        overhung = pin.overhung
-        return float(pin_bending_stress(1.0, pin.diameter, self.width, pin.span, overhung))
+        bent = pin_moment(force, moment, self.width, pin.span, pin.overhung)
+        return np.asarray(bent * bending_per_moment(pin.diameter))
 
     def contour(self, lift: Lift, cam: CamBody) -> Contour:
         """Cam contour under the roller; see `FollowerKind`."""

@@ -47,7 +47,7 @@ _LEAST_SHARE = 1e-6
 SAME_ANGLE = 1e-6  # deg, of a demand and a row of the cycle
 _UNITS = (
     "MPa m/s", "rad/s", "rad/s^2", "m/s", "N/mm", "N m", "mm/rad^2", "mm/rad", "MPa", "mm", "um",
-    "deg", "N", "W", "rpm", "percent",
+    "deg", "N", "N mm", "W", "rpm", "percent",
 )  # fmt: skip
 """Units of the columns of a cycle and of the figures of a cam."""
 

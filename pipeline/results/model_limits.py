@@ -37,8 +37,9 @@ MODEL_LIMITS = (
         "Contact and stress are solved in plane strain. The pressure along the line of contact, its"
         " ends, crown and tilt, is a factor on it by half-spaces with mirrored ends, 5 % of the"
         " mean at a corner and 2 % elsewhere from finite elements. Under a forced tilt stem and"
-        " camshaft bend; guides, roller bearing and pin do not yield, and are not loaded by the"
-        " moment of the tilted contact.",
+        " camshaft bend; guides, roller bearing and pin do not yield. The moment of the contact"
+        " loads pin, fork and seat, that of a forced tilt the guides, without effect on their"
+        " friction; of the roller's bearing the angle between the rings is limited in its place.",
         edge_pressure.id,
     ),
     ModelLimit(

@@ -296,12 +296,27 @@ class Designs:
     @KeptResult
     def contact_width(self) -> Array:
         """Width of the line contact (m, 1), m: the overlap of the flats of cam and follower."""
+        cam, other, offset = self._flats
+        return np.asarray(np.minimum(np.minimum(cam, other), 0.5 * (cam + other) - offset))
+
+    @KeptResult
+    def stem_offset(self) -> Array:
+        """Distance of the middle of the line contact from the stem (m, 1), m."""
+        cam, other, offset = self._flats
+        low, high = (
+            np.maximum(-0.5 * cam, offset - 0.5 * other),
+            np.minimum(0.5 * cam, offset + 0.5 * other),
+        )
+        return np.asarray(np.abs(0.5 * (low + high) - offset))
+
+    @property
+    def _flats(self) -> tuple[Array, Array, Array]:
+        """Widths of the flats of cam and follower, axial offset (m, 1), m."""
         cam = self.value("cam.width") - 2.0 * np.nan_to_num(self.value("cam.end.size"))
         part = self.machine.follower
         width = self.value(part.width_key)
         other = width - 2.0 * np.nan_to_num(self.value(f"{part.table}.end.size"))
-        offset = np.nan_to_num(self.value("roller.axial_offset"))
-        return np.asarray(np.minimum(np.minimum(cam, other), 0.5 * (cam + other) - offset))
+        return cam, other, np.nan_to_num(self.value("roller.axial_offset"))
 
     @KeptResult
     def relative_radius(self) -> Array:

@@ -17,6 +17,7 @@ from camwright.pipeline.case.limits import (
     ROLLER_CLEARANCE,
 )
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMENT
 from camwright.pipeline.cycle.length_history import (
     ContactLoads,
     factor_range,
@@ -24,7 +25,12 @@ from camwright.pipeline.cycle.length_history import (
     raised_load,
     worst_of,
 )
-from camwright.pipeline.cycle.line_tilt import LineTilt, line_tilt
+from camwright.pipeline.cycle.line_tilt import (
+    LineTilt,
+    follower_moment,
+    line_tilt,
+    rigid_moment,
+)
 from camwright.pipeline.cycle.numbers import Numbers
 
 # Keys that the contact of finite length depends on, and the number of its different shapes up to
@@ -52,13 +58,19 @@ class DesignValues(Protocol):
     def value(self, key: str) -> Array: ...
     @property
     def numbers(self) -> Numbers: ...
+    @property
+    def stem_offset(self) -> Array: ...
 
 
 class LineFactors(NamedTuple):
-    """Axial pressure factors (m, n) in the middle of the line, and the greatest along it."""
+    """Axial pressure factors (m, n) in the middle of the line, and the greatest along it.
+
+    arm: greatest distance of the resultant force from the middle of the line, m
+    """
 
     centre: Array
     greatest: Array
+    arm: Array
 
 
 def factors_of(
@@ -72,8 +84,8 @@ def factors_of(
     """Axial pressure factors of the designs; 1 without contact, NaN for no closed contour.
 
     None where the case lacks an end, or the designs have too many shapes of contact, see
-    `has_many_shapes`. Of a line without crown, whose greatest pressure over the turn counts alone,
-    they are solved at the angles near that one; between others they are linear.
+    `has_many_shapes`. Of a line without crown, whose greatest pressure and moment over the turn
+    count alone, they are solved at the angles near these; between others they are linear.
 
     Parameters
     ----------
@@ -90,9 +102,9 @@ def factors_of(
         np.broadcast_to(each, force.shape)
         for each in (tilt.greatest, tilt.forced, _yields(designs), _held_couple(designs, rubbing))
     )
-    whole = LineFactors(np.ones(force.shape), np.ones(force.shape))
+    whole = LineFactors(np.ones(force.shape), np.ones(force.shape), np.zeros(force.shape))
     contact = (force > 0) & np.isfinite(radius)
-    raised = np.ones(force.shape)
+    raised, aside = np.ones(force.shape), force * designs.stem_offset
     if contact.any():
         raised[contact] = raised_load(force[contact])
 
@@ -102,13 +114,14 @@ def factors_of(
             at = (member == number)[:, None] & chosen
             if not at.any():
                 continue
-            held = couple[at] + force[at] * machine.stem_offset
+            held = couple[at] + aside[at]
             turned = greatest[at], forced[at], yields[at]
             loads = ContactLoads(1.0 / radius[at], force[at], *turned, held, raised[at])
             mean = machine.limits[END_MEAN_LENGTH]
             worst = worst_of([factor_range(pair, mean, loads) for pair in machine.finite_pairs])
             whole.centre[at] = worst.centre
             whole.greatest[at] = np.maximum(worst.level, worst.tilted)
+            whole.arm[at] = worst.moment / force[at]
 
     if designs.machine.is_crowned:
         solve(contact)
@@ -116,11 +129,13 @@ def factors_of(
     first = np.zeros(force.shape, dtype=bool)
     first[:, :: max(1, force.shape[1] // _FIRST_ANGLES)] = True
     solve(first & contact)
-    between, bound = _between(whole.greatest, first, contact)
-    whole.greatest[...] = between
-    pressure = np.where(contact, plane, 0.0)
-    known = np.max(np.where(first, pressure * between, 0.0), axis=1, keepdims=True)
-    near = pressure * bound >= (1.0 - _NEAR_GREATEST) * known
+    near = np.zeros(force.shape, dtype=bool)
+    for values, load in ((whole.greatest, plane), (whole.arm, force)):
+        between, bound = _between(values, first, contact)
+        values[...] = between
+        of_contact = np.where(contact, load, 0.0)
+        known = np.max(np.where(first, of_contact * between, 0.0), axis=1, keepdims=True)
+        near |= (known > 0.0) & (of_contact * bound >= (1.0 - _NEAR_GREATEST) * known)
     steps = range(-_BESIDE_GREATEST, _BESIDE_GREATEST + 1)
     near = np.any([np.roll(near, step, axis=1) for step in steps], axis=0)
     solve(near & contact & ~first)
@@ -144,6 +159,31 @@ def _between(
     most = factors[:, columns].max(axis=1, keepdims=True)
     bound = np.where(both, np.maximum(before, after), most)
     return before + share * (after - before), bound
+
+
+def moment_on_follower(
+    designs: DesignValues,
+    force: Array,
+    rubbing: tuple[Array, Array],
+    shaft: Array,
+    factors: LineFactors | None,
+) -> Array:
+    """Moment (m, n) of the contact about the middle of the follower, N m; see `factors_of`.
+
+    factors : LineFactors   None: the case lacks an end; an upper bound
+    """
+    forced, held = _tilt(designs, shaft).forced, _held_couple(designs, rubbing)
+    if factors is None:
+        most = GREATEST_MOMENT * force * designs.numbers["contact.width"]
+        line = rigid_moment(forced, _yields(designs), held, most)
+    else:
+        line = np.maximum(force, 0.0) * factors.arm
+    return follower_moment(line, forced, held, force * designs.stem_offset)
+
+
+def forced_part(designs: DesignValues, shaft: Array, moment: Array) -> Array:
+    """Part (m, n) of the moment about the follower that bends the stem, N m."""
+    return np.where(_tilt(designs, shaft).forced > 0.0, moment, 0.0)
 
 
 def has_many_shapes(designs: DesignValues) -> bool:

@@ -13,12 +13,14 @@ from camwright.geometry.follower_path import Motion
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
 from camwright.pipeline.follower.follower_forces import REST, LoadEnds, ends_of, share_left
-from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany
+from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany, bearing_under_couple
 from camwright.pipeline.screening.design_lengths import (
     DesignValues,
     LineFactors,
     factors_of,
+    forced_part,
     has_many_shapes,
+    moment_on_follower,
 )
 
 
@@ -150,7 +152,26 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def bearing(self) -> OfGuides:
-        return OfGuides(self.guides.bearing_a, self.guides.bearing_b)
+        guides, block = self.guides, self.block
+        couple = forced_part(block, self.shaft_tilt, self.follower_moment)
+        couple = couple * np.cos(self.motion.pressure_angle)
+        if not couple.any():
+            return OfGuides(guides.bearing_a, guides.bearing_b)
+        spacing = np.broadcast_to(self.numbers["guides.spacing"], couple.shape)
+        machine = block.machine
+        across = bearing_under_couple(machine.stem, machine.guides, couple, spacing)
+        return OfGuides(
+            np.hypot(guides.bearing_a, across[0]), np.hypot(guides.bearing_b, across[1])
+        )
+
+    @cached_property
+    def follower_moment(self) -> Array:
+        """With too many shapes of contact that of a level line, see `has_many_shapes`."""
+        if has_many_shapes(self.block):
+            return super().follower_moment
+        return moment_on_follower(
+            self.block, self.normal, self.rubbing, self.shaft_tilt, self._factors
+        )
 
     @cached_property
     def ends(self) -> LoadEnds:

@@ -321,7 +321,7 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
     """
     guides, contact, machine = cycle.guides, cycle.surface, cycle.machine
     worst, friction = cycle.parts.friction.greatest, machine.friction.greatest
-    line_a, line_b = guides.line_pressure_max_a, guides.line_pressure_max_b
+    (line_a, line_b), (push_a, push_b) = cycle.guide_lines, cycle.guide_pushes
     surge, spacing = cycle.parts.surge_force, machine.guides.spacing
     of_guides = _Statics.of(cycle.loads, spacing, (guides.statics_a, guides.statics_b))
     hot = _Statics.of(worst, spacing, (worst.reaction_a, worst.reaction_b))
@@ -329,8 +329,8 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
     return replace(
         swept,
         contact=_ratio(contact.p0, contact.p0_hertz),
-        guide_a=of_guides.correction(0, guides.bearing_load_a / left[0][0]),
-        guide_b=of_guides.correction(1, guides.bearing_load_b / left[1][0]),
+        guide_a=of_guides.correction(0, push_a / left[0][0]),
+        guide_b=of_guides.correction(1, push_b / left[1][0]),
         rubbing_a=of_guides.correction(0, guides.rubbing_load_a),
         rubbing_b=of_guides.correction(1, guides.rubbing_load_b),
         jam=_ratio(worst.jam_index, worst.jam_index_statics),

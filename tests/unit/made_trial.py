@@ -256,11 +256,13 @@ def cycle(
 
 
 def _length() -> LengthHistory:
-    """A quarter more pressure along the line of the tilted roller."""
+    """A quarter more pressure along the line of the roller, and 1 N m that the guides hold."""
     one = np.ones(POSITIONS)
     corner = np.zeros(POSITIONS, dtype=bool)
-    tilt = LineTilt(0.1e-3 * one, 0.1e-3, 0.1e-3, 0.5e-3, 0.2e-3)
-    return LengthHistory(one, 1.1 * one, 1.25 * one, one, corner, 1e-4, tilt, one, is_crowned=False)
+    tilt = LineTilt(0.1e-3 * one, 0.1e-3, 0.1e-3, 0.5e-3, 0.4e-3)
+    return LengthHistory(
+        one, 1.1 * one, 1.25 * one, one, corner, 1e-4, tilt, one, 0.0 * one, is_crowned=False
+    )
 
 
 def _even(force: np.ndarray, knots: np.ndarray) -> np.ndarray:

@@ -486,8 +486,8 @@ by_limit(
     "roller_pin",
     "pin_share",
     lambda: with_loads(normal_force=NAN),
-    32.0 * 400.0 * (16.0 / 4.0 - 10.0 / 8.0) / (np.pi * 5.0**3),
-    "32 M/(pi d^3)",
+    by_hand.pin_bending(400.0, 1000.0),
+    "32 M/(pi d^3), 400 N and 1 N m by summation along the pin",
     factor=1.0 / 1500e6,
     missing=lambda: with_part("roller", pin=None),
 )
@@ -503,8 +503,8 @@ by_limit(
     "roller_pin_shear",
     "pin_share",
     lambda: with_loads(normal_force=NAN),
-    4.0 / 3.0 * 200.0 / (np.pi * 2.5**2),
-    "half of 400 N in a round section, 4/3 of the mean, Shigley sec. 3-11",
+    4.0 / 3.0 * (200.0 + 1000.0 / 16.0) / (np.pi * 2.5**2),
+    "half of 400 N and 1 N m over the span in a round section, 4/3 of the mean, Shigley sec. 3-11",
     factor=3.0**0.5 / 1500e6,
     missing=lambda: with_part("roller", pin=None),
 )
@@ -512,8 +512,8 @@ by_limit(
     "roller_pin_pressure",
     "pin_pressure_share",
     lambda: with_loads(normal_force=NAN),
-    400.0 / (5.0 * 10.0),
-    "N/(d b)",
+    400.0 / (5.0 * 10.0) + 6.0 * 1000.0 / (5.0 * 10.0**2),
+    "N/(d b) + 6 C/(d b^2)",
     factor=1.0 / 2000e6,
     missing=lambda: with_material("hard", tensile_strength=None),
 )
@@ -521,8 +521,8 @@ by_limit(
     "cheek_pressure",
     "pin_pressure_share",
     lambda: with_loads(normal_force=NAN),
-    200.0 / (5.0 * 4.0),
-    "half of 400 N on a cheek of 4 mm",
+    (200.0 + 1000.0 / 16.0) / (5.0 * 4.0),
+    "half of 400 N and 1 N m over the span on a cheek of 4 mm",
     factor=1.0 / 900e6,
     missing=lambda: with_part("roller", fork=None),
 )

@@ -16,7 +16,7 @@ from camwright.pipeline.follower.bearing_ring import (
     goodman,
 )
 from camwright.pipeline.follower.bearing_ring_elements import ring_bending
-from camwright.pipeline.follower.pin_strength import pin_bending_stress
+from camwright.pipeline.follower.pin_strength import pin_moment
 
 RING = Ring(7.5e-3, 1e-3, 5e-3, 210e9, 6, 1e8)
 
@@ -122,18 +122,16 @@ def test_ball_between_two_flats():
 
 
 def test_pin_bending():
-    """Straddled: F (span/4 - width/8); overhung: F times the arm; 32 M/(pi d^3)."""
-    scale = 32 / (np.pi * 5e-3**3)
-    assert pin_bending_stress(1000.0, 5e-3, 5e-3, 9e-3) == pytest.approx(
-        scale * 1000 * (9e-3 / 4 - 5e-3 / 8)
-    )
-    assert pin_bending_stress(1000.0, 5e-3, 5e-3, 4e-3, overhung=True) == pytest.approx(scale * 4.0)
+    """Straddled: F (span/4 - width/8); overhung: F times the arm, and the moment."""
+    assert pin_moment(1000.0, 0.0, 5e-3, 9e-3) == pytest.approx(1000 * (9e-3 / 4 - 5e-3 / 8))
+    assert pin_moment(1000.0, 0.0, 5e-3, 4e-3, overhung=True) == pytest.approx(4.0)
+    assert pin_moment(1000.0, 3.0, 5e-3, 4e-3, overhung=True) == pytest.approx(7.0)
+    assert pin_moment(0.0, 0.0, 5e-3, 9e-3) == 0.0
+    assert np.isnan(pin_moment(np.nan, 0.0, 5e-3, 9e-3))
     with pytest.raises(InputError, match="pin_span"):
-        pin_bending_stress(1.0, 5e-3, 5e-3, 4e-3)
-    with pytest.raises(InputError, match="pin_diameter"):
-        pin_bending_stress(1.0, 0.0, 5e-3, 9e-3)
-    with pytest.raises(InputError, match="force"):
-        pin_bending_stress(np.nan, 5e-3, 5e-3, 9e-3)
+        pin_moment(1.0, 0.0, 5e-3, 4e-3)
+    with pytest.raises(InputError, match="pin_width"):
+        pin_moment(1.0, 0.0, 0.0, 9e-3)
 
 
 def test_shipped_cards():

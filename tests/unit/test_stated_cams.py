@@ -69,6 +69,7 @@ LOADED = {
     "p0": PRESSURE,
     "p0_signed": 1.25 * PRESSURE,
     "half_width": np.full(made.POSITIONS, 1e-4),
+    "follower_moment": np.ones(made.POSITIONS),
     "spin_mean": [by_hand.roller_spin().mean()],
     "rubbing": PUSHES,
     "bearing": PUSHES,

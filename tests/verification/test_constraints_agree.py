@@ -60,7 +60,7 @@ DATA = Path(__file__).parents[1] / "data"
 POSITIONS = 120
 SHAPE = "spring_travel", "curvature_ratio", "undercut"
 LOAD = ("contact_force_margin", "jump", "jump_speed", "jam_index_friction_max", "roller_static",
-        "roller_pin", "guide_pressure_A", "guide_pressure_B")  # fmt: skip
+        "roller_load_share", "guide_pressure_A", "guide_pressure_B")  # fmt: skip
 """Limits that the synthesis states anew, a least value, the travel, and one of a group: the others
 are value and bound of the measure of their check, see `test_part_constraints_agree`."""
 UNDER_TRACTION = ("shakedown_traction", "edge_shakedown")

@@ -80,10 +80,11 @@ MEASURES = {
     for one in CHECKS
     if one.measured is not None and one.measured.reduce not in ("case", "contour", "top")
     for follower in ("roller", "face")
-    if one.needs in ("", follower) and not one.id.startswith(("guide_pressure", "edge_pressure"))
+    if one.needs in ("", follower) and not one.scales_with
+    if not one.id.startswith(("guide_pressure", "edge_pressure"))
 }
 """Of a load case; the limit at the temperature of a guide is in the correction of its pressure,
-and the ends of the contact are in the bound of theirs."""
+and the ends of the contact and the moment of its tilt are in the bounds of theirs."""
 
 
 def contour_of(case: Case) -> Contour:
