@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
+from camwright.geometry.arrays import Value
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.quantities import In, Known, Part, Temperature
 from camwright.pipeline.base.source import NO_SOURCE, Source
@@ -38,22 +39,22 @@ class Cooling(Part):
     source: Annotated[Source, Known("own choice", "run-in test")] = NO_SOURCE
     """source of the values of the table"""
 
-    def temperature(self, loss: float, area: float) -> float:
+    def temperature(self, loss: Value, area: Value) -> Value:
         """Steady temperature of the mechanism, K.
 
         Parameters
         ----------
-        loss : float   mean friction power, W
+        loss : float   mean friction power, W, or an array
         area : float   of the housing at least, m^2: gives heat to still air where no conductance
                        is stated
         """
         return self.ambient_temperature + (loss + self.heat) / self.carried(area)
 
-    def carried(self, area: float) -> float:
+    def carried(self, area: Value) -> Value:
         """Thermal conductance to the surroundings, W/K; area as of `temperature`."""
         return STILL_AIR * area if self.conductance is None else self.conductance
 
 
-def housing_area(diameter: float, height: float, width: float) -> float:
+def housing_area(diameter: Value, height: Value, width: Value) -> Value:
     """Least outer area of a housing, m^2: that of the bounding box of cam and follower."""
     return 2.0 * (diameter * height + diameter * width + height * width)

@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SURFACE_TEMPERATURE
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import STATED, Demand, Kept, check, of_key
 from camwright.pipeline.checks.contact_strength import line_pressure
@@ -27,7 +28,8 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 
 _HEAT_PATH = ("conductivity", "specific_heat")
-_OF_OIL = ("temperature", "scuffing_temperature", "boundary_temperature")
+OF_OIL = ("temperature", "scuffing_temperature", "boundary_temperature")
+"""Temperatures of the oil that `contact_temperature` needs."""
 _FLASH = {
     "T_oil": "lubricant.temperature - 273.15 [degC]",
     "T_m": f"{STATED} [K]",
@@ -105,6 +107,7 @@ def face_pv(cam: LoadedCam) -> Array:
     " source, at the mean friction coefficient, where they are nearest to the limit by the film"
     " there; a film of unknown roughness counts as none",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="face",
     formula="T_oil + 0.47 1.2 T_m + T_f <= T_b + c (T_s - T_b); c: (lambda - 0.4)/(1 - 0.4) within"
     " 0 and 1, T_m: mean of T_f over the turn, T_f: 1.11 mu w |u1 - u2| / ((B1 sqrt|u1| +"
@@ -131,7 +134,7 @@ def face_pv(cam: LoadedCam) -> Array:
 )
 def contact_temperature(solution: Solution) -> Demand:
     """Contact temperature of greatest utilisation, degC; at standstill that of the oil."""
-    oil, missing = solution.machine.lubricant, _heat_missing(solution, *_OF_OIL)
+    oil, missing = solution.machine.lubricant, heat_missing(solution.machine, *OF_OIL)
     cold, top, bare = (
         (None,) * 3
         if oil is None
@@ -149,9 +152,7 @@ def contact_temperature(solution: Solution) -> Demand:
     places: dict[str, tuple[int, float, float]] = {}
     for cycle in solution.cycles:
         rise = flash(cycle)
-        # without contact there is neither film nor heat
-        limits = celsius(scuffing_limit(_film(cycle), min(bare, top), top))
-        limits = np.where(np.isnan(limits), celsius(top), limits)
+        limits = contact_allowed(_film(cycle), bare, top)
         k = first_greatest(celsius(cold + bulk_rise(rise) + rise) / limits)
         places[cycle.load_case] = k, float(rise[k]), float(limits[k])
 
@@ -168,6 +169,15 @@ def contact_temperature(solution: Solution) -> Demand:
     return Demand(worst.value, limit, worst, note=note, figures=(oil.source,), stated=stated)
 
 
+def contact_allowed(film: Array, bare: float, top: float) -> Array:
+    """Scuffing temperature (...), degC, on a film over roughness; limits of layer and oil, K.
+
+    That of the oil without contact, where there is neither film nor heat.
+    """
+    limits = celsius(scuffing_limit(film, min(bare, top), top))
+    return np.where(np.isnan(limits), celsius(top), limits)
+
+
 def _film(cycle: Cycle) -> Array:
     """Film over roughness (n,); 0 where the roughness is not known, NaN without contact."""
     film = cycle.rolling.film
@@ -182,6 +192,7 @@ def _film(cycle: Cycle) -> Array:
     method="oil, and bulk by the mean flash temperature of the turn, at the mean friction"
     " coefficient",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="face",
     formula="T_oil + 0.47 1.2 T_m <= limits.surface_temperature, and that of the cards of cam and"
     " face where they state one; T_oil: lubricant.temperature, T_m: mean flash temperature, as of"
@@ -202,9 +213,8 @@ def bulk_temperature(solution: Solution) -> Demand:
     """Greatest bulk temperature over the load cases, degC."""
     machine = solution.machine
     oil, limit = machine.lubricant, machine.limits[SURFACE_TEMPERATURE]
-    stated = [card.temperature_limit for card in machine.bodies.values()]
-    allowed = celsius(min([limit, *(each for each in stated if each is not None)]))
-    missing = _heat_missing(solution, "temperature")
+    allowed = float(bulk_allowed(machine, limit))
+    missing = heat_missing(machine, "temperature")
     if missing or oil is None or oil.temperature is None:
         return Demand(None, allowed, missing=missing)
     cold = oil.temperature
@@ -219,9 +229,14 @@ def bulk_temperature(solution: Solution) -> Demand:
     return Demand(worst.value, allowed, worst, figures=(oil.source,), stated=of_turn)
 
 
-def _heat_missing(solution: Solution, *of_oil: str) -> tuple[str, ...]:
+def bulk_allowed(machine: Machine, limit: Value) -> Value:
+    """Limit of the bulk temperature, degC: the least of a limit, K, and those of the cards."""
+    cards = [card.temperature_limit for card in machine.bodies.values()]
+    return celsius(np.minimum(limit, min((t for t in cards if t is not None), default=np.inf)))
+
+
+def heat_missing(machine: Machine, *of_oil: str) -> tuple[str, ...]:
     """Keys that the temperature of the face lacks."""
-    machine = solution.machine
     missing = [*no_friction(machine)]
     oil = machine.lubricant
     missing += lacking(Lubricant.table, oil, *of_oil) if oil else [Lubricant.table]

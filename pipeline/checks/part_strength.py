@@ -139,7 +139,7 @@ roller_pin = check(
     bound=_of_bending.bound,
     allowed=_bending_allowed,
     remark=_pin_in_words,
-    deviation=0.02,
+    deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
 )(_level_force(_bending))
@@ -267,7 +267,7 @@ roller_pin_shear = check(
     bound=_of_shear.bound,
     allowed=_shear_allowed,
     remark=_with_card_of_pin,
-    deviation=0.02,
+    deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
 )(_level_force(_shear))
@@ -324,7 +324,7 @@ roller_pin_pressure = check(
         PIN_PRESSURE_SHARE, (_described(numbers)[1].material,), numbers
     ),
     remark=_with_card_of_pin,
-    deviation=0.02,
+    deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
 )(_level_force(_seat))
@@ -407,7 +407,7 @@ cheek_pressure = check(
     allowed=_cheek_allowed,
     needed=(Pin.table,),
     remark=_cheek_in_words,
-    deviation=0.02,
+    deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
 )(_level_force(_cheek))

@@ -20,6 +20,7 @@ from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.cam_shape import lift
@@ -554,7 +555,6 @@ def _gas_check(
     symbols: Mapping[str, str],
     reason: str,
     lift_can_help: bool = True,
-    tier: Tier = Tier.SCREENING,
     values: tuple[str, ...],
     cured_by: tuple[Lever, ...] = (),
     kept_as: str = "",
@@ -567,7 +567,7 @@ def _gas_check(
         source=Source("data sheet of the maker", confirmed=True),
         method=method,
         lift_can_help=lift_can_help,
-        tier=tier,
+        tier=Tier.SCREENING,
         moved_by_tolerance=False,
         part="gas_spring",
         kept_as=kept_as,
@@ -720,33 +720,52 @@ gas_force_lost = _gas_check(
 )(_lost_force)
 
 
-def _strokes(solution: Solution) -> int:
-    """Rises of the lift in a turn."""
-    slope = solution.contour.pitch.lift(uniform_turn(_TURN_SAMPLES), 1)
+def strokes_of(slope: Array) -> int:
+    """Rises of the lift in a turn, by its slope (n,)."""
     way = np.sign(slope[np.abs(slope) > _DWELL_SLOPE * np.abs(slope).max()])
     return int(np.sum((way > 0) & (np.roll(way, -1) < 0)))
 
 
-def _self_heating(solution: Solution) -> Demand:
-    """Temperature of the gas by the friction of its seals, degC."""
-    machine, spring = solution.machine, solution.machine.spring
-    gas = spring.gas
+def _strokes(solution: Solution) -> int:
+    return strokes_of(solution.contour.pitch.lift(uniform_turn(_TURN_SAMPLES), 1))
+
+
+def gas_of(case: Case) -> GasSpring:
+    """Gas spring of a case.
+
+    Raises
+    ------
+    InputError
+        If it has none.
+    """
+    gas = case.spring.gas
     if gas is None:
         raise InputError("spring.gas", "missing", "given for the checks of the gas spring")
+    return gas
+
+
+def gas_warmth(case: Case, work: Value, rate: Value) -> Value:
+    """Temperature of the gas, degC, by the energy at maximum lift, J, and the strokes per time."""
+    gas, ambient = gas_of(case), case.cooling.ambient_temperature
+    cooling = Cooling(ambient_temperature=ambient, conductance=gas.conductance)
+    loss = 2.0 * gas.friction * work * rate
+    return celsius(cooling.temperature(loss, gas.surface))
+
+
+def _self_heating(solution: Solution) -> Demand:
+    """Temperature of the gas by the friction of its seals, degC."""
+    spring, gas = solution.machine.spring, gas_of(solution.case)
     work = spring.energy(float(solution.contour.pitch.lift.highest.value))
-    cooling = Cooling(
-        ambient_temperature=machine.cooling.ambient_temperature, conductance=gas.conductance
-    )
 
     def rate(cycle: Cycle) -> float:
         return _strokes(solution) * cycle.cam_speed / FULL_TURN
 
     def warm(cycle: Cycle) -> float:
-        loss = 2.0 * gas.friction * work * rate(cycle)
-        return float(celsius(cooling.temperature(loss, gas.surface)))
+        return float(gas_warmth(solution.case, work, rate(cycle)))
 
     worst, often = (over_duty(steady(solution), each) for each in (warm, rate))
-    stated = {"W": work, "m": often.value, "G": cooling.carried(gas.surface)}
+    carried = Cooling(conductance=gas.conductance).carried(gas.surface)
+    stated = {"W": work, "m": often.value, "G": float(carried)}
     limit = float(celsius(gas.warm))
     return _of_gas(Demand(worst.value, limit, worst, stated=stated), solution)
 
@@ -768,7 +787,6 @@ gas_heating = _gas_check(
         "G": f"{STATED} [W/K]",
     },
     reason="pressure and force are those of the stated temperature, and a hotter seal leaks.",
-    tier=Tier.PREVIEW,
     values=(
         "load_case.speed",
         "load_case.duty",
@@ -802,7 +820,6 @@ gas_stroke_rate = _gas_check(
     symbols={"z": STATED, "n": "cam.fastest/(2 pi) [1/s]"},
     reason="each stroke heats gas and seal, which cool between the strokes alone.",
     lift_can_help=False,
-    tier=Tier.PREVIEW,
     values=("load_case.speed", "limits.overspeed", "spring.gas.stroke_rate_limit"),
     cured_by=levers.SPRING,
 )(_stroke_rate)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.extrema import first_least
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.cooling import housing_area
@@ -37,12 +37,13 @@ from camwright.pipeline.checks.extremes import (
 from camwright.pipeline.checks.missing_keys import unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 
 # rad: truncation and round-off of a chord along the tangent are below 1e-9.
 _CHORD = 1e-5
-# Mean over the greatest torque of a machine below which it states no power.
-_NO_MEAN = 1e-6
+NO_MEAN = 1e-6
+"""Mean over the greatest torque of a machine below which it states no power."""
 
 
 # A gentler lift lowers the reduction: lift_can_help stays False.
@@ -351,6 +352,7 @@ def friction_balance(solution: Solution) -> Demand:
     method="work of the friction over the turn, at the mean friction coefficients, over that of the"
     " machine; load cases that are fired",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     load_cases=FIRED,
     values=(*given.LOADS, "load_case.power"),
     levers=levers.GENTLER,
@@ -419,6 +421,7 @@ _STATED = (
     " over-speed left out, at the mean friction coefficients; the shaft's own bearings and the gear"
     " count in cooling.heat",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     load_cases=STEADY,
     values=(*given.LOADS, "load_case.duty", "cooling.*"),
     levers=(levers.one("cooling.conductance"), *levers.GENTLER),
@@ -426,22 +429,10 @@ _STATED = (
 )
 def mechanism_temperature(solution: Solution) -> Demand | None:
     """Steady temperature of the mechanism, degC; None without a temperature of any part."""
-    machine, contour = solution.machine, solution.contour
-    numbers, cooling = solution.numbers, machine.cooling
-    named = {key: numbers.get(key) for key in _STATED}
-    # warmer than around the guides, by their own friction
-    bushes = {guide.material.name for _, guide in machine.guides.both}
-    named |= {
-        name: card.holds_to
-        for name, card in solution.case.materials.items()
-        if card.is_metal and name not in bushes
-    }
-    stated = {key: float(value) for key, value in named.items() if value is not None}
+    cooling, stated = solution.machine.cooling, stated_temperatures(solution.numbers)
     if not stated:
         return None
-    across = 2.0 * contour.radius_max().value
-    height = across + float(numbers.get("follower.stem_length") or 0.0)
-    area = housing_area(across, height, machine.cam.width)
+    area = float(box_area(2.0 * solution.contour.radius_max().value, solution.numbers))
     running = steady(solution)
     # in degrees Celsius, of which the error bar is a share
     worst = over_duty(
@@ -461,8 +452,27 @@ def mechanism_temperature(solution: Solution) -> Demand | None:
     if cooling.conductance is None:
         note += "; no cooling is stated: still air on the box around cam and follower"
     loss = over_duty(running, lambda cycle: _friction_power(solution, cycle)).value
-    stated = {"P_f": loss, "G": cooling.carried(area)}
+    stated = {"P_f": loss, "G": float(cooling.carried(area))}
     return Demand(warm, float(allowed), worst, note=note, stated=stated)
+
+
+def stated_temperatures(numbers: Numbers) -> dict[str, float]:
+    """Temperatures at which parts are judged by key or material, K."""
+    case = numbers.known_case
+    # warmer than around the guides, by their own friction
+    bushes = {guide.material.name for _, guide in case.guides.both}
+    named = {key: numbers.get(key) for key in _STATED} | {
+        name: card.holds_to
+        for name, card in case.materials.items()
+        if card.is_metal and name not in bushes
+    }
+    return {key: float(value) for key, value in named.items() if value is not None}
+
+
+def box_area(across: Value, numbers: Numbers) -> Value:
+    """Outer area of the box around a cam, twice its greatest radius across, and follower, m^2."""
+    height = across + float(numbers.get("follower.stem_length") or 0.0)
+    return housing_area(across, height, numbers["cam.width"])
 
 
 def _friction_power(solution: Solution, cycle: Cycle) -> float:
@@ -477,7 +487,7 @@ def _power(cycle: Cycle, stated: float | None) -> float:
     throughput, before = cycle.turn.throughput, cycle.turn.torque_before
     if stated is not None:
         return stated
-    if throughput is None or before is None or throughput <= _NO_MEAN * np.abs(before).max():
+    if throughput is None or before is None or throughput <= NO_MEAN * np.abs(before).max():
         return np.nan
     return throughput * cycle.cam_speed * cycle.machine.gear_ratio
 

@@ -12,9 +12,9 @@ BULK_SHARE = 0.47 * 1.2
 the oil or are splashed: ISO/TS 6336-20, recalled: verify."""
 
 
-def bulk_rise(flash: Array | None) -> float:
-    """Bulk temperature rise over the oil, K, from flash temperatures (n,) of a turn; 0 for None."""
-    return 0.0 if flash is None else BULK_SHARE * float(flash.mean())
+def bulk_rise(flash: Array) -> Array:
+    """Bulk temperature rise over the oil (...), K, from flash temperatures (..., n) of a turn."""
+    return np.asarray(BULK_SHARE * flash.mean(axis=-1))
 
 
 def effusivity(conductivity: float, density: float, specific_heat: float) -> float:

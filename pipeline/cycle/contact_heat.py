@@ -27,23 +27,42 @@ def flash_history(
     Where the face reverses its motion through the contact it takes no heat: the cusp between two
     angles is that of the nearer.
     """
-    taken = _effusivity(machine.cam.material), _effusivity(machine.face.material)
-    if machine.face.friction is None or np.isnan(taken).any():
+    if machine.face.friction is None:
         return None
     through = machine.cam_speed * path.lift(theta, 2)
     heat = sliding.power / pair.width
     half_width = np.where(heat > 0, contact.half_width, 1.0)
-    rise = flash_temperature(heat, (through + sliding.speed, through), taken, half_width)
-    after = np.roll(through, -1)
-    before = np.flatnonzero(through * after < 0)
-    share = through[before] / (through[before] - after[before])
-    heat, speed, half_width = (
-        values[before] + share * (np.roll(values, -1) - values)[before]
-        for values in (heat, sliding.speed, half_width)
+    return flash_rise(machine, heat, sliding.speed, through, half_width)
+
+
+def flash_rise(
+    machine: Machine, heat: Array, sliding: Array, through: Array, half_width: Array
+) -> Array | None:
+    """Flash temperature rise (..., n) of a flat face over its turn, K; None without thermal data.
+
+    Parameters
+    ----------
+    heat : array (..., n)               friction power per length of the line, W/m
+    sliding, through : array (..., n)   speed of the cam on the face, and of the contact along it,
+                                        m/s
+    half_width : array (..., n)         m, > 0
+    """
+    taken = _effusivity(machine.cam.material), _effusivity(machine.face.material)
+    if np.isnan(taken).any():
+        return None
+    rise = flash_temperature(heat, (through + sliding, through), taken, half_width)
+    after = np.roll(through, -1, axis=-1)
+    reverses = through * after < 0
+    share = np.divide(through, through - after, out=np.zeros_like(through), where=reverses)
+    heat, sliding, half_width = (
+        values + share * (np.roll(values, -1, axis=-1) - values)
+        for values in (heat, sliding, half_width)
     )
-    cusp = flash_temperature(heat, (speed, 0.0), taken, half_width)
-    np.maximum.at(rise, (before + np.rint(share).astype(int)) % theta.size, cusp)
-    return rise
+    cusp = np.where(reverses, flash_temperature(heat, (sliding, 0.0), taken, half_width), 0.0)
+    nearer = np.rint(share) == 1.0
+    before = np.where(nearer, 0.0, cusp)
+    behind = np.roll(np.where(nearer, cusp, 0.0), 1, axis=-1)
+    return np.asarray(np.maximum(rise, np.maximum(before, behind)))
 
 
 def _effusivity(card: Material) -> float:

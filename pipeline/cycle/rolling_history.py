@@ -214,7 +214,9 @@ def rolling_history(
         contact=motion.rolling,
         tau_max=shear,
         von_mises=mises,
-        film=film_history(machine, contact, motion.entrainment, bulk_rise(flash)),
+        film=film_history(
+            machine, contact, motion.entrainment, 0.0 if flash is None else float(bulk_rise(flash))
+        ),
     )
 
 

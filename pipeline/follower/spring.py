@@ -605,7 +605,7 @@ def spring_force(
 
 
 def spring_energy(
-    preload: float, rate: float, lift: ArrayLike, shape: SpringShape | None = None
+    preload: Value, rate: Value, lift: ArrayLike, shape: SpringShape | None = None
 ) -> Array:
     """Spring energy P s + k s^2 / 2 (...), J, at a lift (...), m; for a shape P s + k R(s)."""
     at = np.asarray(lift, dtype=float)

@@ -22,6 +22,7 @@ from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
 from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.checks.torque_balance import NO_MEAN
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, motion_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import keyway_cut, rotating_force
@@ -60,6 +61,8 @@ class Designs:
     count : int          designs m
     step : int           every `step`-th sample of the lift is a cam angle of the loads
     torque_step : int    the same of the engine torque, a divisor of `step`; None: as of the loads
+    throughputs : mapping   mean torque of the power of the machine by number of the load case,
+                            crank N m, (m or 1, 1)
     results : dict       by name, computed on first use
     """
 
@@ -70,6 +73,7 @@ class Designs:
     count: int
     step: int
     torque_step: int | None = None
+    throughputs: Mapping[int, Array] = field(default_factory=dict)
     results: dict[str, object] = field(default_factory=dict, init=False)
 
     def value(self, key: str) -> Array:
@@ -210,7 +214,17 @@ class Designs:
             torque = self.torques.get(k)
             torque = None if torque is None else torque[..., :: self.torque_step or self.step]
             speed = self.value(f"load_case[{k}].speed")
-            states.append(ScreenedState(speed, preload, torque, self._required(each), each.duty))
+            states.append(
+                ScreenedState(
+                    speed,
+                    preload,
+                    torque,
+                    self._required(each),
+                    each.duty,
+                    steady=True,
+                    power=self._power(k, each, speed),
+                )
+            )
         over = self.value(f"limits.{OVERSPEED.id}")
         idle = None if stated[0].duty is None else 0.0
         for speed in (np.zeros_like(over), over):
@@ -224,6 +238,18 @@ class Designs:
         if state.torque_reduction is None and state.ripple_weight > 0:
             return self.limit(TORQUE_REDUCTION)
         return np.asarray(state.torque_reduction) if state.torque_reduction else None
+
+    def _power(self, number: int, state: LoadCase, speed: Array) -> Array | None:
+        """Mean power of the machine in a load case; see `ScreenedState`."""
+        throughput, torque = self.throughputs.get(number), self.torques.get(number)
+        if not (state.fired and state.speed > 0.0):
+            return None
+        if state.power is not None:
+            return np.full((1, 1), state.power)
+        if throughput is None or torque is None:
+            return None
+        has_mean = throughput > NO_MEAN * np.abs(torque).max(axis=-1, keepdims=True)
+        return np.where(has_mean, throughput * np.maximum(speed, CREEP), np.nan)
 
     def worst(self, measure: Callable[[ScreenedCam], Array]) -> Array:
         """Greatest over load cases and cam angles (m,) of a measure (m, n)."""
@@ -336,11 +362,13 @@ class TorqueOfSpeed:
     """Engine torque of a load case about its mean, as a function of crank speed.
 
     speeds (k,), rad/s; torques (k, N), crank N m: one a speed, or at Chebyshev nodes between the
-    least and the greatest of more than `_SPEED_NODES` speeds.
+    least and the greatest of more than `_SPEED_NODES` speeds; throughputs (k, 1): mean torque of
+    the power of the machine there, crank N m.
     """
 
     speeds: Array
     torques: Array
+    throughputs: Array
     interpolated: bool
 
     @classmethod
@@ -357,18 +385,26 @@ class TorqueOfSpeed:
             for speed in wanted
         ]
         totals = np.stack([each.without_mean().total for each in torques])
-        return cls(wanted, totals, interpolated)
+        throughputs = np.array([[each.throughput] for each in torques])
+        return cls(wanted, totals, throughputs, interpolated)
 
     def at(self, speeds: Array | None) -> Array:
         """Torque (m, N) at speeds (m,); for None (1, N) at the case's speed."""
+        return self._at(speeds, self.torques)
+
+    def throughput_at(self, speeds: Array | None) -> Array:
+        """Mean torque of the power of the machine (m, 1), as `at`."""
+        return self._at(speeds, self.throughputs)
+
+    def _at(self, speeds: Array | None, values: Array) -> Array:
         if speeds is None:
-            return self.torques
+            return values
         if not self.interpolated:
-            return self.torques[np.searchsorted(self.speeds, speeds)]
+            return values[np.searchsorted(self.speeds, speeds)]
         middle, half = self.speeds.mean(), self.speeds[0] - self.speeds.mean()
         basis = chebvander((self.speeds - middle) / half, _SPEED_NODES - 1)
         weights = chebvander((speeds - middle) / half, _SPEED_NODES - 1) @ np.linalg.inv(basis)
-        return np.asarray(weights @ self.torques)
+        return np.asarray(weights @ values)
 
 
 _SPEED_NODES = 9  # Chebyshev nodes of the torque over the crank speed

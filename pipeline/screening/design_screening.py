@@ -217,6 +217,10 @@ class _Blocks:
             torques={k: resampled(each, samples) for k, each in torques.items()},
             count=count,
             step=step_of(samples, self.positions),
+            throughputs={
+                k: each.throughput_at(values.get(f"load_case[{k}].speed"))
+                for k, each in self.torques.items()
+            },
         )
 
 

@@ -202,6 +202,10 @@ class _Neighbours:
             count=len(multiples),
             step=step,
             torque_step=self._torque_step(step),
+            throughputs={
+                k: each.throughput_at(values.get(f"load_case[{k}].speed"))
+                for k, each in self.torques.items()
+            },
         )
 
     def _torque_step(self, step: int) -> int:

@@ -10,8 +10,11 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.follower_path import Motion
+from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
+from camwright.pipeline.contact.oil_film import LineFilm, lambda_ratio, minimum_film
+from camwright.pipeline.cycle.contact_heat import flash_rise
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, face_of
 from camwright.pipeline.follower.follower_forces import REST, LoadEnds, ends_of, share_left
 from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany, bearing_under_couple
 from camwright.pipeline.screening.design_lengths import (
@@ -30,6 +33,8 @@ class ScreenedState(NamedTuple):
     torque (m or 1, k): of the engine less its mean, crank N m, at cam angles that can be closer
     than those of the loads, see `Designs`; None without one. required: reduction of its
     ripple, (m,) or (); None: none is required. duty: share of the operating time; None: not known.
+    steady: whether it is a load case of the case, in which parts warm up; power: mean power of the
+    machine (m or 1, 1), W, NaN where it is not known; None: it is not fired.
     """
 
     speed: Array
@@ -37,6 +42,8 @@ class ScreenedState(NamedTuple):
     torque: Array | None
     required: Array | None
     duty: float | None
+    steady: bool = False
+    power: Array | None = None
 
 
 class Block(DesignValues, Protocol):
@@ -179,6 +186,11 @@ class ScreenedCam(LoadedCam):
         return ends_of(self.normal <= 0.0, (self.jam >= 1.0) & (self.slope > 0.0))
 
     @cached_property
+    def friction_power(self) -> Array:
+        """Mean friction power (m, 1), W; the micro-slip of a roller left out."""
+        return np.asarray(np.mean(self.friction_work, axis=-1, keepdims=True) * self.speed)
+
+    @cached_property
     def friction_loss(self) -> Array:
         """Friction loss of guides and face over a cam turn (m,), J."""
         work = self.jam * self.axial * np.abs(self.slope) + self.axial * self.motion.sliding
@@ -217,6 +229,51 @@ class ScreenedCam(LoadedCam):
         if factors is None:
             return self._unsolved
         return self.p0_line * factors.greatest
+
+    @cached_property
+    def flash(self) -> Array | None:
+        """Flash temperature rise of a flat face (m, n), K; NaN where the contour bounds no body.
+
+        None without friction or thermal data.
+        """
+        machine, motion = self.block.machine, face_of(self.motion)
+        if self.numbers.get("follower.face.friction") is None:
+            return None
+        force = np.maximum(self.normal, 0.0)
+        sliding = np.broadcast_to(self.speed * motion.height, force.shape)
+        friction = self.numbers["follower.face.friction"]
+        heat = friction * force * sliding / self.numbers["contact.width"]
+        half = np.where((heat > 0) & ~np.isnan(self.half_width), self.half_width, 1.0)
+        rise = flash_rise(machine, heat, sliding, self.speed * self.jet.lift_d2, half)
+        lost = np.isnan(self.block.relative_radius)
+        return None if rise is None else np.where(lost, np.nan, rise)
+
+    @property
+    def film_ratio(self) -> Array:
+        """Film under a flat face over roughness (m, n), at the bulk temperature by `flash`.
+
+        0 where a roughness or the oil is not known, NaN without contact.
+        """
+        machine, block = self.block.machine, self.block
+        oil, rough = machine.lubricant, machine.cam.roughness
+        other, rise = machine.follower.roughness, self.flash
+        ratio = np.zeros(self.normal.shape)
+        if oil is None or rough is None or other is None or rise is None:
+            return ratio
+        load = np.maximum(self.normal, 0.0) / self.numbers["contact.width"]
+        passing = self.speed * (0.5 * face_of(self.motion).height + self.jet.lift_d2)
+        for k, radius in enumerate(block.relative_radius):
+            ratio[k] = np.nan
+            if np.isfinite(radius).all():
+                groups = LineFilm.of(
+                    load[k],
+                    radius,
+                    machine.contact_modulus,
+                    passing[k],
+                    oil.warmer(float(bulk_rise(rise[k]))),
+                )
+                ratio[k] = lambda_ratio(minimum_film(groups), rough, other)
+        return ratio
 
     @property
     def half_width(self) -> Array:

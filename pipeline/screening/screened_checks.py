@@ -12,17 +12,32 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array, Value
+from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.pipeline.base.counterweight_body import CounterweightBody
-from camwright.pipeline.case.limits import ASSEMBLY_GAP, TORQUE_REDUCTION
-from camwright.pipeline.checks import assembly, demands, roller_bearing
+from camwright.pipeline.base.units import celsius
+from camwright.pipeline.case.limits import (
+    ASSEMBLY_GAP,
+    FRICTION_POWER,
+    SURFACE_TEMPERATURE,
+    TORQUE_REDUCTION,
+)
+from camwright.pipeline.checks import (
+    assembly,
+    demands,
+    flat_face_sliding,
+    roller_bearing,
+    spring_strength,
+    torque_balance,
+)
 from camwright.pipeline.checks.check import Bounded, Declaration, Measured
 from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.cycle.machine_envelope import counterweight_body
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import Counterweight
+from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.screening.design_arrays import Designs, Judged, Screened
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 from camwright.pipeline.screening.screened_cam import ScreenedCam
@@ -131,9 +146,19 @@ def _by_duty(measure: Measure, how: Measured, designs: Designs, numbers: Numbers
     return _over_duty(designs, of_turn, life=how.reduce == "life")
 
 
-def _over_duty(designs: Designs, of_turn: Callable[[ScreenedCam], Array], *, life: bool) -> Array:
-    """As `over_duty`: sum of wear, or of damage by lives, of the load cases by their duty."""
-    running = [cam for cam in designs.cams if cam.state.duty != 0.0]
+def _over_duty(
+    designs: Designs,
+    of_turn: Callable[[ScreenedCam], Array],
+    *,
+    life: bool,
+    steady: bool = False,
+) -> Array:
+    """As `over_duty`: sum of wear, or of damage by lives, of the load cases by their duty.
+
+    steady: of those of the case alone.
+    """
+    cams = [cam for cam in designs.cams if cam.state.steady or not steady]
+    running = [cam for cam in cams if cam.state.duty != 0.0]
     if not running:
         return np.full((designs.count, 1), np.nan)
     values = [of_turn(cam) for cam in running]
@@ -237,16 +262,108 @@ def _counterweight_unbalance(designs: Designs) -> Judged | None:
     return _of_each(product, designs), _of_each(most, designs)
 
 
+def _friction_power(designs: Designs) -> Judged | None:
+    shares = [cam.friction_power / cam.state.power for cam in designs.cams
+              if cam.state.power is not None]  # fmt: skip
+    if not shares:
+        return None
+    limit = designs.numbers.limit(FRICTION_POWER)
+    return _of_each(np.max(np.broadcast_arrays(*shares), axis=0), designs), _of_each(limit, designs)
+
+
+def _mechanism_temperature(designs: Designs) -> Judged | None:
+    """Not known of a machine without stated cooling that still air would not keep cool enough."""
+    stated, cooling = torque_balance.stated_temperatures(designs.numbers), designs.machine.cooling
+    if not stated:
+        return None
+    across = 2.0 * sampled_greatest(designs.whole.motion.contour_radius)[:, None]
+    area = torque_balance.box_area(across, designs.numbers)
+
+    def warm(cam: ScreenedCam) -> Array:
+        return np.asarray(celsius(cooling.temperature(cam.friction_power, area)))
+
+    limit = celsius(min(stated.values()))
+    demand = _of_each(_over_duty(designs, warm, life=False, steady=True), designs)
+    if cooling.conductance is None:
+        demand = np.where(demand > limit, np.nan, demand)
+    return demand, limit
+
+
+def _bulk_temperature(designs: Designs) -> Judged | None:
+    machine, limit = designs.machine, designs.numbers.limit(SURFACE_TEMPERATURE)
+    allowed = _of_each(flat_face_sliding.bulk_allowed(machine, limit), designs)
+    cold = designs.numbers.get("lubricant.temperature")
+    if flat_face_sliding.heat_missing(machine, "temperature") or cold is None:
+        return np.full(designs.count, np.nan), allowed
+    rises = [bulk_rise(cam.flash) for cam in designs.cams if cam.flash is not None]
+    return np.asarray(celsius(cold + np.max(rises, axis=0))), allowed
+
+
+def _contact_temperature(designs: Designs) -> Judged | None:
+    """At the load case and angle of the greatest utilisation, as of the check."""
+    oil, machine = designs.machine.lubricant, designs.machine
+    if flat_face_sliding.heat_missing(machine, *flat_face_sliding.OF_OIL) or oil is None:
+        top = designs.numbers.get("lubricant.scuffing_temperature")
+        return np.full(designs.count, np.nan), None if top is None else celsius(float(top))
+    cold, top, bare = (
+        float(designs.numbers[f"lubricant.{key}"]) for key in flat_face_sliding.OF_OIL
+    )
+    hottest, allowed = np.full((2, designs.count), np.nan)
+    for cam in designs.cams:
+        if (flash := cam.flash) is None:
+            return np.full(designs.count, np.nan), celsius(top)
+        warm = celsius(cold + bulk_rise(flash)[:, None] + flash)
+        limits = flat_face_sliding.contact_allowed(cam.film_ratio, bare, top)
+        at = np.argmax(np.nan_to_num(warm / limits), axis=-1)[:, None]
+        here, there = (np.take_along_axis(each, at, axis=-1)[:, 0] for each in (warm, limits))
+        worse = ~(here / there <= hottest / allowed)
+        hottest, allowed = np.where(worse, here, hottest), np.where(worse, there, allowed)
+    return hottest, allowed
+
+
+def _gas_stroke_rate(designs: Designs) -> Judged | None:
+    rate = _strokes(designs) * designs.numbers["cam.fastest"] / FULL_TURN
+    limit = spring_strength.gas_of(designs.case).stroke_rate_limit
+    return _of_each(rate, designs), limit
+
+
+def _gas_heating(designs: Designs) -> Judged | None:
+    case, strokes, lift = designs.case, _strokes(designs), designs.highest[:, None]
+    preload, rate = (designs.value(f"spring.{key}") for key in ("preload", "rate"))
+    work = spring_energy(preload, rate, lift, case.spring.shape)
+
+    def warm(cam: ScreenedCam) -> Array:
+        rate = strokes * cam.speed / FULL_TURN
+        return np.asarray(spring_strength.gas_warmth(case, work, rate))
+
+    demand = _over_duty(designs, warm, life=False, steady=True)
+    return _of_each(demand, designs), float(celsius(spring_strength.gas_of(case).warm))
+
+
+def _strokes(designs: Designs) -> Array:
+    """Rises of the lift in a turn (m, 1)."""
+    return np.array([[spring_strength.strokes_of(slope)] for slope in designs.jets[1]])
+
+
+_ARRAYS: Mapping[str, tuple[Callable[[Designs], Judged | None], float]] = {
+    TORQUE_REDUCTION.id: (_torque_reduction, 0.001),
+    torque_balance.friction_power.id: (_friction_power, 0.005),
+    torque_balance.mechanism_temperature.id: (_mechanism_temperature, 0.005),
+    roller_bearing.grease_life.id: (_grease_life, 0.001),
+    assembly.counterweight_gap.id: (_counterweight_gap, 0.001),
+    assembly.counterweight_unbalance.id: (_counterweight_unbalance, 0.001),
+    flat_face_sliding.bulk_temperature.id: (_bulk_temperature, 0.005),
+    flat_face_sliding.contact_temperature.id: (_contact_temperature, 0.02),
+    spring_strength.gas_stroke_rate.id: (_gas_stroke_rate, 1e-9),
+    spring_strength.gas_heating.id: (_gas_heating, 1e-4),
+}
+"""Screening of checks without a measure, by id, with its deviation; see `Screened`."""
+
+
 def _screened(declared: Declaration) -> Screened | None:
     """Screening of a check; None where there is none."""
-    if declared.id == TORQUE_REDUCTION.id:
-        return Screened(declared.id, _torque_reduction, 0.001)
-    if declared is roller_bearing.grease_life:
-        return Screened(declared.id, _grease_life, 0.001)
-    if declared is assembly.counterweight_gap:
-        return Screened(declared.id, _counterweight_gap, 0.001)
-    if declared is assembly.counterweight_unbalance:
-        return Screened(declared.id, _counterweight_unbalance, 0.001)
+    if declared.id in _ARRAYS:
+        return Screened(declared.id, *_ARRAYS[declared.id])
     how, measure = declared.measured, declared.measure
     return None if how is None or measure is None else _by_measure(declared, measure, how)
 

@@ -366,7 +366,8 @@ def test_screening_judges_the_limits_of_the_maker():
     masses = {"follower.mass": np.array([0.25, 0.3])}
     columns = screen_designs(limited, masses)
     checks = {each.id: each for each in preview_case(limited, corners=False).checks}
-    for name in ("gas_pressure", "gas_stroke", "gas_speed", "gas_temperature"):
+    limits = "pressure", "stroke", "speed", "temperature", "stroke_rate", "heating", "force_lost"
+    for name in (f"gas_{each}" for each in limits):
         demand = in_unit(checks[name].demand, checks[name].unit)
         # the preview refines between its samples, the screening has vertices of its own
         rel = 1e-5 + (checks[name].error_share or 0.0)

@@ -199,12 +199,22 @@ def exceeded(worst: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     return {key: (value, most[key]) for key, value in worst.items() if not value <= most[key]}
 
 
+HOT = {"friction_power", "mechanism_temperature"}
+SLIDING = {"bulk_temperature", "contact_temperature"}
+
+
 @pytest.mark.parametrize(
-    ("name", "count"), [("gx120", 2), ("machines/two-stroke", 2), ("papers/petrescu_c", 8)]
+    ("name", "count", "judged"),
+    [
+        ("gx120", 2, HOT),
+        ("machines/two-stroke", 2, {*HOT, "roller_pin", "cheek_pressure"}),
+        ("papers/petrescu_c", 8, set()),
+        ("gx120-flat-face", 2, SLIDING),  # its friction is ten times the limit
+    ],
 )
-def test_a_few_designs_agree_with_their_previews(name: str, count: int) -> None:
+def test_a_few_designs_agree_with_their_previews(name: str, count: int, judged: set[str]) -> None:
     worst = deviations(name, count, without=("guides.spacing",))
-    assert {"p0", "force", "contact_pressure"} <= set(worst)
+    assert {"p0", "force", "contact_pressure"} | judged <= set(worst)
     assert exceeded(worst) == {}
 
 

@@ -101,7 +101,7 @@ class Machinery:
         across = 2.0 * max(self.cam_radius, self.frame.gear_radius)
         height = across + self.frame.stem_length(self.lift)
         sides = (across, height, self.frame.housing_width)
-        return STILL_AIR * housing_area(*(each + 2.0 * _AROUND for each in sides))
+        return STILL_AIR * float(housing_area(*(each + 2.0 * _AROUND for each in sides)))
 
     @property
     def other_heat(self) -> float:
