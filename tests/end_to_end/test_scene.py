@@ -103,6 +103,34 @@ def test_a_run_without_its_turn_has_no_scene(tmp_path: Path) -> None:
         read_turn_view(folder)
 
 
+@pytest.mark.parametrize("drilled", [True, False])
+def test_the_hole_that_balances_the_cam_is_in_the_scene(
+    tmp_path: Path, view: TurnView, drilled: bool
+) -> None:
+    """Wall and both mouths at the place and diameter of the record, if the cam has it."""
+    folder = tmp_path / "run"
+    report_fixture.write_run(folder, POSITIONS, field=False)
+    turn_fixture.add_turn(folder, POSITIONS)
+    trial = folder / "trial_2" / "trial.json"
+    record = json.loads(trial.read_text())
+    record["balance"]["hole_drilled"] = drilled
+    trial.write_text(json.dumps(record))
+    material = read_material(folder)
+    x, y, diameter = (record["balance"][f"hole_{key}_mm"] for key in ("x", "y", "diameter"))
+    body = scene_page.scene(material, view)["bodies"]["bore"]
+    points = np.array([body[axis] for axis in "xyz"])
+    around = np.hypot(points[0] - x, points[1] - y)
+    on_wall = np.isclose(around, 0.5 * diameter, atol=1e-2)
+    assert on_wall.any() == drilled
+    if drilled:
+        width = material.turn.length("cam", "width") or 0.0
+        assert np.ptp(points[2, on_wall]) == pytest.approx(width, rel=0.02)
+        angle = np.sort(np.arctan2(points[1] - y, points[0] - x)[on_wall])
+        assert np.diff(angle).max() < 0.3  # all around
+        mouths = np.isclose(around, 0.0, atol=1e-3)
+        assert set(np.sign(points[2, mouths])) == {-1.0, 1.0}
+
+
 def test_follower_stands_on_its_axis_and_touches_the_cam(view: TurnView) -> None:
     lab = view.lab_origin()
     np.testing.assert_allclose(lab[0], 0.0, atol=1e-9)  # no offset in this case
