@@ -1,7 +1,8 @@
 """Live preview: the closed-form checks of a run as functions of a few numbers of its design.
 
 Hundreds of designs about that of the run are screened; polynomials through their demands follow the
-preview within an error that designs held out state. All of them keep the lift of the run.
+preview within an error that designs held out state, with the deviation of the screening from a
+preview of the run's design. All of them keep the lift of the run.
 """
 
 from __future__ import annotations
@@ -15,9 +16,10 @@ from typing import Any, Literal, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import sampled_greatest, sampled_least
+from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import in_unit
@@ -57,6 +59,7 @@ from camwright.pipeline.screening.response_surface import (
 )
 from camwright.pipeline.screening.screened_cam import ScreenedCam
 from camwright.pipeline.screening.screened_checks import SCREENED, torque_after
+from camwright.pipeline.solver import solve
 
 CANDIDATES = 26
 """Checks of the greatest utilisation that are fitted, so that a page has twelve of them."""
@@ -66,6 +69,8 @@ POSITIONS = 180
 """Cam angles of the loads."""
 WORST_ERROR = 0.1
 """Error of a check or its limit, as a share of demand or limit, beyond which it is left out."""
+AWAY_FROM_RUN = 2.0
+"""Greatest deviation of the screening from the preview over that at the design of the run."""
 _SAMPLING_SEED = 7
 _DESIGNS_A_BLOCK = 250  # designs solved at once
 _RANGES = {"preload": 1.3, "rate": 1.3, "prime": 1.15, "roller": 1.2, "speed": 1.25, "stroke": 1.2}
@@ -447,10 +452,23 @@ class _Sample:
     ) -> None:
         into.setdefault(key, np.full(self.count, np.nan))[rows] = values
 
-    def valued(self, name: str, state: int) -> NDArray[np.bool_]:
-        """Designs (m,) with a value in a load case: the follower stays on the cam for it."""
+    @property
+    def accepted(self) -> NDArray[np.bool_]:
+        """Designs (m,) that the case accepts."""
+        return ~np.isnan(self.held[0])
+
+    def _kept(self, name: str, state: int) -> NDArray[np.bool_]:
+        """Designs (m,) whose follower stays on the cam in the load cases of a value."""
         lost = [self.lost[k] for k in self.loads[name][state]]
-        return np.isfinite(self.parts[name][state]) & ~np.any([np.zeros(self.count), *lost], axis=0)
+        return self.accepted & ~np.any([np.zeros(self.count), *lost], axis=0)
+
+    def valued(self, name: str, state: int) -> NDArray[np.bool_]:
+        """Designs (m,) with a value in a load case."""
+        return self._kept(name, state) & np.isfinite(self.parts[name][state])
+
+    def is_partial(self, name: str) -> bool:
+        """Whether a quantity has no value for a design whose follower stays on the cam."""
+        return any((self._kept(name, k) & ~self.valued(name, k)).any() for k in self.parts[name])
 
 
 def live_record(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | None:
@@ -483,6 +501,9 @@ def _fitted(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | No
     judged = [name for name in checks if name in SCREENED_BY_ID]
     measures |= {name: _check_figures(SCREENED_BY_ID[name]) for name in judged}
     sample = _Sample.of(near, multiples, measures)
+    run = _RunDesign(
+        _Sample.of(near, np.ones((1, len(near.factors))), measures), _demands(case, lift)
+    )
     fit = SurfaceFit(places, HELD_OUT)
     contact = {k: fit.surface(values) for k, values in sample.held.items()}
     if not contact or None in contact.values():  # the case refuses too many designs
@@ -491,7 +512,7 @@ def _fitted(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | No
     quantities = [each for each in figures if each is not None]
     left_out: dict[str, str] = {}
     for name in checks:
-        check = _check(name, sample, fit)
+        check = _check(name, sample, fit, run)
         if isinstance(check, str):
             left_out[name] = check
         else:
@@ -511,13 +532,14 @@ def _fitted(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | No
         "left_out": left_out,
         "settings": count,
         "held_out": HELD_OUT,
-        "refused": int(np.isnan(sample.held[0]).sum()),
+        "refused": int((~sample.accepted).sum()),
     }
 
 
 SCREENED_BY_ID: Mapping[str, Screened] = {each.check: each for each in SCREENED}
 _DEEPER = "the screening does not know it"
 _BOUND = "the screening knows a bound of it alone"
+_PARTIAL = "it has no value in a part of the ranges"
 _UNEVEN = "it bends too much over the ranges"
 _UNEVEN_LIMIT = "its limit bends too much over the ranges"
 
@@ -534,7 +556,7 @@ def greatest(final: TrialRecord) -> list[str]:
 
 
 def _key_figure(figure: _Headline, sample: _Sample, fit: SurfaceFit) -> LiveQuantity | None:
-    if figure.id in sample.unknown:
+    if figure.id in sample.unknown or sample.is_partial(figure.id):
         return None
     values = sample.parts[figure.id]
     rank = values if figure.worst == "greatest" else {k: -v for k, v in values.items()}
@@ -549,13 +571,38 @@ def _key_figure(figure: _Headline, sample: _Sample, fit: SurfaceFit) -> LiveQuan
     }  # fmt: skip
 
 
-def _check(name: str, sample: _Sample, fit: SurfaceFit) -> LiveQuantity | str:
+def _demands(case: Case, lift: Array) -> dict[str, float | None]:
+    """Demands of the preview of a design by the id of the check, SI."""
+    contour = case.contour(Lift(uniform_turn(lift.size), lift))
+    trial = solve(case, contour, tier=Tier.PREVIEW, corners=False)
+    return {each.id: each.demand for each in trial.checks}
+
+
+class _RunDesign(NamedTuple):
+    """The design of the run as screened, and its demands in the preview by the id of the check."""
+
+    screened: _Sample
+    demands: Mapping[str, float | None]
+
+    def deviation(self, name: str, *, at_most: bool) -> float:
+        """Of a check by screening from the preview, over the greater of demand and limit."""
+        demand, parts = self.demands.get(name), self.screened.parts[name]
+        valued = [float(v[0]) for k, v in parts.items() if self.screened.valued(name, k)[0]]
+        if demand is None or not valued:
+            return 0.0
+        worst, limit = (max if at_most else min)(valued), self.screened.limits[name][0]
+        return float(abs(worst - demand) / max(abs(demand), abs(limit)))
+
+
+def _check(name: str, sample: _Sample, fit: SurfaceFit, run: _RunDesign) -> LiveQuantity | str:
     """A check, or why it is not followed."""
     screened = SCREENED_BY_ID.get(name)
     if screened is None:
         return _DEEPER
     if name in sample.unknown or name not in sample.limits:
         return _BOUND
+    if sample.is_partial(name):
+        return _PARTIAL
     declared = DECLARED[name]
     at_most = declared.sense == "at_most"
     limit, demands = sample.limits[name], sample.parts[name]
@@ -564,7 +611,8 @@ def _check(name: str, sample: _Sample, fit: SurfaceFit) -> LiveQuantity | str:
     bound = fit.surface(limit)
     if bound is None:
         return _BOUND
-    away = _Away(scale, screened.deviation, limit)
+    deviation = max(screened.deviation, AWAY_FROM_RUN * run.deviation(name, at_most=at_most))
+    away = _Away(scale, deviation, limit)
     parts = _parts(name, sample, fit, rank, away)
     if not parts:
         return _BOUND

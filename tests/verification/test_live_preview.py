@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import sys
 from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -15,21 +16,33 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import live_settings
 from record_validation import schema_errors
 
-from camwright.geometry.errors import ContactError
+from camwright.geometry.errors import CamError, ContactError
 from camwright.geometry.extrema import sampled_greatest
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.units import from_unit, in_unit
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.screening import design_lengths, live_preview
 from camwright.pipeline.screening.response_surface import Surface, SurfaceFit, settings
 from camwright.pipeline.solver import solve
 
-FEW, MANY = 3, 200
+NO_CASE = "papers/mechanisms"
+WITHOUT = ("papers/petrescu_b3", "papers/petrescu_b4")
+"""Cases of which the screening refuses the design itself: its contour bounds no body."""
+FOLLOWED = [
+    name
+    for file in sorted(live_settings.CASES.rglob("*.toml"))
+    if (name := file.relative_to(live_settings.CASES).with_suffix("").as_posix())
+    not in (NO_CASE, *WITHOUT)
+]
+SAMPLE = sorted(np.random.default_rng(1).choice(FOLLOWED, 2, replace=False).tolist())
+FEW, MANY = 5, 200
 HELD = 60
 WITHIN, TINY = 0.95, 1e-12
 KEY_FIGURES = {
@@ -54,15 +67,44 @@ def solved(case: Case, lift: Lift, record: dict[str, Any], multiples: np.ndarray
     return solve(own, contour, tier=Tier.PREVIEW, torques=torques, corners=False)
 
 
-def shares(name: str, count: int) -> dict[str, list[float]]:
-    """Deviation over stated error of every quantity at random settings where it holds."""
+class Shares(NamedTuple):
+    """Of every quantity, deviations over stated error at the settings where it holds.
+
+    refused: settings whose design the preview refuses
+    """
+
+    of: Mapping[str, Sequence[float]]
+    refused: int
+
+    @property
+    def within(self) -> float:
+        """Least share of settings within the stated error, of the quantities."""
+        return min(float(np.mean(np.array(each) <= 1.0)) for each in self.of.values())
+
+    @property
+    def words(self) -> str:
+        every = np.concatenate([np.array(each) for each in self.of.values()])
+        return (
+            f"{len(self.of)} quantities, least share within the error {self.within:.3f}, of all "
+            f"{np.mean(every <= 1.0):.4f}, greatest deviation {every.max():.2f} of the error, "
+            f"{self.refused} settings refused"
+        )
+
+
+def shares(name: str, count: int) -> Shares:
+    """Live preview against previews at random settings; a value that is none is infinitely off."""
     case, lift, record = live_settings.fitted(name)
     draw = np.random.default_rng(43)
     low, high = (np.array([f[end] for f in record["factors"]]) for end in ("low", "high"))
-    made: dict[str, list[float]] = defaultdict(list)
+    deviations: dict[str, list[float]] = defaultdict(list)
+    refused = 0
     for _ in range(count):
         multiples = np.exp(draw.uniform(np.log(low), np.log(high)))
-        trial = solved(case, lift, record, multiples)
+        try:
+            trial = solved(case, lift, record, multiples)
+        except CamError:
+            refused += 1
+            continue
         figures, checks = headline(trial.solution), {each.id: each for each in trial.checks}
         for name_of, live in live_settings.values(record, multiples).items():
             if name_of in KEY_FIGURES:
@@ -71,19 +113,20 @@ def shares(name: str, count: int) -> dict[str, list[float]]:
                 check = checks.get(name_of)
                 demand = None if check is None else check.demand
                 exact = None if demand is None else in_unit(demand, check.unit)
-            if exact is None or not live.holds:
-                continue
-            made[name_of].append(abs(live.value - exact) / max(live.error, TINY))
-    return made
+            if live.holds:
+                away = np.inf if exact is None else abs(live.value - exact)
+                deviations[name_of].append(away / max(live.error, TINY))
+    assert not refused or record["refused"] > 0  # the page says that the case refuses some
+    return Shares(deviations, refused)
 
 
-def assert_within(made: dict[str, list[float]]) -> None:
+def assert_within(made: Shares) -> None:
     """At least 95 % of the settings are within the stated error, of each quantity."""
     outside = {
-        name: (float(np.mean(np.array(each) > 1.0)), max(each)) for name, each in made.items()
+        name: (float(np.mean(np.array(each) > 1.0)), max(each)) for name, each in made.of.items()
     }
     assert {n: each for n, each in outside.items() if each[0] > 1.0 - WITHIN} == {}
-    assert len(made) >= 10
+    assert len(made.of) >= 10
 
 
 def test_the_same_run_has_the_same_surfaces(
@@ -161,12 +204,19 @@ def test_designs_that_leave_the_cam_have_no_value_and_no_error() -> None:
     sample = live_preview._Sample(3, {"life": {-1: np.array([1.0, 2.0, np.nan])}})
     sample.lost = {k: np.array([k == 1, False, False]) for k in (0, 1)}
     sample.loads = {"life": {-1: {0, 1}}}
+    sample.held = {0: np.ones(3)}
     assert sample.valued("life", -1).tolist() == [False, True, False]
     away = live_preview._Away(1.0, 0.1, np.array([9.0, 2.0, np.nan]))
     surface = Surface("linear", np.array([1.0]), 0.1, share=False)
     valued = sample.valued("life", -1)
     error = away.record(surface, sample.parts["life"][-1], valued)["error"]
     assert error == pytest.approx(0.1 + 0.1 * 2.0)  # the limit of 9 is of a design without a value
+
+
+def test_a_check_without_a_value_in_a_part_of_the_ranges_is_not_followed() -> None:
+    """The size of the counterweight of the hand pump is not stated: near bearing 1 none fits."""
+    _, _, record = live_settings.fitted("machines/hand-pump", ("counterweight_gap",))
+    assert "part of the ranges" in record["left_out"]["counterweight_gap"]
 
 
 def test_a_check_whose_limit_bends_too_much_is_not_followed() -> None:
@@ -176,10 +226,17 @@ def test_a_check_whose_limit_bends_too_much_is_not_followed() -> None:
     sample = live_preview._Sample(len(places), {"edge_pressure": {0: demand}})
     sample.lost = {0: np.zeros(len(places), dtype=bool)}
     sample.loads = {"edge_pressure": {0: {0}}}
+    sample.held = {0: np.ones(len(places))}
     sample.limits = {"edge_pressure": np.full(len(places), 2.0)}
-    assert live_preview._check("edge_pressure", sample, fit)["parts"][0]["loads"] == [0]
+    run = live_preview._RunDesign(sample, {"edge_pressure": float(demand[0]) + 0.02})
+    followed = live_preview._check("edge_pressure", sample, fit, run)
+    (part,) = followed["parts"]
+    assert part["loads"] == [0]
+    # 0.02 of demands below a limit of 2 is a hundredth of it, twice that away from the run.
+    assert part["surface"]["error"] * 1e6 == pytest.approx(2.0 * 0.02, rel=0.05)
     sample.limits = {"edge_pressure": kink}
-    assert "limit bends" in live_preview._check("edge_pressure", sample, fit)
+    unknown = live_preview._RunDesign(sample, {})
+    assert "limit bends" in live_preview._check("edge_pressure", sample, fit, unknown)
 
 
 def test_load_cases_have_the_names_of_the_case() -> None:
@@ -223,15 +280,25 @@ def test_the_greatest_edge_pressure_is_that_of_every_angle(monkeypatch: pytest.M
     assert chosen == pytest.approx(greatest(), rel=1e-12)
 
 
-def test_a_few_settings_are_within_the_stated_error() -> None:
-    assert_within(shares("gx120", FEW))
+@pytest.mark.parametrize("name", SAMPLE)
+def test_a_few_settings_are_within_the_stated_error(
+    name: str, measured: Callable[..., None]
+) -> None:
+    made = shares(name, FEW)
+    assert_within(made)
+    figure = "least share of settings within the stated error of a live preview"
+    measured(figure, made.within, 1.0, rtol=1.0 - WITHIN)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    ["gx120", "gx120-redesign", "gx120-flat-face", "machines/press", "machines/dosing-pump",
-     "machines/two-stroke"],
-)  # fmt: skip
+@pytest.mark.parametrize("name", FOLLOWED)
 def test_two_hundred_settings_are_within_the_stated_error(name: str) -> None:
-    assert_within(shares(name, MANY))
+    made = shares(name, MANY)
+    print(f"{name}: {MANY} settings, {made.words}")
+    assert_within(made)
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_a_case_whose_neighbours_are_refused_has_no_live_preview(name: str) -> None:
+    trial = preview_case(read_case(live_settings.CASES / f"{name}.toml"), corners=False)
+    assert live_preview.live_record(trial.case, trial.contour.pitch.lift.values, []) is None
