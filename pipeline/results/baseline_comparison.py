@@ -7,6 +7,7 @@ from typing import Literal
 
 from camwright.pipeline.records.check_document import ChangeKind, CheckChange
 from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_report import number
 
 # Relative error bar of a demand without one: digits beyond it are not printed.
 UNKNOWN_ERROR = 1e-6
@@ -33,8 +34,8 @@ def changes(before: Iterable[CheckRecord], now: Iterable[CheckRecord]) -> list[C
 def lines(entries: Iterable[CheckChange]) -> list[str]:
     """Changes of the checks, one line each."""
     return [
-        f"{entry['id']}: {', '.join(entry['kinds'])}; demand {_text(entry['demand_before'])} ->"
-        f" {_text(entry['demand'])} {entry['unit']} (error bars {_text(entry['error_bars'])}),"
+        f"{entry['id']}: {', '.join(entry['kinds'])}; demand {number(entry['demand_before'])} ->"
+        f" {number(entry['demand'])} {entry['unit']} (error bars {number(entry['error_bars'])}),"
         f" {entry['status_before'] or 'absent'} -> {entry['status'] or 'absent'}"
         for entry in entries
     ] or ["nothing changed beyond the error bars"]
@@ -89,7 +90,3 @@ def _apart(old: float | None, new: float | None, bars: float) -> bool:
     if old is None or new is None:
         return old is not new
     return abs(new - old) > bars
-
-
-def _text(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}"

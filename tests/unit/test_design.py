@@ -358,7 +358,7 @@ def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) 
         def smaller(design: Any, _: Any, stride: int) -> Any:
             lesser = shelf.get(design, [])  # by decreasing size
             for each in lesser[: min(stride, len(lesser))][-1:]:
-                yield part_exchange.Smaller(part, str(design), str(each), each)
+                yield part_exchange.Exchange(part, str(design), str(each), each)
 
         return smaller
 
@@ -368,8 +368,8 @@ def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) 
         way("roller", {6: [60], 5: [50]}),
         way("stem", {12: [90], 6: [5], 5: [4]}),
     )
-    monkeypatch.setattr(part_exchange, "_WAYS", ways)
-    monkeypatch.setattr(part_exchange.Shelves, "of", lambda _: None)
+    monkeypatch.setattr(part_exchange, "_EXCHANGES", ways)
+    monkeypatch.setattr(part_exchange.SortedParts, "of", lambda _: None)
 
     def solved(design: Any) -> Any:
         tried.append(design)
@@ -395,8 +395,8 @@ def test_the_next_smaller_parts_follow_the_catalogues(tmp_path: Path) -> None:
     """The hub takes the base circle with it; a smaller roller keeps it."""
     design = machinery_in(tmp_path)
     task, frame, prime, card = design.task, design.frame, design.prime_radius, design.frame.card
-    shelves = part_exchange.Shelves.of(PointStudy(task, tmp_path, "torque.csv", ""))
-    smaller = [each for way in part_exchange._WAYS for each in way(design, shelves, 1)]
+    catalogues = part_exchange.SortedParts.of(PointStudy(task, tmp_path, "torque.csv", ""))
+    smaller = [each for way in part_exchange._EXCHANGES for each in way(design, catalogues, 1)]
     by_part: dict[str, list[Any]] = {}
     for each in smaller:
         by_part.setdefault(each.part, []).append(each.design)

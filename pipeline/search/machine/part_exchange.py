@@ -30,7 +30,7 @@ _RIM = 0.8  # bores in the radius of the gear, at least
 
 
 @dataclass(frozen=True)
-class Shelves:
+class SortedParts:
     """Catalogue parts by increasing size."""
 
     seats: Sequence[Seat]
@@ -38,7 +38,7 @@ class Shelves:
     springs: Sequence[HelicalSpring]
 
     @classmethod
-    def of(cls, study: PointStudy) -> Shelves:
+    def of(cls, study: PointStudy) -> SortedParts:
         """Parts of the shipped cards and of the user's beside the torque table."""
         parts = catalogue_of(study.folder)
         rollers = undominated(parts.rollers, better_roller)
@@ -49,7 +49,7 @@ class Shelves:
 
 
 @dataclass(frozen=True)
-class Smaller:
+class Exchange:
     """Design with one part exchanged for a smaller one, in words."""
 
     part: str
@@ -67,8 +67,8 @@ class Exchanged:
     """
 
     point: Solved
-    kept: tuple[Smaller, ...] = ()
-    failing: tuple[tuple[Smaller, str], ...] = ()
+    kept: tuple[Exchange, ...] = ()
+    failing: tuple[tuple[Exchange, str], ...] = ()
     complete: bool = True
 
     @property
@@ -99,8 +99,8 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
     exchange that passes is kept; the search ends when the next smaller of every part of the same
     design has failed, or after `_EXCHANGES_MAX` designs.
     """
-    shelves, kept = Shelves.of(study), list[Smaller]()
-    failing: dict[str, tuple[Smaller, str]] = {}
+    catalogues, kept = SortedParts.of(study), list[Exchange]()
+    failing: dict[str, tuple[Exchange, str]] = {}
     begun: dict[str, PendingCall] = {}
 
     def solving(design: Machinery) -> PendingCall:
@@ -111,9 +111,9 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
 
     place = unchanged = tried = 0
     stride, growth = 1, 2.0
-    while unchanged < len(_WAYS) and tried < _EXCHANGES_MAX:
-        ways = list(_WAYS[place](point.design, shelves, stride))
-        after = _WAYS[(place + 1) % len(_WAYS)](point.design, shelves, 1)
+    while unchanged < len(_EXCHANGES) and tried < _EXCHANGES_MAX:
+        ways = list(_EXCHANGES[place](point.design, catalogues, stride))
+        after = _EXCHANGES[(place + 1) % len(_EXCHANGES)](point.design, catalogues, 1)
         for each, then in zip(ways, [*ways[1:], next(after, None)], strict=False):
             progress.advance(tried, _EXCHANGES_MAX)
             tried += 1
@@ -131,12 +131,12 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
         else:
             if stride == 1 or not ways:
                 unchanged += 1
-                place = (place + 1) % len(_WAYS)
+                place = (place + 1) % len(_EXCHANGES)
                 stride, growth = 1, 2.0
             else:
                 stride, growth = stride // 2, 0.5
     progress.advance(_EXCHANGES_MAX, _EXCHANGES_MAX)
-    complete = unchanged >= len(_WAYS)
+    complete = unchanged >= len(_EXCHANGES)
     return Exchanged(point, tuple(kept), tuple(failing.values()), complete)
 
 
@@ -152,13 +152,13 @@ def why_not(point: Solved) -> str:
     return "larger" if point.passes else "torque ripple"
 
 
-def _words(each: Smaller) -> ExchangeRecord:
+def _words(each: Exchange) -> ExchangeRecord:
     return {"part": each.part, "from": each.was, "to": each.becomes}
 
 
-def _shaft(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smaller]:
+def _shaft(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[Exchange]:
     frame = design.frame
-    lesser = [each for each in shelves.seats if each.bore < frame.seat.bore]
+    lesser = [each for each in catalogues.seats if each.bore < frame.seat.bore]
     if not lesser:
         return
     seat = _down(lesser, stride)
@@ -168,36 +168,36 @@ def _shaft(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smaller
     primes = drawn_radius(design.prime_radius - hub), design.prime_radius
     for prime in dict.fromkeys(primes):
         other = replace(design, frame=smaller, prime_radius=prime)
-        yield Smaller("shaft with key and bearings", *words, _with_cam(design, other))
+        yield Exchange("shaft with key and bearings", *words, _with_cam(design, other))
 
 
-def _roller(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smaller]:
+def _roller(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[Exchange]:
     frame = design.frame
-    order = list(shelves.rollers)
+    order = list(catalogues.rollers)
     if frame.roller not in order or order[0] == frame.roller:
         return
     name = _down(order[: order.index(frame.roller)], stride)
-    smaller = replace(frame, roller=name, card=shelves.rollers[name])
+    smaller = replace(frame, roller=name, card=catalogues.rollers[name])
     if smaller.stem > frame.stem:
         smaller = replace(smaller, stem_chosen=frame.stem)
     prime = max(design.prime_radius - frame.radius + smaller.radius, smaller.least_radius)
     other = replace(design, frame=smaller, prime_radius=drawn_radius(prime))
-    yield Smaller("roller", frame.roller, name, other)
+    yield Exchange("roller", frame.roller, name, other)
 
 
-def _spring(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smaller]:
+def _spring(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[Exchange]:
     point = design.spring
     spring = point.spring
     if not spring.name:  # wound for its forces
         return
-    lesser = [each for each in shelves.springs if each.mass < spring.mass]
+    lesser = [each for each in catalogues.springs if each.mass < spring.mass]
     if not lesser:
         return
     lighter = _down(lesser, stride)
     speed = design.task.cam_speed
     for other in of_catalogue([lighter], [point.energy], [point.travel], speed):
         drawn = replace(other.spring, temperature=spring.temperature, relaxation=spring.relaxation)
-        yield Smaller(
+        yield Exchange(
             "spring",
             spring.name,
             lighter.name,
@@ -205,16 +205,16 @@ def _spring(design: Machinery, shelves: Shelves, stride: int) -> Iterator[Smalle
         )
 
 
-def _stem(design: Machinery, _: Shelves, stride: int) -> Iterator[Smaller]:
+def _stem(design: Machinery, _: SortedParts, stride: int) -> Iterator[Exchange]:
     frame = design.frame
     lesser = [1e-3 * each for each in STEMS if 1e-3 * each < frame.stem - _EQUAL_LENGTHS]
     if lesser:
         size = _down(lesser, stride)
         other = replace(design, frame=replace(frame, stem_chosen=size))
-        yield Smaller("stem with bushes", _mm(frame.stem), _mm(size), other)
+        yield Exchange("stem with bushes", _mm(frame.stem), _mm(size), other)
 
 
-def _module(design: Machinery, _: Shelves, stride: int) -> Iterator[Smaller]:
+def _module(design: Machinery, _: SortedParts, stride: int) -> Iterator[Exchange]:
     frame = design.frame
     rim = _RIM * frame.seat.bore
     modules = [1e-3 * each for each in MODULES if 0.5e-3 * each * frame.teeth[0] > rim]
@@ -222,7 +222,7 @@ def _module(design: Machinery, _: Shelves, stride: int) -> Iterator[Smaller]:
     if lesser:
         size = _down(lesser, stride)
         other = replace(design, frame=replace(frame, module=size))
-        yield Smaller("module of the gear", _mm(frame.module), _mm(size), other)
+        yield Exchange("module of the gear", _mm(frame.module), _mm(size), other)
 
 
 def _down(lesser: Sequence[T], stride: int) -> T:
@@ -230,7 +230,7 @@ def _down(lesser: Sequence[T], stride: int) -> T:
     return lesser[-min(stride, len(lesser))]
 
 
-_WAYS: tuple[Callable[[Machinery, Shelves, int], Iterator[Smaller]], ...] = (
+_EXCHANGES: tuple[Callable[[Machinery, SortedParts, int], Iterator[Exchange]], ...] = (
     _shaft, _roller, _spring, _stem, _module,
 )  # fmt: skip
 """Designs with one part smaller by a stride, the part of the greatest gain first."""

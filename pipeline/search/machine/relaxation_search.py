@@ -20,7 +20,7 @@ from camwright.pipeline.search.machine.synthesised_points import (
     RESERVE,
     PointStudy,
     Solved,
-    lack,
+    violation,
 )
 from camwright.pipeline.search.machine.torque_task import DesignTask
 
@@ -54,7 +54,7 @@ class Lever:
     options: Callable[[float], DesignOptions]
     shown: Callable[[float], str]
     reached: Callable[[Solved], float] | None = None
-    order: Callable[[Candidate], float] = lack
+    order: Callable[[Candidate], float] = violation
     whole: bool = False
 
     @property

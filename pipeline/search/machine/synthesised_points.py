@@ -244,11 +244,11 @@ def _screened_front(
 
 def likeliest(screened: Sequence[Candidate]) -> Candidate | None:
     """Screened design with the most room to ripple and limits; None if all are hopeless."""
-    best = min(screened, key=lack, default=None)
-    return best if best is not None and lack(best) <= OPTIMISTIC + _CURABLE_EXCESS**2 else None
+    best = min(screened, key=violation, default=None)
+    return best if best is not None and violation(best) <= OPTIMISTIC + _CURABLE_EXCESS**2 else None
 
 
-def lack(candidate: Candidate) -> float:
+def violation(candidate: Candidate) -> float:
     """Ripple over that allowed plus weighted excess of the checks: estimate of infeasibility."""
     return (
         candidate.ripple / candidate.design.task.ripple_allowed + _CURABLE_EXCESS * candidate.excess
@@ -398,7 +398,7 @@ def passing_draft(
     study: PointStudy,
     screened: Sequence[Candidate],
     workers: Crew,
-    order: Callable[[Candidate], float] = lack,
+    order: Callable[[Candidate], float] = violation,
 ) -> Solved | None:
     """First draft that passes when solved in full; None if none does.
 
