@@ -136,14 +136,13 @@ def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> D
 
 def _shortfall(check: Check) -> Shortfall:
     record = check.as_record()
-    demand, limit, used = (_finite(record[key]) for key in ("demand", "limit", "utilisation"))
     return {
-        "check": check.id,
-        "title": check.title,
-        "demand": demand,
-        "limit": limit,
-        "unit": check.unit,
-        "utilisation": used,
+        "check": record["id"],
+        "title": record["title"],
+        "demand": record["demand"],
+        "limit": record["limit"],
+        "unit": record["unit"],
+        "utilisation": record["utilisation"],
     }
 
 
@@ -158,7 +157,3 @@ def _root_shortfall(trial: Trial) -> list[Shortfall]:
     return [
         _shortfall(replace(check, demand=solved.governing.safety, limit=least)) for check in left
     ]
-
-
-def _finite(value: object) -> float | None:
-    return value if isinstance(value, float) else None

@@ -85,7 +85,8 @@ def _lines(record: ExclusionReasons) -> list[str]:
     ]
     said = ["no choice of the catalogues keeps all limits"]
     if counts:
-        said.append(f"excluded most by {counts[0]} of {_total(record)} choices and parts")
+        total = sum(each["count"] for each in record["excluded"])
+        said.append(f"excluded most by {counts[0]} of {total} choices and parts")
     if counts[1:]:
         said.append(f"excluded further by {'; '.join(counts[1:])}")
     which = record["nearest"] or "the parts of the case"
@@ -99,10 +100,6 @@ def _lines(record: ExclusionReasons) -> list[str]:
         else "no single change of a limit, the spring or the prime radius makes it feasible"
     )
     return said
-
-
-def _total(record: ExclusionReasons) -> int:
-    return sum(int(each["count"]) for each in record["excluded"])
 
 
 def _reason(record: DraftJudgement | PreviewJudgement | RefusedJudgement) -> str:
