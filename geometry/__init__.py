@@ -26,6 +26,7 @@ In the order of the calculation:
 | `follower_height`   | height of a follower on points of a contour | d, m                         |
 | `contour`           | cam surface; that under a roller            | x, y, m; rho, m              |
 | `flat_face_contour` | cam surface under a flat face               | r + s + s'', m               |
+| `arm_path`          | cam surface under the roller of an arm      | psi, rad; c, l, m            |
 | `measured_contour`  | measured contour against the nominal one    | phase, rad; deviation, m     |
 | `cutter_path`       | path of a milling cutter or grinding wheel  | x, y, m                      |
 | `cutouts`           | bore, keyway and counter-hole               | m                            |

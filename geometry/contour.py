@@ -19,7 +19,7 @@ from camwright.geometry.follower_height import roller_height
 from camwright.geometry.follower_path import FollowerPath, Motion, cam_axes, reciprocal
 from camwright.geometry.interference import SecondContact, crossings, second_contact
 from camwright.geometry.lift import Jet, Lift
-from camwright.geometry.pitch_curve import PitchCurve, RollerMotion
+from camwright.geometry.pitch_curve import CentrePath, PitchCurve, RollerMotion
 
 _OFFSET_TOLERANCE = 1e-14
 """Over the path's radius at zero lift: round-off in the coordinates of a contour point."""
@@ -90,8 +90,8 @@ class Contour(Displayed, ABC):
     def follower_gap(self, xi: Array) -> Array:
         """Gap between follower and common tangent at distance `xi` (m) along it, m, >= 0."""
 
-    def require_roller(self) -> RollerContour:
-        """This contour as a `RollerContour`; refused for any other follower.
+    def require_roller(self) -> RoundContour:
+        """This contour as that of a roller; refused for any other follower.
 
         Raises
         ------
@@ -357,10 +357,16 @@ class RoundContour(Contour):
 
     The path of that point offset inwards by the radius of the follower's surface.
 
+    Parameters
+    ----------
+    pitch : CentrePath    path of the centre of that surface
+
     References
     ----------
     Rothbart, Cam Design Handbook (2004), sec. 6.4.
     """
+
+    pitch: CentrePath
 
     @property
     @abstractmethod
@@ -440,7 +446,7 @@ class RollerContour(RoundContour):
     def follower_radius(self) -> float:
         return self.roller_radius
 
-    def require_roller(self) -> RollerContour:
+    def require_roller(self) -> RoundContour:
         return self
 
     def local_frame(self, theta: ArrayLike) -> Frame:
@@ -464,7 +470,7 @@ class RollerContour(RoundContour):
         return cam_axes(theta, height - inset * across, self.pitch.offset + inset * along)
 
     def motion(self, jet: Jet, friction: Value = 0.0) -> RollerMotion:  # noqa: ARG002
-        return RollerMotion(jet, self.pitch.height_base, self.pitch.offset, self.roller_radius)
+        return self.pitch.centre_motion(jet, self.roller_radius)
 
     def curvature_slope(self, theta: ArrayLike) -> Array:
         return self.pitch.curvature_slope(theta) * reciprocal(self.factor(theta) ** 2)

@@ -132,6 +132,11 @@ class FaceMotion:
         return self.height
 
     @property
+    def travel(self) -> float:
+        """Zero: along the axis of the stem."""
+        return 0.0
+
+    @property
     def pressure_angle(self) -> Array:
         """Zero: the face is square to the stem."""
         return np.zeros(self.jet.slope.shape)

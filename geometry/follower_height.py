@@ -19,7 +19,8 @@ _ZOOMS = 7
 _LEAST_POINTS = 24
 
 Support = Callable[[Array, Array, Array], Array]
-"""Contour points x, y (m) and angles (rad) -> follower height at which the point touches it (m)."""
+"""Contour points x, y (m) and angles (rad) -> height (m) or arm angle (rad) at which the point
+touches the follower."""
 
 
 def roller_height(
@@ -62,6 +63,42 @@ def face_height(polygon: ArrayLike, theta: ArrayLike) -> Array:
 
     def support(x: Array, y: Array, angle: Array) -> Array:
         return x * np.cos(angle) + y * np.sin(angle)
+
+    return _highest(polygon, support, theta)
+
+
+def arm_angle(
+    polygon: ArrayLike,
+    pivot: tuple[float, float],
+    beyond: Callable[[Array], Array],
+    theta: ArrayLike,
+) -> Array:
+    """Angle of an arm on a fixed pivot that rests on a contour, (m,), rad.
+
+    From the line to the cam axis, the maximum over the points of the contour of their own angle at
+    the pivot and that from there to the arm.
+
+    Parameters
+    ----------
+    polygon : array (2, n)   points of the closed contour, counter-clockwise, m
+    pivot : tuple            centre distance, m, and sense of the outward swing: 1 with the rotation
+                             of the cam, -1 against it
+    beyond : function        distances of points from the pivot, m -> angle from the point to the
+                             arm that touches it, rad; -inf where it cannot
+    theta : array (m,)       angles from the cam axis to the pivot in the cam frame, rad
+
+    Raises
+    ------
+    GeometryError
+        If the arm does not reach the contour.
+    """
+    centre_distance, sense = pivot
+
+    def support(x: Array, y: Array, angle: Array) -> Array:
+        along = centre_distance - x * np.cos(angle) - y * np.sin(angle)
+        across = sense * (y * np.cos(angle) - x * np.sin(angle))
+        angles: Array = np.arctan2(across, along) + beyond(np.hypot(along, across))
+        return angles
 
     return _highest(polygon, support, theta)
 

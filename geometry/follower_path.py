@@ -55,6 +55,10 @@ class Motion(Protocol):
         """Height of the reference point of the follower over the cam axis, m."""
 
     @property
+    def travel(self) -> Value:
+        """Direction of travel from the follower axis, counter-clockwise, rad; 0 of a stem."""
+
+    @property
     def pressure_angle(self) -> Array:
         """Pressure angle, rad."""
 
@@ -121,9 +125,9 @@ class Motion(Protocol):
 class FollowerPath(Displayed, ABC):
     """Path of a reference point of the follower in the cam frame.
 
-    The follower's axes are u = (cos theta, sin theta), outwards along its line of travel, and
-    v = (-sin theta, cos theta); angles grow counter-clockwise. With an offset the cam angle is
-    that of the follower's axis, not the polar angle of the point.
+    The follower's axes are u = (cos theta, sin theta), outwards along the line of travel of a stem
+    or towards the pivot of an arm, and v = (-sin theta, cos theta); angles grow counter-clockwise.
+    With an offset the cam angle is that of the follower's axis, not the polar angle of the point.
 
     Parameters
     ----------
@@ -182,8 +186,12 @@ class FollowerPath(Displayed, ABC):
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Signed radius of curvature, m, positive where convex."""
 
+    def travel(self, theta: ArrayLike) -> Array:
+        """Direction of travel from u, counter-clockwise, rad: zero of a stem."""
+        return np.zeros(np.shape(theta))
+
     def height(self, theta: ArrayLike) -> Array:
-        """Height of the reference point along u, m."""
+        """Height of the reference point along u, m; of an arm its arc from the line of centres."""
         return self.height_base + self.lift(theta)
 
     def points(self, theta: ArrayLike) -> Array:

@@ -25,8 +25,16 @@ from camwright.geometry.follower_path import (
 from camwright.geometry.lift import Jet, Lift
 
 
+class CentrePath(FollowerPath):
+    """Path of the centre of a follower's round surface, in the cam frame."""
+
+    @abstractmethod
+    def centre_motion(self, jet: Jet, radius: Value) -> RoundMotion:
+        """Motion at the angles of a jet with a roller of a radius, m."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class PitchCurve(FollowerPath):
+class PitchCurve(CentrePath):
     """Path of the centre of a translating roller follower, in the cam frame.
 
     The centre is d u + e v with d = sqrt(r^2 - e^2) + s.
@@ -92,6 +100,9 @@ class PitchCurve(FollowerPath):
         """Zero: the contact force passes through the roller centre, on the stem's axis."""
         return np.zeros(np.shape(theta))
 
+    def centre_motion(self, jet: Jet, radius: Value) -> RollerMotion:
+        return RollerMotion(jet, self.height_base, self.offset, radius)
+
     def speed_and_curvature(self, theta: ArrayLike) -> tuple[Array, Array]:
         s, s1, s2 = self.lift.derivatives(theta, 2)
         return speed_and_curvature(s1 - self.offset, self.height_base + s, s1, s2)
@@ -119,13 +130,18 @@ class RoundMotion(ABC):
 
     @property
     @abstractmethod
+    def rolls(self) -> bool:
+        """Whether the surface is that of a roller; otherwise it slides."""
+
+    @property
+    @abstractmethod
     def height(self) -> Array:
         """Height of the reference point, m; also its velocity across its travel, m/rad."""
 
     @property
     @abstractmethod
-    def _offset(self) -> Value:
-        """Offset of the line of travel, m."""
+    def travel_offset(self) -> Value:
+        """Offset of the line of travel from the cam axis, m."""
 
     @property
     @abstractmethod
@@ -139,8 +155,23 @@ class RoundMotion(ABC):
 
     @property
     @abstractmethod
-    def _path_curvature_slope(self) -> Array:
+    def path_curvature_slope(self) -> Array:
         """Derivative of the path's curvature by the cam angle, 1/(m rad)."""
+
+    @property
+    @abstractmethod
+    def rolling(self) -> Value:
+        """Angular speed of a roller relative to the follower over cam speed."""
+
+    @property
+    @abstractmethod
+    def slide_slope(self) -> Array:
+        """Derivative by the cam angle of its surface speed against a follower at rest, m/rad2."""
+
+    @property
+    @abstractmethod
+    def prime_radius(self) -> Array:
+        """Radius of the prime circle, m."""
 
     @cached_property
     def tangent(self) -> Array:
@@ -182,7 +213,7 @@ class RoundMotion(ABC):
     @cached_property
     def contact_point(self) -> tuple[Array, Array]:
         inset = self.size / self.path_speed
-        return self.height * (1.0 - inset), self._offset + inset * self.along
+        return self.height * (1.0 - inset), self.travel_offset + inset * self.along
 
     @property
     def contour_radius(self) -> Array:
@@ -199,7 +230,7 @@ class RoundMotion(ABC):
 
         The contour is shorter than the path by the undercut factor, its curvature greater.
         """
-        return self._path_curvature_slope / ((1.0 - self.sharpness) ** 3 * self.path_speed)
+        return self.path_curvature_slope / ((1.0 - self.sharpness) ** 3 * self.path_speed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +251,16 @@ class RollerMotion(RoundMotion):
     size: Value
 
     @property
-    def _offset(self) -> Value:
+    def rolls(self) -> bool:
+        return True
+
+    @property
+    def travel(self) -> float:
+        """Zero: along the axis of the stem."""
+        return 0.0
+
+    @property
+    def travel_offset(self) -> Value:
         return self.offset
 
     @cached_property
@@ -236,7 +276,7 @@ class RollerMotion(RoundMotion):
         return speed_and_curvature(self.along, self.height, self.jet.slope, self.jet.lift_d2)
 
     @property
-    def _path_curvature_slope(self) -> Array:
+    def path_curvature_slope(self) -> Array:
         jet = self.jet
         return curvature_slope(self.along, self.height, jet.slope, jet.lift_d2, jet.jerk)
 
@@ -250,8 +290,12 @@ class RollerMotion(RoundMotion):
         return rolling_share(self.path_speed, self.size)
 
     @property
+    def slide_slope(self) -> Array:
+        stretching = self.along * self.jet.lift_d2 + self.height * self.jet.slope
+        return stretching / self.path_speed
+
+    @property
     def prime_radius(self) -> Array:
-        """Radius of the prime circle."""
         height = self.height - self.jet.lift
         return np.sqrt(height**2 + self.offset**2)
 

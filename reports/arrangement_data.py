@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from camwright.geometry.arm_path import Arm
 from camwright.geometry.arrays import median
 from camwright.pipeline.base.counterweight_body import CounterweightBody
 from camwright.pipeline.base.envelope import Disc, MechanismSizes, Sleeve
@@ -14,6 +15,7 @@ from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout
 from camwright.reports.drawing import arrangement
 from camwright.reports.drawing.arrangement import (
     FORCES,
+    DrawnArm,
     DrawnBush,
     DrawnMechanism,
     DrawnMotion,
@@ -29,6 +31,7 @@ _COLUMNS = {"contact": "normal_force_N", "spring": "spring_force_N",
 _COIL, _WIRE, _GUIDE, _OVERHANG_STEMS, _SPACING = 2.6, 0.42, 2.0, 3.0, 7.0
 _PIN_SHARE = 0.5  # of the roller
 _TURNS = 7.0
+_BEARING = 0.1  # radius about the pivot of an arm, over its length
 _STEEL_DENSITY = 7850.0  # kg/m3
 _OUTLINE_POINTS = 360
 """Most cam angles at which a page draws the arrangement."""
@@ -63,7 +66,7 @@ def motion_of(turn: SheetTurn) -> DrawnMotion:
     return DrawnMotion(
         turn.load_case, np.radians(c["cam_angle_deg"]), turn.crank, turn.words.shaft,
         c["lift_mm"], np.radians(c["pressure_angle_deg"]), c.get("face_contact_offset_mm"),
-        {name: np.nan_to_num(c[_COLUMNS[name]]) for name in FORCES},
+        {name: np.nan_to_num(c[_COLUMNS[name]]) for name in FORCES if _COLUMNS[name] in c},
     )  # fmt: skip
 
 
@@ -84,8 +87,21 @@ def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
         stroke, roller, _pin(turn, roller or 0.0), _face(turn) if roller is None else None, stem,
         end, guides, spring, seat,
         _sizes(turn, (axis, lowest, stroke, stem, end - lowest), guides, spring, seat),
-        _counterweight(turn),
+        _counterweight(turn), _arm(turn),
     )  # fmt: skip
+
+
+def _arm(turn: SheetTurn) -> DrawnArm | None:
+    """Arm of an oscillating follower; None of a stem."""
+    distance, length = (
+        turn.length("follower", "arm", key) for key in ("centre_distance", "length")
+    )
+    prime = turn.length("cam", "prime_radius")
+    if not turn.on_arm or distance is None or length is None or prime is None:
+        return None
+    sense = 1.0 if turn.case["follower"]["arm"].get("swing") == "with" else -1.0
+    start = float(Arm(distance, length, sense).angle(prime))
+    return DrawnArm(distance, length, sense, start, _BEARING * length)
 
 
 def _counterweight(turn: SheetTurn) -> DrawnSector | None:

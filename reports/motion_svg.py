@@ -19,7 +19,7 @@ from camwright.geometry.figures import Figure, closed
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports.analysis_sheet import groups
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of, motion_of
-from camwright.reports.drawing.arrangement import FORCES, DrawnMotion, arrows, drawing
+from camwright.reports.drawing.arrangement import DrawnMotion, arrows, drawing
 from camwright.reports.drawing.drawing_shapes import (
     Arrow,
     DrawnOutline,
@@ -355,9 +355,9 @@ def _moving(turn: SheetTurn, motion: DrawnMotion) -> str:
         if any(pose != poses[0] for pose in poses):
             svg = _with_motion(svg, group, poses)
     turned = [{arrow.name: arrow for arrow in arrows(mechanism, motion, row)} for row in rows]
-    for name in FORCES:
+    for name in mechanism.shown_forces:
         svg = _with_arrow(svg, name, [each[name] for each in turned])
-    for name in FORCES:
+    for name in mechanism.shown_forces:
         most = quantity(float(np.abs(motion.forces[name]).max()), "N", 4)
         svg = _with_words(svg, name, f"at most {most}")
     return _placed(_with_words(svg, "angle", ""), "moving")

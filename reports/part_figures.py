@@ -36,7 +36,9 @@ def _forces(turn: SheetTurn) -> Figure | None:
     applied = " Applied: weight and external force." if shown else ""
     return angle_figure(
         turn, "forces", "Force components on the follower",
-        "Components along the stem; the side force is perpendicular to it and carried by the "
+        "Components along the arc of the roller centre; the side force is along the arm."
+        if turn.on_arm
+        else "Components along the stem; the side force is perpendicular to it and carried by the "
         f"guides.{applied}",
         Panel("force", "N", curves, height=1.25),
     )  # fmt: skip
@@ -74,7 +76,8 @@ def _energy(turn: SheetTurn) -> Figure | None:
     theta, lift = np.radians(c["cam_angle_deg"]), 1e-3 * c["lift_mm"]
     spring = _summed(c["spring_force_N"], lift)
     speed = c["follower_velocity_m_per_s"]
-    friction = c["guide_friction_A_N"] + c["guide_friction_B_N"]
+    guides = [c[name] for name in ("guide_friction_A_N", "guide_friction_B_N") if name in c]
+    friction = np.sum([np.zeros_like(lift), *guides], axis=0)
     rubbing = _summed(np.abs(friction * speed) / c["cam_speed_rad_per_s"], theta)
     drag = _summed(np.abs(c["viscous_force_N"] * speed) / c["cam_speed_rad_per_s"], theta)
     rest = turn.case.get("follower", {}).get("face") is not None
@@ -118,11 +121,12 @@ def _load_cases(turn: SheetTurn) -> Figure | None:
         return Panel(title, unit, curves, limits, height=0.75, from_zero=True)
 
     pressure = "p0_fe_MPa" if np.isfinite(turn.columns["p0_fe_MPa"]).any() else "p0_hertz_MPa"
+    guides = (("guide_reaction_A_N", "guide A"), ("guide_reaction_B_N", "guide B"))
     ended = " Loads of a case in which the follower leaves the cam or locks do not occur."
     panels = (
         bars("normal force", "N", ("normal_force_N", ""), limits=_force_limits(turn), notes=names),
         bars("p0", "MPa", (pressure, ""), limits=endurance(turn)),
-        bars("guides", "N", ("guide_reaction_A_N", "guide A"), ("guide_reaction_B_N", "guide B")),
+        *([] if turn.on_arm else [bars("guides", "N", *guides)]),
         bars("cam torque", "N m", ("cam_torque_Nm", "")),
     )
     return over(
@@ -197,9 +201,12 @@ def _normal_force(turn: SheetTurn) -> Figure | None:
     )
     return angle_figure(
         turn, "normal-force", "Normal force",
-        "Contact force between cam and follower and its component along the stem, guide friction "
-        "included; change by the finite length and by the clearance of the guides. Contact is lost "
-        "where the normal force reaches zero.",
+        "Contact force between cam and follower and its component along the arc of the roller "
+        "centre. Contact is lost where the normal force reaches zero."
+        if turn.on_arm
+        else "Contact force between cam and follower and its component along the stem, guide "
+        "friction included; change by the finite length and by the clearance of the guides. Contact"
+        " is lost where the normal force reaches zero.",
         Panel("force", "N", curves, (_LOST, *_force_limits(turn))),
         Panel("change", "N", curves_of(turn, *shares), height=0.6),
     )  # fmt: skip
@@ -227,6 +234,8 @@ def _guides(turn: SheetTurn) -> Figure | None:
 
 
 def _jamming(turn: SheetTurn) -> Figure | None:
+    if turn.on_arm:  # whose pivot has no friction
+        return None
     limits = turn.limit("limit", "", "jam_index")
     indices = (
         ("jam_index", "finite guides"), ("jam_index_statics", "point supports"),
@@ -250,16 +259,18 @@ def _speed(turn: SheetTurn) -> Figure | None:
     for name, colour in (("A", "blue"), ("B", "vermillion")):
         length = turn.length("guides", name.lower(), "length")
         diameter = turn.length("guides", name.lower(), "diameter")
-        load = turn.columns[f"guide_normal_load_{name}_N"]
-        if length and diameter:
+        load = turn.columns.get(f"guide_normal_load_{name}_N")
+        if length and diameter and load is not None:
             pv = np.abs(load * velocity) / (length * diameter)
             curves.append(Curve(turn.crank, pv, f"guide {name}", colour))
             means.append(replace(curves[-1], y=np.full_like(pv, pv.mean())))
             limits += turn.limit(f"limit {name}", "MPa m/s", f"guide_pv_{name}")
     return angle_figure(
-        turn, "speed", "Follower velocity and guide PV",
-        "PV: guide force over projected area, times sliding speed; its limit is one of the mean "
-        "over the turn.",
+        turn, "speed", "Follower velocity" if turn.on_arm else "Follower velocity and guide PV",
+        "Of the roller centre along its arc."
+        if turn.on_arm
+        else "PV: guide force over projected area, times sliding speed; its limit is one of the "
+        "mean over the turn.",
         Panel("velocity", "m/s", curves_of(turn, ("follower_velocity_m_per_s", "")),
               both_ways(fastest), height=0.8),
         Panel("PV", "MPa m/s", tuple(curves), height=0.9),

@@ -546,6 +546,7 @@ def residuals(turn: SheetTurn) -> list[tuple[str, str]]:
     return [
         (words, report_tables.number(float(np.max(np.abs(turn.columns[name]))), 2))
         for name, words in names.items()
+        if name in turn.columns
     ]
 
 

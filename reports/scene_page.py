@@ -155,8 +155,10 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
     bodies = {"flank": _flank(material, view, width), "cam": joined(carried).as_record(_DIGITS)}
     holes = [ring(view.bore, width), *_drilled(mechanism, width)]
     bodies["bore"] = joined(holes).as_record(_DIGITS)
-    end = mechanism.stem_end - mechanism.lowest
-    bodies["follower"] = _follower(view, width, mechanism.stem, end).as_record(_DIGITS)
+    arm = mechanism.arm
+    end = mechanism.stem_end - mechanism.lowest if arm is None else arm.length
+    stem = mechanism.stem if arm is None else 1.2 * arm.bearing
+    bodies["follower"] = _follower(view, width, stem, end).as_record(_DIGITS)
     bodies["guide"] = _frame(mechanism).as_record(_DIGITS)
     envelope = mechanism.envelope
     spin = view.arc() / float(np.hypot(*view.follower).max()) if view.is_roller else 0.0
@@ -167,6 +169,7 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
         "turn": _rounded(view.to_lab),
         "origin": [_rounded(part) for part in lab],
         "facing": _rounded(view.to_lab + view.turn + spin),
+        "lean": None if arm is None else _rounded(arm.turn(rows["lift_mm"][view.position])),
         "contact": [_rounded(part) for part in _contacts(view, lab)],
         "half": width / 2,
         "readout": [
@@ -279,12 +282,18 @@ def _pin_radius(view: TurnView) -> float:
 
 
 def _frame(mechanism: DrawnMechanism) -> Solid:
-    """Guides, space of the spring with its seats over the turn, shaft with bearings and gear."""
-    highest = mechanism.lowest + mechanism.stroke
-    solids = [
-        _sleeve(each, mechanism.stem, highest).shifted(mechanism.axis)
-        for each in mechanism.sizes.sleeves
-    ]
+    """Guides, space of the spring with its seats over the turn, shaft with bearings and gear.
+
+    Of an arm its pivot in place of the guides.
+    """
+    highest, arm = mechanism.lowest + mechanism.stroke, mechanism.arm
+    if arm is None:
+        solids = [
+            _sleeve(each, mechanism.stem, highest).shifted(mechanism.axis)
+            for each in mechanism.sizes.sleeves
+        ]
+    else:
+        solids = [pin(0.5 * arm.bearing, 2.0 * mechanism.sizes.follower[1]).raised(arm.pivot)]
     discs = mechanism.sizes.discs
     solids += [pin(0.5 * each.diameter, 0.5 * each.width).deeper(each.place) for each in discs]
     if discs:

@@ -30,6 +30,10 @@ class Solid:
         """The solid shifted along x."""
         return Solid(self.points + np.array([[across], [0.0], [0.0]]), self.triangles)
 
+    def raised(self, height: float) -> Solid:
+        """The solid shifted along y."""
+        return Solid(self.points + np.array([[0.0], [height], [0.0]]), self.triangles)
+
     def deeper(self, along: float) -> Solid:
         """The solid shifted along z."""
         return Solid(self.points + np.array([[0.0], [0.0], [along]]), self.triangles)

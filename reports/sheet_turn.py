@@ -122,6 +122,11 @@ class SheetTurn:
         return "face_contact_offset_mm" not in self.columns
 
     @property
+    def on_arm(self) -> bool:
+        """Whether an arm carries the follower; otherwise a stem in guides."""
+        return isinstance(self.case.get("follower", {}).get("arm"), Mapping)
+
+    @property
     def follower_name(self) -> str:
         """Name of the contact body of the follower."""
         return "roller" if self.rolls else "face"

@@ -76,15 +76,20 @@ class MechanismSizes:
     discs: tuple[Disc, ...]
 
     @property
+    def on_shaft(self) -> tuple[Box, ...]:
+        """Boxes of the cam and the parts about its shaft."""
+        about = (Disc(0.0, self.cam_width, 2.0 * self.cam_radius), *self.discs)
+        return tuple(map(self._disc, about))
+
+    @property
     def parts(self) -> tuple[Box, ...]:
         """Boxes of the parts over the turn, the follower from lowest to highest position."""
         highest = self.lowest + self.lift
         half, deep = self.follower
-        about = (Disc(0.0, self.cam_width, 2.0 * self.cam_radius), *self.discs)
         stem = Sleeve(-self.lift, self.stem_end, self.stem_diameter)
         across = self.axis - half, self.axis + half
         return (
-            *(self._disc(each) for each in about),
+            *self.on_shaft,
             Box(across, (self.lowest, highest), (-deep, deep)),
             *(self._sleeve(each, highest) for each in (stem, *self.sleeves)),
         )

@@ -41,7 +41,6 @@ class MissingKind:
         return f"{self.name} is not done{nearest}; {LISTED}"
 
 
-_TRANSLATING = "a translating follower of the same lift"
 _PLATE = "a plate cam with a spring"
 _BY_TABLE = '[lift] kind = "table" or "points"'
 _DRAWINGS = ("dxf", "dwg", "igs", "iges", "stp", "contour", "outline", "surface_points")
@@ -49,11 +48,10 @@ _OF_CONTOUR = f"its lift as {_BY_TABLE}"
 _AS_FORCE = "its force over the cam angle as follower.external_force_file"
 MISSING_KINDS = (
     MissingKind(
-        "an oscillating (swinging) follower", "follower",
-        ("oscillating", "swinging", "swing", "pivoted", "pivoting", "pivot", "rocking", "rocker",
-         "rocker_arm", "finger", "lever", "arm", "arm_length"),
-        _TRANSLATING,
-        keys=("pivot", "rocker", "rocker_arm", "lever", "arm_length", "swing"),
+        "a rocker, finger or lever, or an arm with a face", "follower",
+        ("rocking", "rocker", "rocker_arm", "finger", "lever"),
+        'kind = "oscillating" with a roller',
+        keys=("rocker", "rocker_arm", "lever"),
     ),
     MissingKind(
         "a knife-edge (pointed) follower", "follower",

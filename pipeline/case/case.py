@@ -112,7 +112,7 @@ class Case(Displayed, Section):
     ] = None
     """roller of the follower"""
     follower: Annotated[Follower, Used("lift, cycle, checks")]
-    """translating follower and its stem"""
+    """follower, with its stem or its arm"""
     guides: Annotated[Table[GuidePair], Used("cycle, checks of the guides")]
     """two guides of the stem: A next to the cam, B beyond"""
     lubricant: Annotated[Table[Lubricant] | None, Used("oil film")] = None
@@ -316,7 +316,17 @@ class Case(Displayed, Section):
 
     def contour(self, lift: Lift) -> Contour:
         """Cam contour of a lift."""
-        return self.facing.contour(lift, self.cam)
+        return self.facing.contour(lift, self.cam, self.follower.arm)
+
+    def require_stem(self, use: str) -> None:
+        """Refuse an oscillating follower for a use, in words, that is made for a stem in guides.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.follower.arm is not None:
+            raise InputError("follower.kind", self.follower.kind, f'"roller" or "flat" for {use}')
 
     @property
     def base_circle(self) -> float:

@@ -17,6 +17,7 @@ from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.case.added_tables import with_added, with_examples
+from camwright.pipeline.case.arm_tables import with_arm
 from camwright.pipeline.case.cards.card_filling import fill_cards
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
@@ -99,7 +100,7 @@ def case_of(data: Tables, folder: Path | None = None) -> Case:
 
 def resolved(data: Tables, folder: Path | None = None) -> Tables:
     """Tables of a case with added tables, cards, and stand-ins for parts out of scope."""
-    tables = with_stand_ins(with_every_name(with_new_keys(with_added(data))))
+    tables = with_stand_ins(with_arm(with_every_name(with_new_keys(with_added(data)))))
     fill_cards(tables, folder)
     return tables
 

@@ -184,12 +184,14 @@ def _start(case: Case) -> Iterator[Rule]:
         cycle = shown(case.torque.cycle, "deg")
         limit = f"given with [torque]: {ratio_text(case.torque.cycle / FULL_TURN)} for one cycle"
         raise InputError("mechanism.gear_ratio", "missing", f"{limit} of {cycle} in a cam turn")
+    if case.valve_train is not None and case.follower.arm is not None:
+        raise InputError("valve_train", "a table", "left out with an arm")
     if isinstance(case.lift, LiftSegments):
         motion_of(case.lift)
     elif case.valve_train is not None:
         limit = 'left out unless lift.kind = "segments"'
         raise InputError("valve_train", "a table", limit)
-    if case.follower.kind == "roller":
+    if case.follower.kind != "flat":
         _ = case.roller  # refuses a case without roller
     elif case.roller_given is not None:
         raise InputError("roller", "a table", 'left out with follower.kind = "flat"')
@@ -327,6 +329,8 @@ def _geometry(case: Case) -> Iterator[Rule]:
         lambda at: abs(at("cam.offset")) >= at("cam.prime_radius"),
         "smaller than {cam.prime_radius}",
     )
+    if case.follower.arm is not None:
+        yield from _arm()
     key = "limits.return_pressure_angle"
     yield _at_least(key, lambda at: at("limits.pressure_angle"), ">= {limits.pressure_angle}")
     yield from _ring(case)
@@ -431,6 +435,15 @@ def _ring(case: Case) -> Iterator[Rule]:
     if case.cam.keyway is not None:
         limit = f"< {{}}, the wall around the bore: {base} less {{cam.bore_radius}}"
         yield _less("cam.keyway.depth", lambda at: surface(at) - at("cam.bore_radius"), limit)
+
+
+def _arm() -> Iterator[Rule]:
+    """An arm reaches the prime circle, and has no offset."""
+    distance, length = "follower.arm.centre_distance", "follower.arm.length"
+    between = f"{{}}, {{{distance}}} and {{{length}}}"
+    yield _more("cam.prime_radius", lambda at: abs(at(distance) - at(length)), f"> {between} apart")
+    yield _less("cam.prime_radius", lambda at: at(distance) + at(length), f"< {between} together")
+    yield _equal("cam.offset", _fixed(0.0), "0 mm with an arm")
 
 
 def _key(case: Case) -> Iterator[Rule]:

@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from camwright.geometry.arm_path import disc_lift
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.eccentric import Eccentric, face_lift
 from camwright.geometry.errors import InputError
@@ -68,6 +69,9 @@ def given_lift(case: LiftSource) -> Lift:
     if isinstance(section, LiftEccentric):
         if case.follower.kind == "flat":
             return face_lift(section.eccentricity)
+        if case.follower.arm is not None:
+            arm = case.follower.arm.linkage
+            return disc_lift(section.eccentricity, case.cam.prime_radius, arm)
         return eccentric_of(case, section).lift()
     if section is None:
         raise InputError("lift", "missing", "given without an engine")

@@ -53,7 +53,7 @@ class LiftSegment(Section):
     ]
     """cam angle of the segment"""
     stroke: Annotated[Stroke, Known("timing of the machine")] = 0.0
-    """rise, or return where negative; 0: dwell"""
+    """rise, or return where negative; 0: dwell; with an arm an angle of its swing, too"""
 
 
 class LiftSegments(Section):
@@ -79,7 +79,7 @@ class CamLiftPoint(LiftPoint):
     lift: Annotated[
         float, In("mm", at_least=0, at_most=1000), Known("measured, or own choice", "4 mm")
     ]
-    """lift at this cam angle"""
+    """lift at this cam angle; with an arm an angle of its swing, too"""
 
 
 class LiftPoints(Section):

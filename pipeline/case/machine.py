@@ -42,6 +42,7 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
 from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.engine.crankshaft import Crankshaft
+from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
@@ -121,6 +122,8 @@ class Machine(Displayed):
     scope : Scope              parts that the sign-off covers
     torque : Torque            of the engine at `speed`, over a cam turn; None: without one, or not
                                stated, where the parts alone are needed
+    arm : FollowerArm          that carries the follower; None: the stem in its guides does, which
+                               an arm has without mass, friction and clearance
     """
 
     load_case: str
@@ -153,6 +156,7 @@ class Machine(Displayed):
     limits: Limits
     scope: Scope
     torque: Torque | None = field(default=None, compare=False)
+    arm: FollowerArm | None = None
 
     @property
     def crank_speed(self) -> float:
@@ -334,13 +338,13 @@ class Machine(Displayed):
     def compliances(self) -> dict[str, float]:
         """Compliances by name of the described members from cam to follower mass, m/N.
 
-        The stem counts to its far guide; the line contact and the cam are taken as rigid.
+        The stem counts to its far guide; the line contact, the cam and an arm are taken as rigid.
         """
         parts, held = self.follower.elastic(self.contact_width, self.spring.preload)
         reach = self.overhang_at_max_lift + self.guides.spacing - held
         members = {
             **parts,
-            "stem": stem_compliance_along(self.stem, reach),
+            "stem": stem_compliance_along(self.stem, reach) if self.arm is None else None,
             "camshaft": None if self.camshaft is None else shaft_compliance(self.camshaft),
         }
         return {name: each for name, each in members.items() if each is not None}
@@ -463,6 +467,7 @@ def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machin
         limits=case.limits,
         scope=case.scope,
         torque=torque,
+        arm=follower.arm,
     )
 
 

@@ -20,6 +20,7 @@ from camwright.pipeline.case.section import (
     SourceOfTable,
     Table,
 )
+from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.flat_face import FlatFace
 
 
@@ -32,10 +33,11 @@ class ValveTrain(Section):
 
 
 class Follower(Section):
-    """Translating follower with a roller or a flat face."""
+    """Translating follower with a roller or a flat face, or an oscillating one with a roller."""
 
     defaults: ClassVar[Mapping[str, str]] = {
         "face": "the follower has a roller",
+        "arm": "the follower translates",
         "stem_length": "the stem is long",
         "stiffness": "bearing, pin, fork, stem and camshaft in series",
         "external_force": "0 N, without a file",
@@ -43,12 +45,15 @@ class Follower(Section):
         "gravity_angle": "the weight is left out",
     }
 
-    kind: Annotated[Literal["roller", "flat"], Known("own choice")] = "roller"
-    """roller or flat face"""
+    kind: Annotated[Literal["roller", "flat", "oscillating"], Known("own choice")] = "roller"
+    """stem with a roller or a flat face, or oscillating arm with a roller"""
     face: Annotated[Table[FlatFace] | None, Used("contour, contact, checks")] = None
     """flat face of the follower"""
+    arm: Annotated[Table[FollowerArm] | None, Used("lift, contour, cycle")] = None
+    """arm of an oscillating follower on its pivot"""
     mass: Annotated[Mass, Known("weighed, or drawing", "610 g")]
-    """mass of all that moves with the follower, with its share of the spring"""
+    """mass of all that moves with the follower, with its share of the spring; of an arm the moment
+    of inertia about its pivot over the square of its length"""
     stem_diameter: Annotated[Length, Known("drawing", "16 mm")]
     """diameter of the stem in its guides"""
     stem_length: Annotated[Length | None, Known("drawing", "205 mm")] = None
@@ -92,10 +97,23 @@ class Follower(Section):
     def _has_its_face(self) -> Self:
         if self.kind == "flat" and self.face is None:
             raise InputError("follower.face", "missing", 'given with follower.kind = "flat"')
-        if self.kind == "roller" and self.face is not None:
+        if self.kind != "flat" and self.face is not None:
             limit = 'left out, or follower.kind = "flat"'
             raise InputError("follower.face", "a table", limit)
         return self
+
+    @model_validator(mode="after")
+    def _has_its_arm(self) -> Self:
+        if (self.kind == "oscillating") == (self.arm is not None):
+            if self.arm is not None and self.gravity_angle is not None:
+                stated = units.shown(self.gravity_angle, "deg")
+                limit = "left out with an arm, whose weight turns with it"
+                raise InputError("follower.gravity_angle", stated, limit)
+            return self
+        if self.arm is None:
+            raise InputError("follower.arm", "missing", 'given with follower.kind = "oscillating"')
+        limit = 'left out, or follower.kind = "oscillating"'
+        raise InputError("follower.arm", "a table", limit)
 
     @model_validator(mode="after")
     def _has_one_force(self) -> Self:

@@ -23,7 +23,7 @@ PartName = Literal[
     "roller_bearing", "pin", "fork", "spring", SpringPart, "guides",
     "camshaft", "camshaft_bearings", "key", "gear",
 ]  # fmt: skip
-Subject = Literal["stem", "bore", "line_ends", "friction", "requirements"]
+Subject = Literal["stem", "bore", "line_ends", "friction", "requirements", "arm"]
 """What is left out besides parts: data that a part which is judged would need as well."""
 ScopeName = PartName | Subject
 PART_WORDS: dict[PartName, str] = {
@@ -45,10 +45,13 @@ SUBJECT_WORDS: dict[Subject, str] = {
     "line_ends": "ends of the line of contact",
     "friction": "friction, film and finish of the contact",
     "requirements": "life, over-speed and room",
+    "arm": "arm of the follower and its pivot",
 }
 SCOPE_WORDS: Mapping[ScopeName, str] = MappingProxyType(
     dict((*PART_WORDS.items(), *SUBJECT_WORDS.items()))
 )
+_OF_STEM: tuple[ScopeName, ...] = ("guides", "stem")
+"""What an arm does not have."""
 EVERY = "all"
 """Word of a case file for all that a sign-off may leave out."""
 _KEYS: dict[ScopeName, tuple[str, ...]] = {
@@ -80,7 +83,7 @@ class Scope(Section):
 
     not_covered: Annotated[
         tuple[ScopeName, ...],
-        Field(strict=False, max_length=16),
+        Field(strict=False, max_length=32),
         Known("own responsibility", ("gear",)),
     ] = ()
     """parts left out of the sign-off"""
@@ -92,7 +95,12 @@ class Scope(Section):
     @property
     def statement(self) -> str:
         """Excluded parts with the reason, in one line; "" without any."""
-        parts = ", ".join(words for part, words in SCOPE_WORDS.items() if not self.covers(part))
+        missing = [] if self.covers("arm") else _OF_STEM
+        parts = ", ".join(
+            words
+            for part, words in SCOPE_WORDS.items()
+            if not self.covers(part) and part not in missing
+        )
         reason = " ".join(self.reason.split())
         return f"Not covered by this sign-off: {parts}: {reason}" if parts else ""
 
@@ -143,7 +151,9 @@ def with_every_name(tables: Tables) -> Tables:
     scope = tables.get("scope")
     if not isinstance(scope, dict) or scope.get("not_covered") not in (EVERY, [EVERY]):
         return tables
-    names: list[TomlValue] = list(SCOPE_WORDS)
+    follower = tables.get("follower")
+    has_arm = isinstance(follower, dict) and "arm" in follower
+    names: list[TomlValue] = [name for name in SCOPE_WORDS if name != "arm" or has_arm]
     return tables | {"scope": scope | {"not_covered": names}}
 
 

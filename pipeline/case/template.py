@@ -1,7 +1,7 @@
 """First case of each kind, complete and commented, as written by `camwright new`.
 
-The kinds differ at the source alone: a cylinder model, a measurement on the engine of that model,
-the torque of another machine, or a lift. The mechanism is the same.
+The kinds differ at the source: a cylinder model, a measurement on the engine of that model, the
+torque of another machine, or a lift. The mechanism is the same, but for the arm of the kind `arm`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from camwright.pipeline.torque.torque import Torque
 Kind = Literal[
     "cylinder", "table", "pressure", "speed", "voltage",
     "torque", "harmonics", "compressor", "pump", "press",
-    "lift", "eccentric",
+    "lift", "eccentric", "arm",
 ]  # fmt: skip
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
@@ -66,8 +66,12 @@ def first_case(name: str, kind: str = "cylinder") -> FirstCase:
 
 
 def _text(name: str, kind: Kind) -> str:
-    balances = kind not in ("lift", "eccentric")
-    parts = (_HEAD, _SOURCES[kind], _MACHINE, _BALANCE if balances else "", _REQUIREMENTS)
+    balances = kind not in ("lift", "eccentric", "arm")
+    carried = _ARM if kind == "arm" else _STEM
+    parts = (
+        *(_HEAD, _SOURCES[kind], _MACHINE, carried, _SURROUNDINGS),
+        *(_BALANCE if balances else "", _REQUIREMENTS),
+    )
     return filled(
         "\n".join(part for part in parts if part), name=name, data=_data_name(name, kind),
         power="230 W" if kind in _WITHOUT_MEAN else None, reduction=0.4 if balances else None,
@@ -270,6 +274,18 @@ segment = [
     { law = "dwell", angle = "60 deg" },
 ]
 """,
+    "arm": """\
+# --- The swing: rises, dwells and returns that fill the turn, as angles of the arm or arcs of the
+# roller's centre. Other laws: harmonic, modified_sine, polynomial_345, polynomial_4567 and more.
+[lift]
+kind = "segments"
+segment = [
+    { law = "cycloidal", angle = "120 deg", stroke = "5.7 deg" },
+    { law = "dwell", angle = "60 deg" },
+    { law = "cycloidal", angle = "120 deg", stroke = "-5.7 deg" },
+    { law = "dwell", angle = "60 deg" },
+]
+""",
     "eccentric": """\
 # --- The lift: of a circular disc
 [lift]
@@ -362,7 +378,9 @@ cheek_height = "22 mm"
 cheek_length = "26 mm"
 bridge_length = "4 mm"
 material = "c45"
+"""
 
+_STEM = """\
 [follower]
 mass = "1.1 kg"                      # all that moves, with a third of the spring
 stem_diameter = "20 mm"
@@ -392,7 +410,24 @@ wall = "1.5 mm"
 clearance = "0.03 mm"
 housing_resistance = "1 K/W"
 wear_rate = "3e-8 mm^3/N/m"
+"""
 
+_ARM = """\
+[follower]
+kind = "oscillating"
+mass = "1.1 kg"                      # inertia about the pivot over the square of the arm's length
+
+[follower.arm]
+centre_distance = "110 mm"           # pivot to cam axis
+length = "100 mm"                    # pivot to the roller's centre
+swing = "with"                       # outwards, the arm turns as the cam does; or "against"
+
+[scope]
+not_covered = ["arm"]
+reason = "Who signs off the arm and its pivot?"
+"""
+
+_SURROUNDINGS = """\
 [lubricant]
 card = "iso_vg_150"
 temperature = "80 degC"

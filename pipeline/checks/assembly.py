@@ -301,6 +301,13 @@ def from_follower(numbers: Numbers, below: Value, aside: Value) -> Value:
 def _to_follower(numbers: Numbers, along: float, across: float) -> Value:
     """Distance of a point from the follower at its lowest, m; the worse side of an offset."""
     prime, offset = numbers["cam.prime_radius"], numbers["cam.offset"]
+    arm = None if numbers.case is None else numbers.case.follower.arm
+    if arm is not None:  # its roller at zero lift; the line to the pivot is the axis
+        centres, length = arm.centre_distance, arm.length
+        low = (prime**2 + centres**2 - length**2) / (2.0 * centres)
+        beside = arm.sense * np.sqrt(prime**2 - low**2)
+        away: Value = np.hypot(along - low, across + beside) - numbers["follower.round"]
+        return away
     below = np.maximum(np.sqrt(prime**2 - offset**2) - along, 0.0)
     return _least(
         {

@@ -39,7 +39,7 @@ from camwright.pipeline.checks.check import (
 )
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative, roller_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 
@@ -136,7 +136,8 @@ def angle_on_return(cam: LoadedCam) -> Array:
 
 
 def _angle(cam: LoadedCam, slope: Array) -> Array:
-    return magnitude(np.arctan((slope - cam.numbers["cam.offset"]) / cam.motion.height))
+    path = roller_of(cam.motion)
+    return magnitude(np.arctan((slope - path.travel_offset) / path.height))
 
 
 def _method_of_undercut(demand: Demand, solution: Solution) -> Demand:
@@ -180,6 +181,7 @@ def _wall_left(cam: LoadedCam, limit: float) -> Array | None:
         "s'": "lift_slope",
         "e": "cam.offset",
         "d": "pitch_height",
+        "?": "follower.kind roller",
     },
     reason="Side force, guide friction and jamming grow with the tangent of the angle.",
     method="greatest |atan((s' - e)/d)| of the pitch curve, refined between samples",

@@ -453,6 +453,7 @@ roller_modified_life = check(
         "P'": "pitch_speed",
         "r": "roller.radius",
         "n_g": "roller.bearing.speed_limit",
+        "?": "follower.kind roller",
     },
     reason="beyond it seals and grease overheat",
     values=("roller.bearing.speed_limit", "limits.overspeed"),

@@ -48,18 +48,17 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative, roller_of
 from camwright.pipeline.cycle.rolling_history import SweptStress
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.roller_motion import path_speed_slope
 
 RULE_RATIO = 1.5
 
 
 def _tangential(cam: LoadedCam) -> Array:
     """Magnitude of the tangential force of rolling without slip, N."""
-    path, jet, drag = roller_of(cam.motion), cam.jet, cam.drag
+    path, drag = roller_of(cam.motion), cam.drag
     if drag is None:
         return np.full(np.shape(cam.normal), np.nan)
-    rate = path_speed_slope(path.along, path.height, jet.slope, jet.lift_d2, path.path_speed)
-    acceleration, force = cam.speed**2 * rate / path.size, not_negative(cam.normal)
+    acceleration = cam.speed**2 * path.slide_slope / path.size
+    force = not_negative(cam.normal)
     bearing = drag.bearing_torque(force)
     return magnitude(rolling_demand(cam.rotor_inertia, bearing, cam.spin, acceleration, path.size))
 

@@ -114,8 +114,8 @@ def camshaft_loads(
     held = np.zeros_like(thrown)
     if weight is not None:
         held = rotating_force(*weight.set_against(manufactured), cam_speed, loads.theta)
-    forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
-    return shaft_loads(*forces, shaft, thrown, held)
+    along, across = loads.on_shaft
+    return shaft_loads(along, across, loads.cam_torque, shaft, thrown, held)
 
 
 def rotor_unbalance(made: Unbalance, shaft: Camshaft | None) -> float:

@@ -51,6 +51,11 @@ _ALONG = (
     *("spring_force", "applied_force", "inertia_force", "viscous_force"),
     *("normal_force", "lift_slope", "jam_index"),
 )
+_OF_GUIDES = (
+    *("guide_", "jam_index_", "stem_slope", "stem_end", "residual_guide", "residual_friction"),
+    *("normal_force_statics", "normal_force_by_", "normal_force_friction"),
+)
+"""Beginnings of the columns of stem and guides, which an arm does not have."""
 
 
 def least_spring_force(spring: Spring, contour: Contour) -> float:
@@ -284,7 +289,7 @@ class Cycle(Tabled):
         if slope is None or loads is None:
             return np.zeros(self.theta.size)
         bent = slope.under(loads.cam, loads.gear, loads.counterweight)
-        return in_the_normal(bent, self.loads.pressure_angle)
+        return in_the_normal(bent, self.loads.pressure_angle - self.loads.travel)
 
     @KeptResult
     def elastic(self) -> ElasticHistory:
@@ -480,7 +485,10 @@ class Cycle(Tabled):
             columns[shear] = contact.tau_any_plane
         if contact.tier is not None:
             columns |= self.rolling.columns()
-        return columns | self.parts.columns(self.elastic) | self.shares.columns()
+        columns |= self.parts.columns(self.elastic) | self.shares.columns()
+        if self.machine.arm is None:
+            return columns
+        return {each: v for each, v in columns.items() if not each.name.startswith(_OF_GUIDES)}
 
 
 def turn_of_line(cycle: Cycle) -> TurnOfLine:

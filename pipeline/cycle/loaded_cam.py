@@ -14,12 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from camwright.geometry.arm_path import Arm, ArmMotion
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion, Reaction
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import RollerMotion, magnitude, rolling_share
+from camwright.geometry.pitch_curve import RollerMotion, RoundMotion, magnitude, rolling_share
 from camwright.pipeline.case.case_values import wound_spring
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.traction import Drag
@@ -32,23 +33,35 @@ from camwright.pipeline.follower.spring_kinds import SpringShape, rise
 
 
 def motion_of(jet: Jet, numbers: Numbers) -> Motion:
-    """Kinematics of the follower from its numbers; see `PitchCurve` and `FacePath`."""
+    """Kinematics of the follower from its numbers; see `PitchCurve`, `FacePath` and `ArmPath`."""
     prime, offset = numbers["cam.prime_radius"], numbers["cam.offset"]
+    if numbers.get("follower.arm.length") is not None:
+        return _on_an_arm(jet, numbers)
     if numbers.get("follower.face.width") is not None:
         friction = numbers.get("follower.face.friction")
         return FaceMotion(jet, prime, offset, 0.0 if friction is None else friction)
     return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, numbers["roller.radius"])
 
 
-def roller_of(path: Motion) -> RollerMotion:
-    """Kinematics of a roller; refused for a face.
+def _on_an_arm(jet: Jet, numbers: Numbers) -> ArmMotion:
+    """Motion of the roller of an arm, whose start angle follows from the prime radius."""
+    stated = numbers.known_case.follower.arm
+    if stated is None:
+        raise InputError("follower.arm", "missing", "given for its motion")
+    distance, length = numbers["follower.arm.centre_distance"], numbers["follower.arm.length"]
+    arm = Arm(distance, length, stated.sense)
+    return ArmMotion(jet, arm, arm.angle(numbers["cam.prime_radius"]), numbers["roller.radius"])
+
+
+def roller_of(path: Motion) -> RoundMotion:
+    """Kinematics of a roller, of a stem or an arm; refused for a face.
 
     Raises
     ------
     GeometryError
-        If it is that of a flat face.
+        If it is that of a face.
     """
-    if isinstance(path, RollerMotion):
+    if isinstance(path, RoundMotion) and path.rolls:
         return path
     raise GeometryError("the follower of the cam is no roller")
 
@@ -378,10 +391,12 @@ class LoadedCam:
         slope = slope_of(shaft)
         if shaft is None or slope is None:
             return np.zeros(self.normal.shape)
-        pushed = -np.stack([self.axial, self.axial * self.motion.side])
-        on_cam, held = self.thrown
+        travel, on_cam, held = self.motion.travel, *self.thrown
+        cos, sin = np.cos(travel), np.sin(travel)
+        along, across = self.axial, self.axial * self.motion.side
+        pushed = -np.stack([along * cos + across * sin, across * cos - along * sin])
         bent = slope.under(pushed + on_cam, gear_force(self.torque, shaft), held)
-        return in_the_normal(bent, self.motion.pressure_angle)
+        return in_the_normal(bent, self.motion.pressure_angle - travel)
 
     @cached_property
     def follower_moment(self) -> Array:

@@ -24,6 +24,7 @@ In the order of the calculation:
 | `ring_on_balls`         | outer ring as roller                       |                       |
 | `pin_strength`          | bending, shear, pressure of the pin        | sigma, Pa             |
 | `flat_face_motion`      | sliding and entrainment speed of a face    | m/s; pv, Pa m/s       |
+| `arm`                   | arm of an oscillating follower             | c, l, m; psi, rad     |
 | `follower_kind`         | protocol of the kinds of follower          |                       |
 | `roller`                | roller: geometry, contact body, rolling    | r, m                  |
 | `flat_face`             | flat face: geometry, contact body, sliding | m                     |

@@ -18,6 +18,7 @@ from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import FaceBody
+from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.flat_face_motion import FaceSliding, face_motion
 from camwright.pipeline.follower.follower_kind import ElasticParts, MovingParts, SurfaceMotion
 from camwright.pipeline.follower.stem_beam import Stem
@@ -123,8 +124,13 @@ class FlatFace(Part):
     def rolling(self, contour: Contour, theta: Array, speed: float) -> None:
         """None: the face slides."""
 
-    def contour(self, lift: Lift, cam: CamBody) -> Contour:
-        """Cam contour under the face; see `FollowerKind`."""
+    def contour(
+        self,
+        lift: Lift,
+        cam: CamBody,
+        arm: FollowerArm | None = None,  # noqa: ARG002
+    ) -> Contour:
+        """Cam contour under the face, which no arm has; see `FollowerKind`."""
         contour = FlatFaceContour(FacePath(lift, cam.prime_radius, cam.offset))
         contour.require_face(self.width)
         return contour

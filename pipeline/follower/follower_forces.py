@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze, readonly
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath
@@ -178,7 +178,8 @@ class Loads(Displayed):
     force and side-load factor, which for a roller is |tan alpha|. `jam_index`: friction of the
     guides over axial force; limit 1 where the follower moves outward, elsewhere that of a reversed
     cam. `jam_index_statics`: that of point supports. `sliding_torque`: cam torque of the friction
-    of a face.
+    of a face. `travel`: direction of the axial force from the follower axis, counter-clockwise,
+    rad, of an arm; 0 of a stem.
     """
 
     theta: Array
@@ -207,6 +208,7 @@ class Loads(Displayed):
     jam_index_statics: Array
     end_moment: Array
     sliding_torque: Array
+    travel: Array = field(default_factory=lambda: readonly(0.0))
 
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
@@ -215,6 +217,16 @@ class Loads(Displayed):
     def rubbing(self) -> Rubbing:
         """Rubbing load of the guides over axial force and side-load factor, over the turn."""
         return Rubbing(self.theta, self.rubbing_a, self.rubbing_b)
+
+    @property
+    def on_shaft(self) -> Array:
+        """Contact force on the follower (2, n), N, along the follower axis and across it.
+
+        That axis is the one of a stem, or runs from the cam axis to the pivot of an arm.
+        """
+        cos, sin = np.cos(self.travel), np.sin(self.travel)
+        along, across = self.axial_force, self.tangential_force
+        return np.stack([along * cos + across * sin, across * cos - along * sin])
 
     @property
     def closing_force(self) -> Array:
@@ -428,6 +440,7 @@ def follower_loads(
         + system.friction_b * np.abs(on_points[1]),
         end_moment=axial_force * push.arm,
         sliding_torque=sliding,
+        travel=pitch.travel(theta),
     )
 
 

@@ -16,6 +16,7 @@ from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.follower_body import FollowerBody
 from camwright.pipeline.contact.traction import Drag, RollingContact
+from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls
 from camwright.pipeline.follower.roller_motion import RollingRoller
@@ -154,8 +155,8 @@ class FollowerKind(Protocol):
         """Motion without slip; None without rolling. Arguments: see `motion`."""
         ...
 
-    def contour(self, lift: Lift, cam: CamBody) -> Contour:
-        """Cam contour of a lift.
+    def contour(self, lift: Lift, cam: CamBody, arm: FollowerArm | None = None) -> Contour:
+        """Cam contour of a lift, under a stem or an arm.
 
         Raises
         ------

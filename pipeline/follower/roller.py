@@ -21,6 +21,7 @@ from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import FollowerBody, RollerBody
 from camwright.pipeline.contact.oil_film import entrainment_speed
 from camwright.pipeline.contact.traction import Drag, RollingContact, ring_inertia, rolling_contact
+from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.follower_kind import ElasticParts, MovingParts, SurfaceMotion
 from camwright.pipeline.follower.follower_stiffness import (
     bearing_compliance,
@@ -183,8 +184,10 @@ class Roller(Part):
         bent = pin_moment(force, moment, self.width, pin.span, pin.overhung)
         return np.asarray(bent * bending_per_moment(pin.diameter))
 
-    def contour(self, lift: Lift, cam: CamBody) -> Contour:
+    def contour(self, lift: Lift, cam: CamBody, arm: FollowerArm | None = None) -> Contour:
         """Cam contour under the roller; see `FollowerKind`."""
+        if arm is not None:
+            return arm.roller_contour(lift, cam.prime_radius, self.radius)
         return RollerContour(PitchCurve(lift, cam.prime_radius, cam.offset), self.radius)
 
     def ring(self, width: float, preload: float) -> RingOnBalls | None:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
 from camwright.geometry.errors import InputError
-from camwright.geometry.pitch_curve import PitchCurve, magnitude, rolling_share
+from camwright.geometry.pitch_curve import CentrePath, magnitude
 
 BALL_LIFE_EXPONENT = 3.0  # ISO 281: 3 for ball bearings, 10/3 for roller bearings
 RATED_REVOLUTIONS = 1e6  # of the dynamic rating, ISO 281
@@ -49,7 +49,7 @@ class RatingLife:
 
 
 def roller_motion(
-    pitch: PitchCurve,
+    pitch: CentrePath,
     roller_radius: float,
     cam_speed: float,
     theta: ArrayLike,
@@ -58,12 +58,13 @@ def roller_motion(
     """Spin and rolling speed of a roller without slip.
 
     In the cam frame the roller centre moves along the pitch curve at w |P'| and the roller turns at
-    w |P'|/r; relative to the follower it turns at w (|P'| - r)/r. The surface speed through the
+    w |P'|/r; relative to a stem it turns at w (|P'| - r)/r, relative to an arm by its own turning
+    less. The surface speed through the
     contact is that of the contact point along the contour, w |P'| (1 - r kappa).
 
     Parameters
     ----------
-    pitch : PitchCurve
+    pitch : CentrePath
     roller_radius : float      r, m, > 0
     cam_speed : float          w, rad/s
     theta : array (n,)         rad
@@ -87,26 +88,16 @@ def roller_motion(
         raise InputError("roller.radius", roller_radius, "> 0 m")
     theta = finite("theta", theta)
     speed = float(finite("cam_speed", cam_speed))
-    lift, slope, lift_d2 = pitch.lift.derivatives(theta, 2)
-    stretch, curvature = pitch.speed_and_curvature(theta)
-    along, across = slope - pitch.offset, pitch.height_base + lift
-    stretch_rate = path_speed_slope(along, across, slope, lift_d2, stretch)
-    spin_per_turn = rolling_share(stretch, roller_radius)
+    motion = pitch.centre_motion(pitch.lift.jet(theta, 2), roller_radius)
+    stretch, spin_per_turn = motion.path_speed, np.asarray(motion.rolling)
     return RollingRoller(
         theta=theta,
         spin=speed * spin_per_turn,
-        spin_acceleration=speed**2 * stretch_rate / roller_radius
+        spin_acceleration=speed**2 * motion.slide_slope / roller_radius
         + float(finite("cam_acceleration", cam_acceleration)) * spin_per_turn,
         pitch_speed=speed * stretch,
-        rolling_speed=speed * stretch * (1.0 - roller_radius * curvature),
+        rolling_speed=speed * stretch * (1.0 - motion.sharpness),
     )
-
-
-def path_speed_slope(
-    along: Values, across: Values, slope: Values, lift_d2: Values, speed: Values
-) -> Values:
-    """Derivative of |dP/dtheta|, m/rad2; along: s' - e, across: d + s, m."""
-    return (along * lift_d2 + across * slope) / speed
 
 
 def wear(normal_force: Values, spin: Values, exponent: float = BALL_LIFE_EXPONENT) -> Values:

@@ -18,7 +18,6 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError, ResultError
-from camwright.geometry.pitch_curve import RollerMotion, curvature_slope
 from camwright.pipeline.base import formula, units
 from camwright.pipeline.base.quantities import Count, In
 from camwright.pipeline.case.case_values import quantity_of, text_of, value_of
@@ -59,7 +58,7 @@ FIGURES: Mapping[str, tuple[str, _Figure]] = {
     "lift_highest": ("mm", lambda cam: cam.highest),
     "pitch_height": ("mm", lambda cam: cam.contour.require_roller().pitch.height_base),
     "pitch_curvature": ("1/mm", lambda cam: roller_of(cam.motion).path_curvature),
-    "pitch_curvature_slope": ("1/mm", lambda cam: _curvature_slope(roller_of(cam.motion))),
+    "pitch_curvature_slope": ("1/mm", lambda cam: roller_of(cam.motion).path_curvature_slope),
     "pitch_speed": ("mm/rad", lambda cam: roller_of(cam.motion).path_speed),
     "contour_speed": ("mm/rad", lambda cam: cam.motion.contour_speed),
     "contour_radius": ("mm", lambda cam: cam.motion.contour_radius),
@@ -507,11 +506,6 @@ class _Evaluation:
                 return self._column(_CLOSED_FORM[name])
             return unit, self._rows[header]
         raise ResultError(f"5_cycle.csv: no column {name}")
-
-
-def _curvature_slope(path: RollerMotion) -> Value:
-    jet = path.jet
-    return curvature_slope(path.along, path.height, jet.slope, jet.lift_d2, jet.jerk)
 
 
 def _quantity_of(key: str) -> In | Count | None:

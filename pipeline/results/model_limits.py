@@ -85,6 +85,11 @@ MODEL_LIMITS = (
         " case states it, in equilibrium with guides of finite length and clearance. The couple of"
         " the friction forces about the stem axis is left out."
     ),
+    ModelLimit(
+        "An arm is rigid and without weight, its pivot without friction and clearance: masses,"
+        " springs and forces are those reduced to the roller centre. The sign-off does not cover"
+        " arm and pivot."
+    ),
     ModelLimit("A flat face does not turn about its stem, and its block is held by the stem."),
     ModelLimit(
         "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference"

@@ -107,9 +107,9 @@ def drawn_angles(case: Case) -> Array:
 
 
 def lift_columns(case: Case, lift: Lift) -> dict[Column, Array]:
-    """Columns of ``2_lift.csv``: cam angle, lift and its derivatives."""
-    theta = drawn_angles(case)
-    return {
+    """Columns of ``2_lift.csv``: cam angle, lift and its derivatives, angle of an arm."""
+    theta, arm = drawn_angles(case), case.follower.arm
+    columns = {
         CAM_ANGLE: theta,
         CRANK_ANGLE: case.mechanism.gear_ratio * theta,
         LIFT: lift(theta),
@@ -117,6 +117,11 @@ def lift_columns(case: Case, lift: Lift) -> dict[Column, Array]:
         Column("lift_d2", "mm/rad^2", "Second derivative of the lift by cam angle"): lift(theta, 2),
         Column("lift_d3", "mm/rad^3", "Third derivative of the lift by cam angle"): lift(theta, 3),
     }
+    if arm is not None:
+        words = "Angle at the pivot from the line to the cam axis to the arm"
+        angle = arm.angle(lift(theta), case.cam.prime_radius)
+        columns[Column("arm_angle", "deg", words)] = angle
+    return columns
 
 
 def limit_columns(theta: Array, uses: Mapping[str, Array]) -> dict[Column, Array]:
@@ -208,6 +213,7 @@ def headline(solution: Solution) -> HeadlineRecord:
         return None if worst is None else scale * worst
 
     after = first.turn.torque_after if first in loaded else None
+    guided = solution.machine.arm is None
     return {
         "torque_std_before_Nm": None if design is None else design.std,
         "torque_std_after_Nm": None if after is None else float(np.std(after)),
@@ -223,8 +229,8 @@ def headline(solution: Solution) -> HeadlineRecord:
         "p0_hertz_max_MPa": contact(lambda h: h.p0_hertz, _MPA),
         "half_width_max_mm": contact(lambda h: h.half_width, _MM),
         **_body_stresses(solution, loaded),
-        "guide_reaction_A_max_N": over(lambda c: np.abs(c.guides.reaction_a)),
-        "guide_reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)),
+        "guide_reaction_A_max_N": over(lambda c: np.abs(c.guides.reaction_a)) if guided else None,
+        "guide_reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)) if guided else None,
         "friction_loss_J_per_cam_turn": float(first.loads.friction_loss)
         if first in loaded
         else None,

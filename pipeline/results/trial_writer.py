@@ -41,7 +41,8 @@ def write_trial_files(folder: RunFolder, trial: Trial) -> None:
     folder.write("5_cycle.csv", cycle_columns(cycles), number)
     folder.write("5_speed_sweep.csv", sweep_columns(trial.solution.speed_sweeps), number)
     folder.write("5_pressure.npz", pressure_arrays(cycles), number)
-    folder.write("5_guides.npz", guide_arrays(cycles), number)
+    if trial.solution.machine.arm is None:
+        folder.write("5_guides.npz", guide_arrays(cycles), number)
     if (axial := axial_arrays(cycles)) is not None:
         folder.write("5_length.npz", axial, number)
     write_judgement(folder, trial)

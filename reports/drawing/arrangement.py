@@ -1,7 +1,8 @@
 """Line drawing of cam, follower, guides and spring at a cam angle, with forces to scale.
 
-The follower moves along y; the cam turns clockwise about the origin. Forces are those on the
-follower: the contact force along the normal of the contact, the reactions across the stem.
+The stem moves along y, or the pivot of an arm lies above the cam; the cam turns clockwise about the
+origin. Forces are those on the follower: the contact force along the normal of the contact, the
+reactions across the stem.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.base.envelope import Box, MechanismSizes
+from camwright.pipeline.base.envelope import Box, MechanismSizes, around
 from camwright.pipeline.base.files import Json
 from camwright.reports.drawing.drawing_shapes import (
     Arrow,
@@ -70,6 +71,34 @@ class DrawnSector(NamedTuple):
     position: float
 
 
+@dataclass(frozen=True)
+class DrawnArm:
+    """Arm of an oscillating follower on its pivot, at a height above the cam axis, mm and rad.
+
+    sense: of the outward swing, 1 clockwise as the cam turns, -1 against it; start: angle from the
+    line to the cam axis at zero lift; bearing: radius drawn about the pivot
+    """
+
+    pivot: float
+    length: float
+    sense: float
+    start: float
+    bearing: float
+
+    def turn(self, lift: Array | float) -> Array:
+        """Counter-clockwise rotation of the arm from the line to the cam axis, rad."""
+        return np.asarray(-self.sense * (self.start + lift / self.length))
+
+    def travel(self, lift: Array | float) -> Array:
+        """Direction of travel of the roller centre from y, counter-clockwise, rad."""
+        return np.asarray(self.sense * 0.5 * np.pi + self.turn(lift))
+
+    def end(self, lift: Array | float) -> Array:
+        """Roller centre (2, ...), mm."""
+        turn = self.turn(lift)
+        return np.stack([self.length * np.sin(turn), self.pivot - self.length * np.cos(turn)])
+
+
 @dataclass(frozen=True, eq=False)
 class DrawnMechanism:
     """Sizes of the mechanism for its drawing, mm and rad.
@@ -85,6 +114,7 @@ class DrawnMechanism:
     seat                     thickness of the seats of the spring
     sizes                    of all parts, by which the envelope goes
     counterweight            in the frame of the cam; None: none
+    arm                      that carries the roller, in place of stem, guides and spring; or None
     """
 
     contour: Array
@@ -104,11 +134,35 @@ class DrawnMechanism:
     seat: float
     sizes: MechanismSizes
     counterweight: DrawnSector | None
+    arm: DrawnArm | None = None
 
     @cached_property
     def envelope(self) -> Box:
         """Bounding box of the mechanism over the turn, mm."""
-        return self.sizes.envelope
+        if self.arm is None:
+            return self.sizes.envelope
+        ends = self.arm.end(np.linspace(0.0, self.stroke, 31))
+        reach, deep = self.roller or 0.0, self.sizes.follower[1]
+        across, along = ((float(e.min()) - reach, float(e.max()) + reach) for e in ends)
+        round_pivot = 2.0 * self.arm.bearing
+        pivot = Box(
+            (-round_pivot, round_pivot),
+            (self.arm.pivot - round_pivot, self.arm.pivot + round_pivot),
+            (-deep, deep),
+        )
+        return around((*self.sizes.on_shaft, Box(across, along, (-deep, deep)), pivot))
+
+    @property
+    def shown_forces(self) -> tuple[str, ...]:
+        """Forces drawn, by their names in `FORCES`."""
+        return tuple(FORCES) if self.arm is None else ("contact",)
+
+    def reference(self, lift: Array) -> tuple[Array, Array]:
+        """Roller centre or middle of the face (2, n), mm, and its travel from y, rad."""
+        if self.arm is not None:
+            return self.arm.end(lift), self.arm.travel(lift)
+        height = self.lowest + lift
+        return np.stack([np.full_like(height, self.axis), height]), np.zeros_like(height)
 
     @cached_property
     def reach(self) -> float:
@@ -178,32 +232,66 @@ def cam_turn(theta: float) -> float:
 def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing:
     """Drawing of the mechanism at one row of the motion."""
     m, lift = mechanism, float(motion.lift[row])
-    behind, before = m.spring.groups(m.axis, lift)
     theta = float(motion.theta[row])
     groups = (
         ShapeGroup("axes", (*_axes(m), *_gear(m))),
         ShapeGroup("cam", tuple(_cam(m)), Pose(cam_turn(theta))),
         ShapeGroup("turning", tuple(_turning(m))),
-        *behind,
-        ShapeGroup("follower", tuple(_follower(m)), Pose(shift=(m.axis, m.lowest + lift))),
-        *before,
-        ShapeGroup("guides", tuple(_guides(m))),
+        *(_carried(m, lift) if m.arm is None else _swinging(m, m.arm, lift)),
         ShapeGroup("forces", tuple(arrows(m, motion, row))),
         ShapeGroup("values", tuple(_values(m, motion, row))),
     )
     size = " x ".join(f"{length:.4g}" for length in m.envelope.size)
+    line = "the stem" if m.arm is None else "the line to the pivot"
     words = (
-        f"{alt(motion, row)} Envelope across and along the stem and along the camshaft: {size} mm."
+        f"{alt(m, motion, row)} Envelope across and along {line} and along the camshaft: {size} mm."
     )
     return Drawing("Arrangement", words, groups, _box(m))
 
 
-def alt(motion: DrawnMotion, row: int) -> str:
-    """Text alternative of the drawing: angle and forces."""
-    forces = ", ".join(f"{name.lower()} {_newtons(motion, key, row)}" for key, name in
-                       FORCES.items())  # fmt: skip
+def _carried(m: DrawnMechanism, lift: float) -> tuple[ShapeGroup, ...]:
+    """Follower on its stem, spring and guides."""
+    behind, before = m.spring.groups(m.axis, lift)
+    follower = ShapeGroup("follower", tuple(_follower(m)), Pose(shift=(m.axis, m.lowest + lift)))
+    return (*behind, follower, *before, ShapeGroup("guides", tuple(_guides(m))))
+
+
+def _swinging(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
+    """Arm with its roller, and the fixed pivot."""
+    edge, thin = Pen("ink", _EDGE * m.scale, "steel"), Pen("muted", _THIN * m.scale)
+    half, roller, end = 0.6 * arm.bearing, m.roller or 0.0, (0.0, -arm.length)
+    bar = rectangle(-half, -arm.length, half, 0.0)
+    swung = (
+        DrawnOutline((bar,), edge),
+        DrawnOutline((circle(roller, end), circle(m.pin, end)), Pen("ink", edge.width, "card")),
+        DrawnOutline((circle(m.pin, end),), edge),
+        DrawnOutline((circle(arm.bearing),), edge),
+    )
+    wide, top = 1.6 * arm.bearing, arm.pivot + 2.0 * arm.bearing
+    held = (-wide, arm.pivot + 1.2 * arm.bearing, wide, top)
+    fixed = (
+        DrawnOutline(hatching(held, 3.2 * m.scale), thin, closed=False),
+        DrawnOutline(
+            (segment((-wide, held[1]), (wide, held[1])),), Pen("ink", edge.width), closed=False
+        ),
+        DrawnOutline(
+            (circle(0.5 * arm.bearing, (0.0, arm.pivot)),), Pen("ink", edge.width, "card")
+        ),
+    )
     return (
-        "Cam, follower, guides and spring in the plane of the cam at "
+        ShapeGroup("follower", swung, Pose(float(arm.turn(lift)), (0.0, arm.pivot))),
+        ShapeGroup("pivot", fixed),
+    )
+
+
+def alt(m: DrawnMechanism, motion: DrawnMotion, row: int) -> str:
+    """Text alternative of the drawing: angle and forces."""
+    forces = ", ".join(
+        f"{FORCES[key].lower()} {_newtons(motion, key, row)}" for key in m.shown_forces
+    )
+    parts = "follower, guides and spring" if m.arm is None else "roller and arm on its pivot"
+    return (
+        f"Cam, {parts} in the plane of the cam at "
         f"{_angle_words(motion, row)}, load case {motion.load_case}. Lift "
         f"{motion.lift[row]:.4g} mm; {forces}. The cam turns clockwise."
     )
@@ -220,13 +308,11 @@ def _newtons(motion: DrawnMotion, name: str, row: int) -> str:
 
 
 def _axes(m: DrawnMechanism) -> list[Shape]:
-    """Follower axis and centre lines of the cam."""
+    """Follower axis, or line to the pivot of an arm, and centre line of the cam."""
     pen = Pen("muted", _THIN * m.scale, dash="dashdot")
-    reach = m.reach + 0.8 * m.text
+    reach, axis = m.reach + 0.8 * m.text, m.axis if m.arm is None else 0.0
     return [
-        DrawnOutline(
-            (segment((m.axis, -reach), (m.axis, m.top + 0.8 * m.text)),), pen, closed=False
-        ),
+        DrawnOutline((segment((axis, -reach), (axis, m.top + 0.8 * m.text)),), pen, closed=False),
         DrawnOutline((segment((-reach, 0.0), (reach, 0.0)),), pen, closed=False),
     ]
 
@@ -343,12 +429,12 @@ def _guides(m: DrawnMechanism) -> list[Shape]:
 
 def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
     """Contact of cam and follower in the drawing, over the turn, (2, n), mm."""
-    m, height = mechanism, mechanism.lowest + motion.lift
+    m, (place, travel) = mechanism, mechanism.reference(motion.lift)
     if m.roller is None:
-        across = np.zeros_like(height) if motion.contact_offset is None else motion.contact_offset
-        return np.stack([m.axis - across, height])
-    angle = motion.pressure_angle
-    return np.stack([m.axis - m.roller * np.sin(angle), height - m.roller * np.cos(angle)])
+        across = 0.0 if motion.contact_offset is None else motion.contact_offset
+        return np.stack([place[0] - across, place[1]])
+    angle = motion.pressure_angle - travel
+    return np.asarray(place - m.roller * np.stack([np.sin(angle), np.cos(angle)]))
 
 
 def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arrow]:
@@ -356,21 +442,22 @@ def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arr
     m = mechanism
     scale = m.arrow_length / motion.greatest_force if motion.greatest_force > 0.0 else 0.0
     touch = contact_point(m, motion)[:, row]
-    angle = float(motion.pressure_angle[row])
-    beside = m.axis + m.spring.reach + 1.6 * m.scale
-    pushed = 0.5 * m.stem
-    at = {
-        "contact": (touch, np.array([np.sin(angle), np.cos(angle)])),
-        "spring": (np.array([beside, m.spring.seat + motion.lift[row]]), np.array([0.0, -1.0])),
+    angle = float(motion.pressure_angle[row] - m.reference(motion.lift)[1][row])
+    at = {"contact": (touch, np.array([np.sin(angle), np.cos(angle)]))}
+    if m.arm is None:
+        beside = m.axis + m.spring.reach + 1.6 * m.scale
+        seat = np.array([beside, m.spring.seat + motion.lift[row]])
         # a positive side force points along +x: guide A pushes back, guide B with it
-        "guide-a": (np.array([m.axis, m.guides[0].middle]), np.array([-1.0, 0.0])),
-        "guide-b": (np.array([m.axis, m.guides[1].middle]), np.array([1.0, 0.0])),
-    }
+        at |= {
+            "spring": (seat, np.array([0.0, -1.0])),
+            "guide-a": (np.array([m.axis, m.guides[0].middle]), np.array([-1.0, 0.0])),
+            "guide-b": (np.array([m.axis, m.guides[1].middle]), np.array([1.0, 0.0])),
+        }
     made = []
     for name, (tip, along) in at.items():
         force = float(motion.forces[name][row])
         push = np.sign(force) * along
-        end = tip - pushed * push if name.startswith("guide") else tip
+        end = tip - 0.5 * m.stem * push if name.startswith("guide") else tip
         tail = end - abs(force) * scale * push
         made.append(Arrow(name, (float(tail[0]), float(tail[1])), (float(end[0]), float(end[1])),
                           COLOURS[name], 1.5 * m.scale))  # fmt: skip
@@ -380,15 +467,13 @@ def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arr
 def label_places(mechanism: DrawnMechanism) -> dict[str, tuple[float, float]]:
     """Positions of the value labels, in a column right of the mechanism, without overlap."""
     m, pitch = mechanism, 2.7 * mechanism.text
-    wanted = sorted(
-        {
-            "contact": m.reach + 0.6 * m.text, "guide-a": m.guides[0].middle,
-            "spring": m.spring.seat + 0.5 * m.stroke, "guide-b": m.guides[1].middle,
-        }.items(), key=lambda item: item[1],
-    )  # fmt: skip
+    wanted = {"contact": m.reach + 0.6 * m.text}
+    if m.arm is None:
+        wanted |= {"guide-a": m.guides[0].middle, "spring": m.spring.seat + 0.5 * m.stroke,
+                   "guide-b": m.guides[1].middle}  # fmt: skip
     across, free = _column(m), m.reach + 0.6 * m.text
     places = {}
-    for name, height in wanted:
+    for name, height in sorted(wanted.items(), key=lambda item: item[1]):
         places[name] = (across, max(height, free))
         free = places[name][1] + pitch
     return places
@@ -396,6 +481,8 @@ def label_places(mechanism: DrawnMechanism) -> dict[str, tuple[float, float]]:
 
 def _column(m: DrawnMechanism) -> float:
     """Left edge of the values: right of spring, face, guides and the arrows beside them, mm."""
+    if m.arm is not None:
+        return m.envelope.across[1] + 0.8 * m.text
     bush = max(0.5 * each.bore + each.wall for each in m.guides) + 0.55 * m.stem
     face = 0.0 if m.face is None else 0.5 * m.face[0]
     beside = m.spring.reach + 4.0 * m.scale
@@ -440,7 +527,9 @@ def _box(m: DrawnMechanism) -> tuple[float, float, float, float]:
     places = label_places(m)
     widest = max(Text(name, (0.0, 0.0), 0.82 * m.text).box[2] for name in FORCES.values())
     right = max(m.reach + margin, _column(m) + widest)
-    left = min(m.envelope.across[0] - margin, m.axis - 0.5 * m.stem - m.arrow_length - 0.5 * margin)
+    left = m.envelope.across[0] - margin
+    if m.arm is None:
+        left = min(left, m.axis - 0.5 * m.stem - m.arrow_length - 0.5 * margin)
     top = max(m.top + margin, max(y for _, y in places.values()) + 2.2 * m.text)
     return left, -m.reach - 2.4 * margin, right, top
 
@@ -453,8 +542,9 @@ def moving_record(
     Poses are turn (deg, counter-clockwise), shift x and y (mm) and stretch of each row.
     """
     poses: dict[str, list[Pose]] = {}
-    tips: dict[str, list[list[float]]] = {name: [] for name in FORCES}
-    words: dict[str, list[str]] = {name: [] for name in (*FORCES, "angle")}
+    shown = mechanism.shown_forces
+    tips: dict[str, list[list[float]]] = {name: [] for name in shown}
+    words: dict[str, list[str]] = {name: [] for name in (*shown, "angle")}
     for row in rows:
         for group in drawing(mechanism, motion, row).groups:
             poses.setdefault(group.name, []).append(group.pose)

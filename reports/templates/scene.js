@@ -95,13 +95,13 @@
   /* Coordinates at step n, in the order of the traces. */
   function coordinates(n) {
     const { flank, cam, follower } = data.bodies, turn = data.turn[n];
-    const [ox, oy] = [data.origin[0][n], data.origin[1][n]];
+    const [ox, oy] = [data.origin[0][n], data.origin[1][n]], lean = data.lean ? data.lean[n] : 0;
     const at = (body, angle) => {
       const [x, y] = around(body.x, body.y, angle);
       return [x.map((v) => v + ox), y.map((v) => v + oy)];
     };
     const pairs = [around(flank.x, flank.y, turn), around(cam.x, cam.y, turn)];
-    pairs.push(data.roller ? at(data.roller, data.facing[n]) : at(follower, 0));
+    pairs.push(data.roller ? at(data.roller, data.facing[n]) : at(follower, lean));
     const [cx, cy] = [data.contact[0][n], data.contact[1][n]];
     pairs.push([[cx, cx], [cy, cy]]);
     const zs = { 3: [-1.06 * data.half, 1.06 * data.half], 4: [] };
@@ -112,7 +112,7 @@
     } else pairs.push([[], []]);
     for (const line of [rim, hole]) pairs.push(turned(line, turn));
     pairs.push(around(data.bodies.bore.x, data.bodies.bore.y, turn));
-    if (data.roller) pairs.push(at(follower, 0));
+    if (data.roller) pairs.push(at(follower, lean));
     return { pairs, zs };
   }
 

@@ -53,7 +53,7 @@ def test_the_cam_of_the_cylinder_model(balancing):
     assert next(each for each in trial.checks if each.id == "torque_reduction").must_have
 
 
-@pytest.mark.parametrize("kind", ["lift", "eccentric"])
+@pytest.mark.parametrize("kind", ["lift", "eccentric", "arm"])
 def test_a_cam_without_engine(tmp_path, kind):
     trial = preview_case(written(tmp_path, kind))
     holds(trial)

@@ -413,10 +413,10 @@ def _name(node: ast.AST) -> str:
 FOLLOWERS = Kinds(
     classes=frozenset({
         "Roller", "FlatFace", "RollerMotion", "FaceMotion", "RollerContour", "FlatFaceContour",
-        "PitchCurve", "FacePath", "RollerBody", "RingBody", "FaceBody", "RollerShapes",
-        "FaceShapes",
+        "PitchCurve", "FacePath", "ArmPath", "ArmContour", "ArmMotion", "RoundMotion",
+        "RollerBody", "RingBody", "FaceBody", "RollerShapes", "FaceShapes",
     }),
-    words=frozenset({"roller", "face", "flat"}),
+    words=frozenset({"roller", "face", "flat", "oscillating"}),
     attributes=frozenset({"roller", "roller_given", "face"}),
 )  # fmt: skip
 SPRINGS = Kinds(

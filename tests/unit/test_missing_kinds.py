@@ -41,7 +41,6 @@ def refused(text: str) -> str:
 @pytest.mark.parametrize(
     ("name", "start", "kind"),
     [
-        ("osc", "follower.kind = oscillating, must be", "an oscillating (swinging) follower"),
         ("uni", "lift.segment[0].law = uniform, must be", "constant velocity"),
         ("cv", "lift.segment[0].law = constant_velocity, must be", "constant velocity"),
         ("groove", "cam.kind = unknown key, must be", "a groove (track, face) cam"),
@@ -55,6 +54,13 @@ def test_kinds_of_strangers_are_refused_by_name(name: str, start: str, kind: str
     (sentence,) = (words for each, words in SENTENCE.items() if each.startswith(kind))
     assert sentence in message
     assert "is not done" in sentence and LISTED in sentence
+
+
+def test_an_arm_in_guides_is_told_what_it_has_in_their_place() -> None:
+    with pytest.raises(InputError) as error:
+        read_case(STRANGERS / "osc.toml")
+    limit = 'must be left out with follower.kind = "oscillating", which has [follower.arm]'
+    assert str(error.value) == f"guides = a table, {limit}"
 
 
 @pytest.mark.parametrize("name", ["cam.dxf", "CAM.DXF", "cam.v2.igs", "cam.stp"])
@@ -116,8 +122,8 @@ def test_what_is_done_and_what_is_misspelt_is_not_called_missing() -> None:
 
 
 def test_the_first_case_and_explain_know_them(command: Callable[..., tuple[int, str, str]]) -> None:
-    with pytest.raises(InputError, match=r"an oscillating .* is not done"):
-        first_case("demo", "oscillating")
+    with pytest.raises(InputError, match=r"a desmodromic .* is not done"):
+        first_case("demo", "desmodromic")
     code, out, _ = command("explain", "desmodromic")
     assert code == 0
     assert "desmodromic (positively driven) cam is not done" in out

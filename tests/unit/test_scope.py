@@ -75,8 +75,9 @@ def test_no_check_of_what_is_left_out_is_made_or_governs() -> None:
 
 def test_all_is_every_name_and_is_stated() -> None:
     case = case_of(tables())
-    assert case.scope.not_covered == tuple(SCOPE_WORDS)
-    assert all(words in case.scope.statement for words in SCOPE_WORDS.values())
+    assert case.scope.not_covered == tuple(name for name in SCOPE_WORDS if name != "arm")
+    named = (words for name, words in SCOPE_WORDS.items() if name != "arm")
+    assert all(words in case.scope.statement for words in named)
     assert case_of(tables(scope={"not_covered": ["all"]})).scope == case.scope
     assert case_of(case.tables()).sha256 == case.sha256
     with pytest.raises(InputError, match=r"scope\.not_covered"):

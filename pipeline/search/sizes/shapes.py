@@ -327,6 +327,7 @@ def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
     if not 0.0 <= least_radius < np.inf:
         raise InputError("least radius", least_radius, ">= 0 m")
     case, section, gaps = opened.case, opened.case.lift, opened.gaps
+    case.require_stem("its sizes")
     if case.follower.kind == "roller" and isinstance(section, LiftEccentric):
         return RollerShapes(case, gaps, EccentricCam(section.eccentricity), least_radius)
     if isinstance(section, LiftSegments):

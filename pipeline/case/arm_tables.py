@@ -1,0 +1,92 @@
+"""Oscillating follower in the tables of a case: its scope, start angle and angles of swing."""
+
+from __future__ import annotations
+
+from math import pi
+
+from camwright.geometry.arm_path import Arm
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
+from camwright.pipeline.case.scope_section import is_stand_in
+from camwright.pipeline.case.toml_text import Tables, TomlValue
+
+OSCILLATING = "oscillating"
+ARM = "arm"
+"""Word of the scope for the arm and its pivot."""
+_NOT_THERE: tuple[TomlValue, ...] = ("guides", "stem")
+_START = "follower.arm.start_angle"
+
+
+def with_arm(tables: Tables) -> Tables:
+    """Tables of a case, those of an oscillating follower with what stands for stem and guides.
+
+    The sign-off leaves out the arm and its pivot, and so the stem and the guides that it does not
+    have; a start angle is replaced by the prime radius that follows from it, angles of swing in the
+    lift by arcs of the roller centre.
+
+    Raises
+    ------
+    InputError
+        If the case has guides, its scope does not leave out the arm, or the start angle is wrong or
+        stated beside the prime radius.
+    """
+    follower = tables.get("follower")
+    if not isinstance(follower, dict) or follower.get("kind") != OSCILLATING:
+        return tables
+    if "guides" in tables and not is_stand_in(tables, "guides.a"):
+        limit = f'left out with follower.kind = "{OSCILLATING}", which has [follower.arm]'
+        raise InputError("guides", "a table", limit)
+    scope, arm, cam = tables.get("scope"), follower.get("arm"), tables.get("cam")
+    left_out = scope.get("not_covered") if isinstance(scope, dict) else None
+    if not isinstance(left_out, list) or ARM not in left_out:
+        limit = f'with "{ARM}": neither the arm nor its pivot is judged'
+        raise InputError("scope.not_covered", _shown(left_out), limit)
+    names = [*left_out, *(each for each in _NOT_THERE if each not in left_out)]
+    tables = tables | {"scope": scope | {"not_covered": names}}  # type: ignore[operator]
+    if isinstance(arm, dict) and isinstance(lift := tables.get("lift"), dict):
+        tables = tables | {"lift": _as_arcs(lift, arm)}
+    if not isinstance(arm, dict) or not isinstance(cam, dict) or "start_angle" not in arm:
+        return tables
+    if "prime_radius" in cam:
+        raise InputError(_START, str(arm["start_angle"]), "left out with cam.prime_radius")
+    prime = {"prime_radius": units.format(_prime_radius(arm), "mm")}
+    kept = {key: value for key, value in arm.items() if key != "start_angle"}
+    return tables | {"cam": cam | prime, "follower": follower | {"arm": kept}}
+
+
+def _prime_radius(arm: Tables) -> float:
+    """Distance of the roller centre from the cam axis at the start angle, m."""
+    start = units.parse(arm["start_angle"], "deg", _START)
+    if not 0.0 < start < pi:
+        raise InputError(_START, str(arm["start_angle"]), "> 0 and < 180 deg")
+    distance, length = (
+        units.parse(arm.get(key), "mm", f"follower.arm.{key}")
+        for key in ("centre_distance", "length")
+    )
+    return float(Arm(distance, length, 1.0).radius(start))
+
+
+def _as_arcs(lift: Tables, arm: Tables) -> Tables:
+    """Lift whose strokes and points that are angles are arcs; others are read later."""
+
+    def arc(value: TomlValue) -> TomlValue:
+        try:
+            swing = units.parse(value, "deg", "")
+            return units.format(swing * units.parse(arm.get("length"), "mm", ""), "mm")
+        except InputError:
+            return value
+
+    made = dict(lift)
+    for rows, key in (("segment", "stroke"), ("point", "lift")):
+        if isinstance(stated := lift.get(rows), list):
+            made[rows] = [
+                each | {key: arc(each[key])} if isinstance(each, dict) and key in each else each
+                for each in stated
+            ]
+    return made
+
+
+def _shown(left_out: TomlValue | None) -> str:
+    return (
+        ", ".join(map(str, left_out)) if isinstance(left_out, list) else str(left_out or "missing")
+    )
