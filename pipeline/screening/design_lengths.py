@@ -44,6 +44,9 @@ _SHAPES = 16
 # Cam angles at which the factors are solved first, and share of the greatest pressure within which
 # others are; angles on either side of them that the vertex of the greatest one reads.
 _FIRST_ANGLES, _NEAR_GREATEST, _BESIDE_GREATEST = 24, 0.02, 2
+# Moment over the width of the contact that counts as force on supports and seat of a pin; share of
+# its greatest load there within which others are solved.
+_ON_PIN, _NEAR_ON_PIN = (2.0, 6.0), 0.05
 
 
 class DesignValues(Protocol):
@@ -84,8 +87,9 @@ def factors_of(
     """Axial pressure factors of the designs; 1 without contact, NaN for no closed contour.
 
     None where the case lacks an end, or the designs have too many shapes of contact, see
-    `has_many_shapes`. Of a line without crown, whose greatest pressure and moment over the turn
-    count alone, they are solved at the angles near these; between others they are linear.
+    `has_many_shapes`. Of a line without crown, whose greatest pressure, moment and load of a pin
+    over the turn count alone, they are solved at the angles near these; between others they are
+    linear.
 
     Parameters
     ----------
@@ -136,6 +140,10 @@ def factors_of(
         of_contact = np.where(contact, load, 0.0)
         known = np.max(np.where(first, of_contact * between, 0.0), axis=1, keepdims=True)
         near |= (known > 0.0) & (of_contact * bound >= (1.0 - _NEAR_GREATEST) * known)
+    moment = follower_moment(np.where(contact, force * whole.arm, 0.0), forced, couple, aside)
+    for share in _ON_PIN if designs.machine.describes("pin") else ():
+        load = np.where(contact, force + share * moment / designs.numbers["contact.width"], 0.0)
+        near |= load >= (1.0 - _NEAR_ON_PIN) * load.max(axis=1, keepdims=True)
     steps = range(-_BESIDE_GREATEST, _BESIDE_GREATEST + 1)
     near = np.any([np.roll(near, step, axis=1) for step in steps], axis=0)
     solve(near & contact & ~first)
