@@ -87,11 +87,12 @@ def _energy(turn: SheetTurn) -> Figure | None:
               Curve(turn.crank, moving, "kinetic, of the follower", "green"))  # fmt: skip
     work = (Curve(turn.crank, put_in, "work of the cam", "vermillion"),
             Curve(turn.crank, rubbing + drag, "guide friction", "muted"))  # fmt: skip
+    heat = "" if turn.on_arm else " and heat of the guides"
     note = " The face rubs on the cam as well." if rest else ""
     return angle_figure(
         turn, "energy", "Energy flow over the cycle",
         "Energy stored in the spring and in the motion of the follower; work that the cam has put "
-        f"into the follower and heat of the guides since cam angle 0.{note}",
+        f"into the follower{heat} since cam angle 0.{note}",
         Panel("energy", "J", curves), Panel("since angle 0", "J", work), mark=False,
     )  # fmt: skip
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import radians
+from typing import Literal
 
 import numpy as np
 
@@ -209,6 +210,7 @@ def _residual(
     title: str,
     method: str,
     formula: str,
+    needs: Literal["", "stem"] = "",
 ) -> Declaration:
     """Check of a relative residual; of one within its limit no place: it is that of round-off.
 
@@ -227,6 +229,7 @@ def _residual(
         reason="Forces that are not in equilibrium are no solution.",
         evidence=True,
         tier=Tier.CYCLE,
+        needs=needs,
     )
     def residual(solution: Solution) -> Demand:
         worst = greatest(solution.cycles, measure)
@@ -247,6 +250,7 @@ guide_equilibrium_force = _residual(
     " force",
     method="greatest sum of guide and side forces over the sum of their magnitudes, beam on elastic"
     " supports; or of cam, spring, inertia and friction forces over the cam force",
+    needs="stem",
 )
 guide_equilibrium_moment = _residual(
     "guide_equilibrium_moment",
@@ -256,6 +260,7 @@ guide_equilibrium_moment = _residual(
     formula="d <= c; d: greatest |sum M| / sum |M| of the solved angles, M: moments on the stem"
     " about the roller, c: limits.equilibrium",
     method="greatest sum of moments over the sum of their magnitudes, beam on elastic supports",
+    needs="stem",
 )
 contact_equilibrium = _residual(
     "contact_equilibrium",
@@ -528,6 +533,7 @@ mesh_tau_max = _uncertainty("tau_max", lambda point: point.tau_max)
     method=f"beam in guides of {', '.join(map(str, KNOTS_TRIED))} knots",
     evidence=True,
     tier=Tier.CYCLE,
+    needs="stem",
 )
 def mesh_reaction(solution: Solution) -> Demand:
     """Relative discretisation uncertainty of the guide reaction."""

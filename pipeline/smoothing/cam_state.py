@@ -320,7 +320,7 @@ class Constraint(Generic[State]):
     utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
     row: AnyLimit | None = None
     kept: Kept = field(default=Kept(), repr=False)
-    needs: Literal["", "roller", "face"] = ""
+    needs: Literal["", "roller", "face", "stem"] = ""
     stroke: str = ""
 
     @property

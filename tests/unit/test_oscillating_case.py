@@ -222,7 +222,7 @@ def test_a_first_case_on_an_arm_passes_its_preview(swing):
     judged = [each for each in trial.checks if each.must_have and not each.judged_at]
     assert {each.id for each in judged if each.status == "fail"} == set()
     made = {each.id for each in trial.checks}
-    assert not {name for name in made if name.startswith(("guide_pressure", "guide_pv", "jam"))}
+    assert not {name for name in made if name.startswith(("guide_", "jam_", "mesh_reaction"))}
 
 
 def test_a_long_arm_has_the_demands_of_a_stem():
