@@ -50,8 +50,8 @@ def with_arm(tables: Tables) -> Tables:
     if "prime_radius" in cam:
         raise InputError(_START, str(arm["start_angle"]), "left out with cam.prime_radius")
     prime = {"prime_radius": units.format(_prime_radius(arm), "mm")}
-    kept = {key: value for key, value in arm.items() if key != "start_angle"}
-    return tables | {"cam": cam | prime, "follower": follower | {"arm": kept}}
+    lengths = {key: value for key, value in arm.items() if key != "start_angle"}
+    return tables | {"cam": cam | prime, "follower": follower | {"arm": lengths}}
 
 
 def _prime_radius(arm: Tables) -> float:
@@ -76,14 +76,14 @@ def _as_arcs(lift: Tables, arm: Tables) -> Tables:
         except InputError:
             return value
 
-    made = dict(lift)
+    in_arcs = dict(lift)
     for rows, key in (("segment", "stroke"), ("point", "lift")):
         if isinstance(stated := lift.get(rows), list):
-            made[rows] = [
+            in_arcs[rows] = [
                 each | {key: arc(each[key])} if isinstance(each, dict) and key in each else each
                 for each in stated
             ]
-    return made
+    return in_arcs
 
 
 def _shown(left_out: TomlValue | None) -> str:

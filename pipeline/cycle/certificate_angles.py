@@ -34,6 +34,7 @@ from camwright.pipeline.cycle.length_history import length_table, signed_factor
 _STORED_AS = ".certificate"  # no name of a load case
 FINEST = 2
 """Cam angles at which the finest mesh is solved."""
+_FINER_ABOVE = 0.005  # of cycle and certificate on two meshes: half of the limit
 
 
 def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int, int], ...]:
@@ -162,6 +163,7 @@ class BegunCertificate:
     chosen : sequence   (load case, position) of each angle
     finest : sequence   those with the finest mesh; their orders hold for the others
     tasks : mapping     figures of a mesh by angle and edges per half-width
+    finer : function    submits the finest mesh at another angle
     observed : sequence   points on three meshes whose orders hold, where none is chosen
     """
 
@@ -169,10 +171,15 @@ class BegunCertificate:
     chosen: Sequence[tuple[int, int]]
     finest: Sequence[tuple[int, int]]
     tasks: Mapping[tuple[tuple[int, int], float], PendingCall]
+    finer: Callable[[tuple[int, int]], PendingCall]
     observed: tuple[CertificatePoint, ...] = ()
 
     def points(self, advance: Callable[[int, int], None]) -> tuple[CertificatePoint, ...]:
-        """Certificate points at the chosen angles, when all meshes are solved."""
+        """Certificate points at the chosen angles, when all meshes are solved.
+
+        Where two meshes leave more than `_FINER_ABOVE` to the cycle, with the finest mesh as well:
+        the order of other angles does not hold for a coarse mesh that is off by chance.
+        """
         solved: dict[tuple[tuple[int, int], float], MeshFigures] = {}
         for key, task in self.tasks.items():
             solved[key] = task.result()
@@ -186,7 +193,15 @@ class BegunCertificate:
 
         worst = {at: point(at) for at in self.finest}
         observed = self.observed or tuple(worst.values())
-        return tuple(worst.get(at) or point(at, observed) for at in self.chosen)
+        found = {at: worst.get(at) or point(at, observed) for at in self.chosen}
+        doubtful = [
+            at for at, one in found.items() if at not in worst and one.spread > _FINER_ABOVE
+        ]
+        waiting = {at: self.finer(at) for at in doubtful}
+        for at, task in waiting.items():
+            solved[at, EDGES[-1]] = task.result()
+            found[at] = point(at)
+        return tuple(found[at] for at in self.chosen)
 
 
 def begun(
@@ -200,21 +215,28 @@ def begun(
     """Certificate at chosen (load case, position), its meshes submitted to worker processes.
 
     The finest mesh is solved at `finest_positions` alone; nowhere with the points `observed` on
-    three meshes, whose orders then hold. Figures that the store has are not
-    solved again.
+    three meshes, whose orders then hold, and where the two coarser ones leave too much to the
+    cycle. Figures that the store has are not solved again.
     """
+
+    def submitted(at: tuple[int, int], edges: float, number: int) -> PendingCall:
+        cycle, index = cycles[at[0]], at[1]
+        force = float(cycle.contact.line_load[index]) * pair.width
+        theta = float(cycle.theta[index])
+        return workers.submit(_figures, store, number, pair, theta, force, edges)
+
     finest = () if observed else finest_positions(cycles, chosen)
     tasks: dict[tuple[tuple[int, int], float], PendingCall] = {}
     for edges in reversed(EDGES):  # the longest first
         for at in chosen:
             if edges == EDGES[-1] and at not in finest:
                 continue
-            cycle, index = cycles[at[0]], at[1]
-            force = float(cycle.contact.line_load[index]) * pair.width
-            theta = float(cycle.theta[index])
-            index = len(tasks)
-            tasks[at, edges] = workers.submit(_figures, store, index, pair, theta, force, edges)
-    return BegunCertificate(cycles, chosen, finest, tasks, observed)
+            tasks[at, edges] = submitted(at, edges, len(tasks))
+
+    def finer(at: tuple[int, int]) -> PendingCall:
+        return submitted(at, EDGES[-1], len(tasks) + chosen.index(at))
+
+    return BegunCertificate(cycles, chosen, finest, tasks, finer, observed)
 
 
 def _figures(

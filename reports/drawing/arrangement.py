@@ -429,12 +429,12 @@ def _guides(m: DrawnMechanism) -> list[Shape]:
 
 def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
     """Contact of cam and follower in the drawing, over the turn, (2, n), mm."""
-    m, (place, travel) = mechanism, mechanism.reference(motion.lift)
+    m, (centre, travel) = mechanism, mechanism.reference(motion.lift)
     if m.roller is None:
         across = 0.0 if motion.contact_offset is None else motion.contact_offset
-        return np.stack([place[0] - across, place[1]])
+        return np.stack([centre[0] - across, centre[1]])
     angle = motion.pressure_angle - travel
-    return np.asarray(place - m.roller * np.stack([np.sin(angle), np.cos(angle)]))
+    return np.asarray(centre - m.roller * np.stack([np.sin(angle), np.cos(angle)]))
 
 
 def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arrow]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.store import PACKED, Store
+from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
@@ -88,3 +91,27 @@ def test_figures_of_a_mesh_are_kept_to_the_bit(tmp_path, monkeypatch):
     assert solved.edges == 4.0 and isinstance(solved.dofs, int)
     with pytest.raises(pytest.fail.Exception):
         certificate_angles._figures(store, 0, pair, 0.5, 801.0, 4.0)
+
+
+def test_an_angle_whose_coarse_mesh_is_off_has_the_finest_one_as_well(monkeypatch):
+    theta, load = np.array([0.0, 1.0, 2.0, 3.0]), np.array([4e4, 3e4, 2e4, 1e4])
+    stress = 1e4 * load
+    off = {(2.0, 4.0): 1.03, (3.0, 4.0): 1.001}
+
+    def figures(_, angle, force, edges):
+        exact = 1e4 * force / round_cam().width
+        coarse = off.get((float(angle), edges), 1.0 - 1e-3 / edges)
+        return certificate_angles.MeshFigures(edges, 100, exact, 1e-4, exact, coarse * exact, 0, 0)
+
+    contact = SimpleNamespace(
+        line_load=load, p0=stress, p0_hertz=stress, half_width=np.full(4, 1e-4), tau_max=stress,
+        von_mises=stress,
+    )  # fmt: skip
+    monkeypatch.setattr(certificate_angles, "mesh_figures", figures)
+    cycles = [SimpleNamespace(theta=theta, contact=contact)]
+    chosen = [(0, 0), (0, 3), (0, 1), (0, 2)]
+    with crew(1) as workers:
+        begun = certificate_angles.begun(round_cam(), cycles, chosen, workers)
+        points = begun.points(lambda done, count: None)
+    assert [len(each.edges) for each in points] == [3, 2, 3, 3]
+    assert points[3].theta == 2.0 and points[3].order_from == ()
