@@ -359,7 +359,7 @@ def _moving(turn: SheetTurn, motion: DrawnMotion) -> str:
         svg = _with_arrow(svg, name, [each[name] for each in turned])
     for name in mechanism.shown_forces:
         most = quantity(float(np.abs(motion.forces[name]).max()), "N", 4)
-        svg = _with_words(svg, name, f"at most {most}")
+        svg = _with_words(svg, name, f"\N{LESS-THAN OR EQUAL TO} {most}")
     return _placed(_with_words(svg, "angle", ""), "moving")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
@@ -23,6 +24,9 @@ class Cooling(Part):
     """
 
     table: ClassVar[str] = "cooling"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "conductance": "still air on the box around cam and follower"
+    }
 
     ambient_temperature: Annotated[Temperature, Known("place of the machine", "30 degC")] = ROOM
     """greatest temperature around the housing"""
