@@ -244,8 +244,7 @@ def _corner_allowed(numbers: Numbers) -> Allowed:
 def _corner_in_words(demand: Demand, solution: Solution) -> Demand:
     cam, root = solution.machine.cam, "cam.keyway.root_radius"
     missing = () if cam.keyway_root_radius is not None else (root,)
-    stated = {} if demand.value is None else {"r": demand.value}
-    stated |= {} if demand.allowed is None else {"s": demand.allowed}
+    stated = {} if demand.allowed is None else {"s": demand.allowed}
     return replace(demand, at=None, missing=(*demand.missing, *missing), stated=stated)
 
 
@@ -262,7 +261,7 @@ def _corner_in_words(demand: Demand, solution: Solution) -> Demand:
     moved_by_tolerance=False,
     part="key",
     formula="r <= s; r: cam.keyway.root_radius, s: cam.key.chamfer, else the least of DIN 6885-1",
-    symbols=dict.fromkeys("rs", f"{STATED} [mm]"),
+    symbols={"r": "cam.keyway.root_radius", "s": f"{STATED} [mm]"},
     reason="a key whose corners ride on the fillets wedges the keyway open instead of bearing on"
     " its flanks",
     load_cases=NONE,

@@ -22,9 +22,9 @@ temperature = "45 degC"
 TORSION = """kind = "torsion"
 
 [spring.torsion]
-moment = "70 N m"
-angular_rate = "400 N m/rad"
-arm = "60 mm"
+moment = "77 N m"
+angular_rate = "484 N m/rad"
+arm = "66 mm"
 arm_angle = "-10 deg"
 wire_diameter = "14 mm"
 mean_diameter = "90 mm"
