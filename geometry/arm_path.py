@@ -13,7 +13,7 @@ from camwright.geometry.arrays import Array, Value, finite, positive, uniform_tu
 from camwright.geometry.contour import Frame, RoundContour, require_round
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_height import arm_angle
-from camwright.geometry.follower_path import Reaction, cam_axes, reciprocal
+from camwright.geometry.follower_path import cam_axes, reciprocal
 from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import CentrePath, RoundMotion
 
@@ -213,14 +213,6 @@ class ArmMotion(RoundMotion):
     def radius_at(self, lift: Value) -> Array:
         angle = self.start + lift / self.linkage.length
         return np.asarray(self.linkage.radius(angle) - self.size)
-
-    def reactions(
-        self,
-        lever: tuple[Array, Array],  # noqa: ARG002
-        spacing: Value,  # noqa: ARG002
-    ) -> tuple[Reaction, Reaction]:
-        """Load of the pivot by the contact force; there is no second support."""
-        return Reaction(self.gain), Reaction(np.zeros(self.gain.shape))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

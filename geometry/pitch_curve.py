@@ -232,6 +232,18 @@ class RoundMotion(ABC):
         """
         return self.path_curvature_slope / ((1.0 - self.sharpness) ** 3 * self.path_speed)
 
+    def reactions(
+        self,
+        lever: tuple[Array, Array],
+        spacing: Value,  # noqa: ARG002
+    ) -> tuple[Reaction, Reaction]:
+        """Loads of guides on points by the side force through the reference point.
+
+        An arm has none; those that stand for them are without friction.
+        """
+        side = magnitude(self.tangent)
+        return Reaction(side * lever[0]), Reaction(side * lever[1])
+
 
 @dataclass(frozen=True, eq=False)
 class RollerMotion(RoundMotion):
@@ -302,15 +314,6 @@ class RollerMotion(RoundMotion):
     def radius_at(self, lift: Value) -> Array:
         height = self.height - self.jet.lift + lift
         return np.sqrt(height**2 + self.offset**2) - self.size
-
-    def reactions(
-        self,
-        lever: tuple[Array, Array],
-        spacing: Value,  # noqa: ARG002
-    ) -> tuple[Reaction, Reaction]:
-        """Loads of guides on points by the side force through the roller centre."""
-        side = magnitude(self.tangent)
-        return Reaction(side * lever[0]), Reaction(side * lever[1])
 
 
 def rolling_share(pitch_speed: Values, roller_radius: Value) -> Values:

@@ -9,8 +9,9 @@ from html import escape
 from pathlib import Path
 
 import numpy as np
-from site_pictures import TurningCam, chart, over_cam, turning_cam
+from site_pictures import TurningCam, chart, over_cam, swinging_cam, turning_cam
 
+from camwright.geometry.arm_path import ArmContour
 from camwright.geometry.figures import Figure
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import within_depth
@@ -118,7 +119,10 @@ def cam_of(one: Shown, name: str) -> str:
     """The turning cam of a case."""
     bore = one.trial.case.cam.bore_radius or 0.0
     words = f"Turning cam with follower and spring: {one.title}"
-    return turning_cam(TurningCam.of(one.trial.contour, bore), name, words)
+    contour = one.trial.contour
+    if isinstance(contour, ArmContour):
+        return swinging_cam(contour, bore, name, words)
+    return turning_cam(TurningCam.of(contour, bore), name, words)
 
 
 def _state(trial: Trial) -> str:

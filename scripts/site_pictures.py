@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from camwright.geometry.arm_path import ArmContour
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.figures import (
@@ -164,6 +165,44 @@ def turning_cam(cam: TurningCam, name: str, words: str) -> str:
         f'<g class="lifted" transform="translate(0 {-lifted[0]:.4g})">{"".join(follower)}</g>'
         f'{guides}<rect class="fixed" x="{cam.axis - 1.6 * stem:.4g}" y="{-top:.4g}" '
         f'width="{3.2 * stem:.4g}" height="{0.06 * reach:.4g}"/></svg>'
+    )
+
+
+def swinging_cam(contour: ArmContour, bore: float, name: str, words: str) -> str:
+    """A turning cam under an arm, its pivot above, as an SVG; see `turning_cam`.
+
+    Parameters
+    ----------
+    bore : float    radius of the bore, m; 0: not stated
+    """
+    cam, arm = TurningCam.of(contour, bore), contour.pitch.arm
+    reach, roller = float(np.hypot(*cam.outline).max()), 1e3 * contour.follower_radius
+    pivot, length = 1e3 * float(arm.centre_distance), 1e3 * float(arm.length)
+    angle = contour.pitch.start + contour.lift(uniform_turn(STEPS)) / float(arm.length)
+    turns = np.degrees(arm.sense * angle)
+    beside = length * np.abs(np.sin(angle)).max() + roller
+    edge, top = max(reach, float(beside)), pivot + 0.25 * reach
+    box = (-1.04 * edge, -top - 0.1 * reach, 2.08 * edge, top + 1.14 * reach)
+    style = (
+        f"@keyframes lift-{name}{{{_keyframes(f'rotate({each:.4g}deg)' for each in turns)}}}"
+        f"#{name} .lifted{{animation-name:lift-{name}}}"
+    )
+    mark = 0.5 * (max(cam.bore, 0.08 * reach) + float(np.hypot(*cam.outline[:, 0])))
+    bar, pin = 0.14 * reach, 0.3 * roller
+    return (
+        f'<svg class="turning-cam" id="{name}" viewBox="{" ".join(f"{v:.4g}" for v in box)}" '
+        f'role="img" aria-label="{escape(words)}"><style>{style}</style>'
+        f'<path class="axis" d="M0 {1.05 * reach:.4g}V{-top:.4g}"/>'
+        f'<g class="turned" transform="rotate(-90)"><path class="cam-body" d="{path_of(cam)}"/>'
+        f'<circle class="mark" cx="{mark:.4g}" cy="0" r="{0.045 * reach:.4g}"/></g>'
+        f'<circle class="hub" r="{0.03 * reach:.4g}"/>'
+        f'<g transform="translate(0 {-pivot:.4g})">'
+        f'<g class="lifted" transform="rotate({turns[0]:.4g})">'
+        f'<rect class="steel" x="{-0.5 * bar:.4g}" y="0" width="{bar:.4g}" height="{length:.4g}"/>'
+        f'<circle class="roller" cy="{length:.4g}" r="{roller:.4g}"/>'
+        f'<circle class="pin" cy="{length:.4g}" r="{pin:.4g}"/>'
+        f'<circle class="steel" r="{0.8 * bar:.4g}"/></g>'
+        f'<circle class="fixed" r="{0.4 * bar:.4g}"/></g></svg>'
     )
 
 

@@ -7,7 +7,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.shrink_fit import SeatFit
 
-SLIP = {"gx120-redesign": 115.0, "gx120-flat-face": 130.0}  # N m
+SLIP = {"gx120-redesign": 115.0, "gx120-arm": 115.0, "gx120-flat-face": 130.0}  # N m
 
 
 def read_clamped(path: Path) -> Case:

@@ -16,9 +16,10 @@ import build_site
 import site_reference
 from site_figures import Figures
 from site_gallery import GROUPS, NO_CASE, about, case_files
-from site_pictures import STEPS, TurningCam, chart, over_cam, turning_cam
+from site_pictures import STEPS, TurningCam, chart, over_cam, swinging_cam, turning_cam
 
 import camwright
+from camwright.geometry.arm_path import Arm, ArmContour, ArmPath
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.figures import LimitLine
@@ -162,6 +163,23 @@ def test_a_turning_cam_touches_its_follower(kind: str, lift: Lift) -> None:
         else:
             gap = cam.height[step] - up.max()
         assert gap == pytest.approx(0.0, abs=1e-4)  # mm, of the polygon
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_an_arm_swings_on_its_pivot_onto_the_turning_cam(sense: float, lift: Lift) -> None:
+    """Places and turns of the picture, y downward, read back from it."""
+    contour = ArmContour(ArmPath(lift, Arm(0.06, 0.05, sense), 0.6), 0.01)
+    text = swinging_cam(contour, 0.005, "one", "a < b")
+    ET.fromstring(text)
+    turns = [float(each) for each in re.findall(r"rotate\(([-\d.e]+)deg\)", text)][:-1]
+    assert len(turns) == STEPS
+    x, y = 1e3 * contour.polygon(3600)
+    for step in range(0, STEPS, 7):
+        turn, swung = 0.5 * np.pi - uniform_turn(STEPS)[step], np.radians(turns[step])
+        across, up = x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)
+        centre = -50.0 * np.sin(swung), 60.0 - 50.0 * np.cos(swung)
+        gap = np.hypot(across - centre[0], up - centre[1]).min() - 10.0
+        assert gap == pytest.approx(0.0, abs=5e-3)  # mm, of four digits of an angle
 
 
 def test_a_turning_cam_is_an_svg_that_keeps_still_where_motion_is_reduced(lift: Lift) -> None:

@@ -28,12 +28,13 @@ from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Scenario, taken
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
-PATHS = {"roller": "cases/gx120-redesign.toml", "face": "cases/gx120-flat-face.toml"}
+PATHS = {"roller": "cases/gx120-redesign.toml", "face": "cases/gx120-flat-face.toml",
+         "arm": "cases/gx120-arm.toml"}  # fmt: skip
 NAMES = [
     (follower, each.name)
     for follower in PATHS
     for each in CONSTRAINTS
-    if each.needs in ("", follower)
+    if each.needs in ("", "face" if follower == "face" else "roller")
 ]
 
 
