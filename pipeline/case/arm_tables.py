@@ -1,4 +1,4 @@
-"""Oscillating follower in the tables of a case: its scope, start angle and angles of swing."""
+"""Oscillating follower in the tables of a case: its scope, start angle, inertia and swing."""
 
 from __future__ import annotations
 
@@ -9,26 +9,27 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.case.scope_section import is_stand_in
 from camwright.pipeline.case.toml_text import Tables, TomlValue
+from camwright.pipeline.follower.arm import FollowerArm
 
 OSCILLATING = "oscillating"
 ARM = "arm"
 """Word of the scope for the arm and its pivot."""
 _NOT_THERE: tuple[TomlValue, ...] = ("guides", "stem")
-_START = "follower.arm.start_angle"
+_START, _INERTIA = "follower.arm.start_angle", "follower.arm.inertia"
 
 
 def with_arm(tables: Tables) -> Tables:
     """Tables of a case, those of an oscillating follower with what stands for stem and guides.
 
     The sign-off leaves out the arm and its pivot, and so the stem and the guides that it does not
-    have; a start angle is replaced by the prime radius that follows from it, angles of swing in the
-    lift by arcs of the roller centre.
+    have; a start angle is replaced by the prime radius that follows from it, a moment of inertia by
+    the mass, angles of swing in the lift by arcs of the roller centre.
 
     Raises
     ------
     InputError
-        If the case has guides, its scope does not leave out the arm, or the start angle is wrong or
-        stated beside the prime radius.
+        If the case has guides, its scope does not leave out the arm, or start angle or inertia are
+        wrong, or stated beside prime radius or mass.
     """
     follower = tables.get("follower")
     if not isinstance(follower, dict) or follower.get("kind") != OSCILLATING:
@@ -43,15 +44,31 @@ def with_arm(tables: Tables) -> Tables:
         raise InputError("scope.not_covered", _shown(left_out), limit)
     names = [*left_out, *(each for each in _NOT_THERE if each not in left_out)]
     tables = tables | {"scope": scope | {"not_covered": names}}  # type: ignore[operator]
-    if isinstance(arm, dict) and isinstance(lift := tables.get("lift"), dict):
-        tables = tables | {"lift": _as_arcs(lift, arm)}
-    if not isinstance(arm, dict) or not isinstance(cam, dict) or "start_angle" not in arm:
+    if not isinstance(arm, dict):
         return tables
-    if "prime_radius" in cam:
-        raise InputError(_START, str(arm["start_angle"]), "left out with cam.prime_radius")
-    prime = {"prime_radius": units.format(_prime_radius(arm), "mm")}
-    lengths = {key: value for key, value in arm.items() if key != "start_angle"}
-    return tables | {"cam": cam | prime, "follower": follower | {"arm": lengths}}
+    if isinstance(lift := tables.get("lift"), dict):
+        tables = tables | {"lift": _as_arcs(lift, arm)}
+    if "inertia" in arm:
+        if "mass" in follower:
+            raise InputError(_INERTIA, str(arm["inertia"]), "left out with follower.mass")
+        follower = follower | {"mass": units.format(_mass(arm), "g")}
+    if "start_angle" in arm and isinstance(cam, dict):
+        if "prime_radius" in cam:
+            raise InputError(_START, str(arm["start_angle"]), "left out with cam.prime_radius")
+        tables = tables | {"cam": cam | {"prime_radius": units.format(_prime_radius(arm), "mm")}}
+    stated = {key: value for key, value in arm.items() if key not in FollowerArm.resolved}
+    return tables | {"follower": follower | {"arm": stated}}
+
+
+def _mass(arm: Tables) -> float:
+    """Mass at the roller centre that has the moment of inertia about the pivot, kg."""
+    inertia = units.parse(arm["inertia"], "kg m^2", _INERTIA)
+    length = units.parse(arm.get("length"), "mm", "follower.arm.length")
+    if not inertia > 0.0:
+        raise InputError(_INERTIA, str(arm["inertia"]), "> 0 kg m^2")
+    if not length > 0.0:
+        raise InputError("follower.arm.length", str(arm["length"]), "> 0 mm")
+    return inertia / length**2
 
 
 def _prime_radius(arm: Tables) -> float:

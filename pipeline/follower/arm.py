@@ -31,7 +31,13 @@ class FollowerArm(Part):
             "angle at the pivot from the line to the cam axis to the arm at zero lift, in place of"
             " `cam.prime_radius`, which follows from it",
             Known("drawing", "35 deg"),
-        )
+        ),
+        "inertia": Resolved(
+            "> 0 kg m^2",
+            "moment of inertia of all that swings about the pivot, in place of `follower.mass`,"
+            " which follows from it",
+            Known("drawing, or measured", "0.005 kg m^2"),
+        ),
     }
 
     centre_distance: Annotated[Length, Known("drawing", "90 mm")]

@@ -81,6 +81,15 @@ def test_start_angle_and_prime_radius_follow_from_each_other():
     assert parse_case(whole).cam.prime_radius == pytest.approx(0.060, rel=1e-12)
 
 
+def test_the_mass_follows_from_the_moment_of_inertia():
+    whole = text().replace('mass = "1.1 kg"\n', "", 1)
+    whole = whole.replace('swing = "with"', 'swing = "with"\ninertia = "0.011 kg m^2"')
+    assert parse_case(whole).follower.mass == pytest.approx(1.1, rel=1e-12)
+    for wrong in ("0 kg m^2", "1 kg"):
+        with pytest.raises(InputError, match=r"follower\.arm\.inertia"):
+            parse_case(whole.replace("0.011 kg m^2", wrong))
+
+
 def test_angles_of_swing_are_arcs():
     stated = parse_case(changed('stroke = "10 mm"', 'stroke = "6 deg"').replace("-10 mm", "-6 deg"))
     highest = lift_of(stated).highest.value
@@ -160,6 +169,8 @@ def test_the_sign_off_leaves_out_the_arm_alone():
      'scope.not_covered = gear, must be with "arm"'),
     ('swing = "with"', 'swing = "with"\nstart_angle = "30 deg"',
      "follower.arm.start_angle = 30 deg, must be left out with cam.prime_radius"),
+    ('swing = "with"', 'swing = "with"\ninertia = "0.011 kg m^2"',
+     "follower.arm.inertia = 0.011 kg m^2, must be left out with follower.mass"),
     ('swing = "with"', 'swing = "left"', "follower.arm.swing = left"),
     ('swing = "with"\n', "", "follower.arm.swing = missing"),
     ('length = "100 mm"', 'length = "40 mm"', "cam.prime_radius = 60 mm, must be > 70 mm"),
