@@ -29,16 +29,19 @@ def with_arm(tables: Tables) -> Tables:
     ------
     InputError
         If the case has guides, its scope does not leave out the arm, or start angle or inertia are
-        wrong, or stated beside prime radius or mass.
+        wrong, or stated beside prime radius or mass; if another case leaves out an arm.
     """
-    follower = tables.get("follower")
+    follower, scope = tables.get("follower"), tables.get("scope")
+    left_out = scope.get("not_covered") if isinstance(scope, dict) else None
     if not isinstance(follower, dict) or follower.get("kind") != OSCILLATING:
+        if isinstance(left_out, list) and ARM in left_out:
+            limit = f'without "{ARM}", which follower.kind = "{OSCILLATING}" alone has'
+            raise InputError("scope.not_covered", _shown(left_out), limit)
         return tables
     if "guides" in tables and not is_stand_in(tables, "guides.a"):
         limit = f'left out with follower.kind = "{OSCILLATING}", which has [follower.arm]'
         raise InputError("guides", "a table", limit)
-    scope, arm, cam = tables.get("scope"), follower.get("arm"), tables.get("cam")
-    left_out = scope.get("not_covered") if isinstance(scope, dict) else None
+    arm, cam = follower.get("arm"), tables.get("cam")
     if not isinstance(left_out, list) or ARM not in left_out:
         limit = f'with "{ARM}": neither the arm nor its pivot is judged'
         raise InputError("scope.not_covered", _shown(left_out), limit)

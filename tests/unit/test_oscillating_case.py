@@ -190,6 +190,15 @@ def test_contradictions_are_refused(old, new, message):
     assert message in str(refused.value)
 
 
+def test_a_stem_leaves_out_no_arm():
+    """Its statement would not name guides and stem."""
+    whole = text("lift", STEM.replace('["guides", "stem"]', '["arm", "guides", "stem"]'))
+    with pytest.raises(
+        InputError, match=r"scope\.not_covered = arm, guides, stem, must be without"
+    ):
+        parse_case(whole)
+
+
 def test_a_stem_with_an_arm_is_refused():
     whole = text(
         "lift",
