@@ -82,8 +82,8 @@ def test_a_cam_of_another_machine(tmp_path, kind):
 
 
 def test_the_machine_is_the_same_in_each_kind(tmp_path):
-    """But for the teeth of the pinion, which are those of the ratio."""
-    cases = [written(tmp_path, kind) for kind in KINDS]
+    """But for the teeth of the pinion, which are those of the ratio, and for an arm."""
+    cases = [written(tmp_path, kind) for kind in KINDS if kind != "arm"]
     for case in cases:
         gear = case.camshaft.gear
         assert gear.teeth == case.mechanism.gear_ratio * gear.pinion_teeth

@@ -31,6 +31,7 @@ from camwright.pipeline.engine.speed_file import SpeedTable
 from camwright.pipeline.engine.speed_trace import Filter
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
 from camwright.pipeline.engine.wheel_calibration import WheelReference
+from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.spring import Spring
@@ -90,6 +91,7 @@ def every_part() -> dict[type[Part], Part]:
         Crankshaft(inertia=0.01),
         GasSpring(pressure=3e6, area=1e-4, volume=5e-6),
         TorsionSpring(moment=1.0, angular_rate=20.0, arm=0.04),
+        FollowerArm(centre_distance=0.11, length=0.1, swing="with"),
         BalanceHole(),
         Counterweight(unbalance=1e-4, angle=0.0, position=0.0),
         ShaftSection(
