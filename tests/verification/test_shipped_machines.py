@@ -12,6 +12,8 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.certificate import mesh_figures
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.run_reader import read_verdict
+from camwright.pipeline.run import run_case
 
 MACHINES = sorted((Path(__file__).parents[2] / "cases" / "machines").glob("*.toml"))
 NAMES = [path.stem for path in MACHINES]
@@ -79,3 +81,13 @@ def test_a_shipped_machine_is_within_its_limits_and_its_contact_is_that_of_hertz
     solved = mesh_figures(cycle.pair, float(cycle.theta[at]), force, 8.0)
     assert solved.p0 == pytest.approx(float(cycle.contact.p0_hertz[at]), rel=1e-3)
     assert solved.residual_equilibrium < 1e-10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_a_shipped_machine_passes_certified(name: str, tmp_path: Path) -> None:
+    """At its tolerance corners, with the finite elements of its hub, which no preview has."""
+    folder = tmp_path / "run"
+    run_case(machine(name), folder, fields="none")
+    verdict = read_verdict(folder)
+    assert verdict["verdict"] == "pass", verdict
