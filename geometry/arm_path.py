@@ -371,21 +371,9 @@ class ArmContour(RoundContour):
     """
 
     pitch: ArmPath
-    roller_radius: float
 
     def __post_init__(self) -> None:
         require_round("roller.radius", self.roller_radius, self.pitch.radius_base)
-
-    @property
-    def rolls(self) -> bool:
-        return True
-
-    @property
-    def follower_radius(self) -> float:
-        return self.roller_radius
-
-    def require_roller(self) -> RoundContour:
-        return self
 
     def local_frame(self, theta: ArrayLike) -> Frame:
         normal = self.pitch.normal(theta)

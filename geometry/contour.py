@@ -353,13 +353,14 @@ class Contour(Displayed, ABC):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RoundContour(Contour):
-    """Cam surface under a follower that is round about its reference point.
+    """Cam surface under a roller on any path.
 
-    The path of that point offset inwards by the radius of the follower's surface.
+    The path of the roller centre offset inwards by the radius of the roller.
 
     Parameters
     ----------
-    pitch : CentrePath    path of the centre of that surface
+    pitch : CentrePath       path of the roller centre
+    roller_radius : float    m
 
     References
     ----------
@@ -367,11 +368,19 @@ class RoundContour(Contour):
     """
 
     pitch: CentrePath
+    roller_radius: float
 
     @property
-    @abstractmethod
+    def rolls(self) -> bool:
+        return True
+
+    @property
     def follower_radius(self) -> float:
         """Radius of the follower's surface, m."""
+        return self.roller_radius
+
+    def require_roller(self) -> RoundContour:
+        return self
 
     @property
     def follower_curvature(self) -> float:
@@ -433,21 +442,9 @@ class RollerContour(RoundContour):
     """
 
     pitch: PitchCurve
-    roller_radius: float
 
     def __post_init__(self) -> None:
         require_round("roller.radius", self.roller_radius, self.pitch.prime_radius)
-
-    @property
-    def rolls(self) -> bool:
-        return True
-
-    @property
-    def follower_radius(self) -> float:
-        return self.roller_radius
-
-    def require_roller(self) -> RoundContour:
-        return self
 
     def local_frame(self, theta: ArrayLike) -> Frame:
         height, along, across = self._direction(theta)

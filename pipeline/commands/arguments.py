@@ -32,7 +32,7 @@ Command = Callable[..., int]
 WIDTH = 80
 _COLUMN = 24  # of the words of an option
 HELP = ("--help", "-h")
-"""Words that ask for help."""
+"""Options that print the help text of a command."""
 _SHORT = re.compile(r"-[A-Za-z]")  # no option is short: none is taken for an argument
 _KINDS = (bool, int, float, Path)
 _METAVARS = {int: "N", float: "NUMBER", Path: "FILE"}
@@ -232,7 +232,7 @@ def _stated(texts: Sequence[str], accepted: Sequence[Argument]) -> dict[str, lis
 
 
 def asks_for_help(command: Command, texts: Sequence[str]) -> bool:
-    """Whether the words of a command ask for its help; not as a value, nor after ``--``."""
+    """Whether the arguments of a command ask for its help; not as a value, nor after ``--``."""
     valued = {
         each.typed for each in arguments_of(command) if each.is_option and each.kind is not bool
     }

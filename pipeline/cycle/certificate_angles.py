@@ -193,15 +193,15 @@ class BegunCertificate:
 
         worst = {at: point(at) for at in self.finest}
         observed = self.observed or tuple(worst.values())
-        found = {at: worst.get(at) or point(at, observed) for at in self.chosen}
+        certified = {at: worst.get(at) or point(at, observed) for at in self.chosen}
         doubtful = [
-            at for at, one in found.items() if at not in worst and one.spread > _FINER_ABOVE
+            at for at, one in certified.items() if at not in worst and one.spread > _FINER_ABOVE
         ]
         waiting = {at: self.finer(at) for at in doubtful}
         for at, task in waiting.items():
             solved[at, EDGES[-1]] = task.result()
-            found[at] = point(at)
-        return tuple(found[at] for at in self.chosen)
+            certified[at] = point(at)
+        return tuple(certified[at] for at in self.chosen)
 
 
 def begun(

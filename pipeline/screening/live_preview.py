@@ -105,7 +105,7 @@ class _Factor(NamedTuple):
         return self._replace(low=self.low**below, high=self.high**above)
 
     def of_less_speed(self) -> _Factor:
-        """With a narrower range of the speed; any other number as it is."""
+        """A narrower range, of the speed alone."""
         return self.drawn_in(_SHRINK, _SHRINK) if self.is_speed else self
 
 

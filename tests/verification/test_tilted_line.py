@@ -138,7 +138,7 @@ def test_the_moment_of_the_pressure_reaches_pin_cheeks_and_guides():
     """Of the half-spaces at the angle that shaft and stem leave, 2 %; pin and guides by hand.
 
     The pin is a beam of 23 mm, its load linear over the 17.5 mm of the bearing; the stem
-    leans on the outer ends of its guides, 162 mm apart; the roller is 0.3 mm off the line.
+    bears on the outer ends of its guides, 162 mm apart; the roller is offset axially by 0.3 mm.
     """
     made, k = worst_turn()
     turn, line = turn_of_line(made), solved_line(made, k)
