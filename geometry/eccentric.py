@@ -88,7 +88,9 @@ class Eccentric:
         return np.asarray(-self.rod * turning - self.crank * np.sin(phi))
 
     def lift(self, count: int = 720) -> Lift:
-        """Lift s = d - min d against theta = phi + 90 deg; without offset zero at theta = 0."""
+        """Lift (count,), m, over the cam angle theta = phi + 90 deg, phi the crank angle: `height`
+        less its minimum; without offset zero at theta = 0.
+        """
         theta = uniform_turn(count)
         values = self.height(theta - _QUARTER_TURN) - self.height_base
         return Lift(theta, values)

@@ -153,9 +153,11 @@ def estimated_noise(theta: ArrayLike, values: ArrayLike) -> float | None:
 
 
 def measured_lift(theta: ArrayLike, values: ArrayLike) -> FittedLift | None:
-    """Lift fitted to a measured table by the noise that its differences show.
+    """Spline fitted to a measured lift table, theta (n,), rad, values (n,), m, within the noise
+    that is estimated from its differences.
 
-    None where they show none: angles unevenly spaced, or noise that no spline reaches.
+    None where no noise can be estimated, of unevenly spaced angles or exact values, and where no
+    spline lies within it.
 
     Raises
     ------

@@ -19,11 +19,12 @@ _START, _INERTIA = "follower.arm.start_angle", "follower.arm.inertia"
 
 
 def with_arm(tables: Tables) -> Tables:
-    """Tables of a case, those of an oscillating follower with what stands for stem and guides.
+    """Tables of a case with an oscillating follower as those of a translating one; others
+    unchanged.
 
-    The sign-off leaves out the arm and its pivot, and so the stem and the guides that it does not
-    have; a start angle is replaced by the prime radius that follows from it, a moment of inertia by
-    the mass, angles of swing in the lift by arcs of the roller centre.
+    A start angle is replaced by the prime radius that follows from it, a moment of inertia by the
+    mass, angles of swing in the lift by arcs of the roller centre. The parts that only a
+    translating follower has, stem and guides, enter `scope.not_covered`, which has to name the arm.
 
     Raises
     ------

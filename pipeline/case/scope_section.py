@@ -233,7 +233,10 @@ class _StandIns(NamedTuple):
             self.sources[key] = _stand_in(SCOPE_WORDS[part])
 
     def with_sources(self) -> Tables:
-        """The tables with the sources; those of limits stand below them."""
+        """The tables of the case, changed in place, with `sources` (where a value comes from, by
+        key): those of `limits.*` in [limits.sources], others in [sources]. A source that the case
+        states is kept.
+        """
         limits = {key: text for key, text in self.sources.items() if key.startswith("limits.")}
         others = {key: text for key, text in self.sources.items() if key not in limits}
         if others and isinstance(stated := self.tables.get("sources", {}), dict):

@@ -236,7 +236,10 @@ def bulk_allowed(machine: Machine, limit: Value) -> Value:
 
 
 def heat_missing(machine: Machine, *of_oil: str) -> tuple[str, ...]:
-    """Keys that the temperature of the face lacks."""
+    """Keys that the case lacks for the temperature of the sliding flat face.
+
+    of_oil : keys of the lubricant that are needed; without a lubricant its table is named.
+    """
     missing = [*no_friction(machine)]
     oil = machine.lubricant
     missing += lacking(Lubricant.table, oil, *of_oil) if oil else [Lubricant.table]

@@ -567,12 +567,16 @@ def bearing_lubrication(cam: LoadedCam) -> Array:
 
 
 def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
-    """Mean roller speed at which a viscosity ratio is reached, rad/s; None if always exceeded.
+    """Mean roller speed, rad/s, at which viscosity over rated viscosity is `ratio`.
+
+    None where it is above the ratio at 1 rpm already, so that any speed holds, or below it at
+    `FASTEST` still, so that none does; the check itself tells which.
 
     Parameters
     ----------
     viscosity : float   in operation, m2/s
     circle : float      pitch diameter of the balls, m
+    ratio : float       viscosity over rated viscosity (kappa of ISO 281), > 0
     """
 
     def excess(log_speed: float) -> float:

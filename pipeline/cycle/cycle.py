@@ -293,9 +293,10 @@ class Cycle(Tabled):
 
     @KeptResult
     def elastic(self) -> ElasticHistory:
-        """Response of the elastic follower.
+        """Motion of the follower as elastic train over the turn: deflection, contact force, losses
+        of contact.
 
-        A preview does not compute the flights of one that leaves the cam.
+        A preview does not integrate the flights of a follower that leaves the cam.
         """
         flights = self.contact.tier is not Tier.PREVIEW
         turn, lift = self.turn, self.contour.pitch.lift

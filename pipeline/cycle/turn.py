@@ -95,7 +95,10 @@ def turns(
     strokes.solve(
         (each, system)
         for each in inputs
-        for system in (each.machine.system, *(_rubbed(each.machine) if bounds else ()))
+        for system in (
+            each.machine.system,
+            *(_followers_by_friction(each.machine) if bounds else ()),
+        )
     )
     torques = (each.machine.torque for each in inputs)
     engine = {id(torque): torque for torque in torques if torque is not None}
@@ -117,8 +120,10 @@ def turns(
 _Key = tuple[Stem, GuidePair, int, FollowerSystem, float]
 
 
-def _rubbed(machine: Machine) -> tuple[FollowerSystem, ...]:
-    """Follower at the bounds of the friction."""
+def _followers_by_friction(machine: Machine) -> tuple[FollowerSystem, ...]:
+    """Follower with the least, nominal and greatest friction coefficients of guides A and B, in
+    this order.
+    """
     friction, system = machine.friction, machine.system
     bounds = friction.least, friction.nominal, friction.greatest
     return tuple(replace(system, friction_a=a, friction_b=b) for a, b in bounds)
@@ -139,11 +144,15 @@ class _Strokes:
         key = _key(turn_input, system)
         if key not in self._known and self._together:
             try:
-                self.solve((each, one) for each in self.inputs for one in _rubbed(each.machine))
+                self.solve(
+                    (each, one)
+                    for each in self.inputs
+                    for one in _followers_by_friction(each.machine)
+                )
             except CamError:  # of one load case at least: each on its own
                 self._together = False
         if key not in self._known:
-            self.solve((turn_input, one) for one in _rubbed(turn_input.machine))
+            self.solve((turn_input, one) for one in _followers_by_friction(turn_input.machine))
         return self._known[key]
 
     def solve(self, wanted: Iterable[tuple[TurnInput, FollowerSystem]]) -> None:

@@ -303,14 +303,15 @@ class _Prior:
         return cls(kept, units[kept], known**2)
 
     def within(self, state: _State) -> Array:
-        """The kept unknowns of a state in their units."""
+        """The free unknowns (f,) of a state as multiples of `scale`."""
         whole = np.concatenate([state.work, state.change, state.errors])
         return np.asarray(whole[self.kept] / self.scale)
 
-    def whole(self, kept: Array) -> Array:
-        """All unknowns, along the last axis, from the kept ones in their units."""
-        every = np.zeros((*kept.shape[:-1], self.kept.size))
-        every[..., self.kept] = self.scale * kept
+    def expanded(self, scaled: Array) -> Array:
+        """All unknowns (..., u), J and rad, from the free ones (..., f) as multiples of `scale`;
+        those fixed are zero."""
+        every = np.zeros((*scaled.shape[:-1], self.kept.size))
+        every[..., self.kept] = self.scale * scaled
         return every
 
 
@@ -374,7 +375,7 @@ def _solved(parts: Sequence[_Times], state: _State, tolerance: float, change: Ar
         share, before = 1.0, state
         rows = None
         while rows is None and share > _SHARE_MIN:  # a step that would stop the crank is shortened
-            state = before.stepped(prior.whole(step), own, share)
+            state = before.stepped(prior.expanded(step), own, share)
             rows = _reduced(parts, state, prior)
             share *= 0.5
         if rows is not None and largest < _TIME_STEP_END:
@@ -401,7 +402,7 @@ def _judged(
     square = sum(row.square for row in rows)
     return replace(
         state,
-        covariance=prior.whole(prior.whole(inverse).T),
+        covariance=prior.expanded(prior.expanded(inverse).T),
         misfit=float(np.sqrt(max(square, 0.0) / max(freedom, 1.0))),
-        shared=tuple(prior.whole(row.free @ inverse) for row in rows),
+        shared=tuple(prior.expanded(row.free @ inverse) for row in rows),
     )

@@ -129,24 +129,39 @@ def ring_bending(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBendi
     """
     inputs = ring, int(phases), float(poisson)
     modules = sys.modules[__name__], bearing_ring
-    return RingBending(**disk_cache.kept("ring", inputs, lambda: _bent(*inputs), modules))
+    return RingBending(
+        **disk_cache.kept("ring", inputs, lambda: _bending_by_ball_position(*inputs), modules)
+    )
 
 
-def _bent(ring: Ring, phases: int, poisson: float) -> dict[str, Array]:
-    """The arrays of a bending by their names in `RingBending`."""
+def _bending_by_ball_position(ring: Ring, phases: int, poisson: float) -> dict[str, Array]:
+    """Fields of `RingBending` by name, each (phases, ...), under a unit inward force on the ring.
+
+    phases : positions of the balls, >= 2, from a ball under the force to the force midway between
+    two balls, by equal angles. Each is solved apart, with elements so many that its balls are at
+    nodes.
+    """
     count = 2 * (phases - 1) * -(-_PER_GAP // (2 * (phases - 1)))
     body = RingElements(ring, ring.balls * count, poisson)
-    results = [_pushed(body, ring, count, k * count // (2 * (phases - 1))) for k in range(phases)]
+    results = [
+        _solved_at_position(body, ring, count, k * count // (2 * (phases - 1)))
+        for k in range(phases)
+    ]
     phase = np.linspace(0.0, 0.5 * FULL_TURN / ring.balls, phases)
     names = ("ball_load", "moment_max", "moment_min", "stress_max", "stress_min", "compliance")
     columns = (np.array(part) for part in zip(*results, strict=True))
     return {"phase": phase, **dict(zip(names, columns, strict=True))}
 
 
-def _pushed(
+def _solved_at_position(
     body: RingElements, ring: Ring, count: int, shift: int
 ) -> tuple[Array, float, float, float, float, float]:
-    """Values of `RingBending` at one ball position; inward unit force on section 0."""
+    """Ball loads, greatest and least moment, greatest and least stress, compliance, as in
+    `RingBending`, of one ball position under a unit inward force on section 0.
+
+    shift : sections from the force to the first ball; count : sections between two balls. The balls
+    that carry are found by iteration.
+    """
     sections = body.radial.shape[0]
     at = (shift + count * np.arange(ring.balls)) % sections
     carrying = np.cos(FULL_TURN * at / sections) > 0.0

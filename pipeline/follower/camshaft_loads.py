@@ -607,13 +607,15 @@ def unbalance(
     width: float,
     density: float,
 ) -> Unbalance:
-    """Mass and unbalance of the cam with bore and keyway, without holes.
+    """Area, first moment, mass and unbalance of a cam with bore and keyway; other holes are not
+    deducted.
 
     Area and centroid of the contour by line integrals; bore and keyway subtracted in closed form.
     The keyway is a rectangle with its floor `depth` beyond the bore radius.
 
     Parameters
     ----------
+    bore_radius : float       m
     keyway : KeywayLike       or None
     width, density : float    m and kg/m3, > 0
 

@@ -146,7 +146,9 @@ class Designs:
         return LoadedCam(Jet(*self.jets), self.numbers, self.highest[:, None])
 
     def whole_to(self, order: int) -> LoadedCam:
-        """Unloaded cams of all angles with lift derivatives up to order 2 or 3; see `whole`."""
+        """Unloaded cams at every sample of the lift, with lift derivatives up to order 2 or 3; see
+        `whole`.
+        """
         if order == 2:
             return self.whole
         jerk = np.broadcast_to(knot_derivatives(self.lift, order)[order], self.jets.shape[1:])
@@ -202,7 +204,9 @@ class Designs:
 
     @KeptResult
     def states(self) -> tuple[ScreenedState, ...]:
-        """Load cases of the designs, with standstill and over-speed at each preload."""
+        """Load cases of the designs, then standstill and over-speed at each distinct preload; the
+        preload of a load case is its own or, where it states none, that of the spring.
+        """
         base, stated = self.value("spring.preload"), self.case.load_cases
         states: list[ScreenedState] = []
         preloads: list[Array] = []
@@ -240,7 +244,10 @@ class Designs:
         return np.asarray(state.torque_reduction) if state.torque_reduction else None
 
     def _power(self, number: int, state: LoadCase, speed: Array) -> Array | None:
-        """Mean power of the machine in a load case; see `ScreenedState`."""
+        """Mean power of the machine in a load case (m, 1), W; see `ScreenedState`.
+
+        None without torque at a speed, NaN where the mean torque is lost in rounding.
+        """
         throughput, torque = self.throughputs.get(number), self.torques.get(number)
         if not (state.fired and state.speed > 0.0):
             return None
@@ -256,7 +263,9 @@ class Designs:
         return np.max([sampled_greatest(measure(cam)) for cam in self.cams], axis=0)
 
     def in_load_cases(self, kept: Sequence[bool]) -> Designs:
-        """The designs in some of their load cases; figures without loads are not computed again."""
+        """The designs with those load cases alone that `kept` (k,) marks; what does not depend on
+        loads is taken over.
+        """
         part = replace(self)
         chosen = tuple(cam for cam, keep in zip(self.cams, kept, strict=True) if keep)
         part.results.update(self.results | {"cams": chosen})
@@ -287,7 +296,9 @@ class Designs:
 
     @KeptResult
     def supports(self) -> SupportOfMany:
-        """Guides of the designs."""
+        """Guides and overhang of the stem of each design over the turn, for the loads of the
+        guides.
+        """
         motion, known = self.motion, self.machine
         lift = motion.jet.lift
         overhang = self.value("follower.overhang_at_max_lift") + (self.highest[:, None] - lift)
@@ -337,7 +348,9 @@ class Designs:
 
     @property
     def _flats(self) -> tuple[Array, Array, Array]:
-        """Widths of the flats of cam and follower, axial offset (m, 1), m."""
+        """Widths of the flats of cam and of follower, then axial offset of the follower: three
+        arrays (m, 1), m.
+        """
         cam = self.value("cam.width") - 2.0 * np.nan_to_num(self.value("cam.end.size"))
         part = self.machine.follower
         width = self.value(part.width_key)
@@ -373,7 +386,10 @@ class TorqueOfSpeed:
 
     @classmethod
     def of(cls, case: Case, number: int, speeds: Array | None) -> TorqueOfSpeed:
-        """Torque of a load case at the speeds (m,) of designs; for None at the case's speed."""
+        """Torque of load case `number` at the crank speeds (m,), rad/s, of the designs; None: at
+        the speed of the case. Solved at each different speed, or at `_SPEED_NODES` Chebyshev nodes
+        where there are more.
+        """
         state = case.load_cases[number]
         wanted = np.array([state.speed]) if speeds is None else np.unique(speeds)
         wanted = wanted[(wanted > 0.0) & np.isfinite(wanted)] if speeds is not None else wanted
@@ -397,6 +413,9 @@ class TorqueOfSpeed:
         return self._at(speeds, self.throughputs)
 
     def _at(self, speeds: Array | None, values: Array) -> Array:
+        """Rows of `values` (k, N) at the speeds (m,): of equal speed, or by the Chebyshev
+        polynomial.
+        """
         if speeds is None:
             return values
         if not self.interpolated:

@@ -49,8 +49,8 @@ Factor = Array | Sequence[TomlValue]
 def is_array(case: Case, key: str, values: Factor) -> bool:
     """Whether designs that differ in a key can be solved together as arrays.
 
-    Not in a table that the case leaves out, and not at a speed of zero: it has no engine torque.
-    Rate and preload of a gas or torsion spring are refused with the case.
+    False for a key in a table that the case leaves out, for a speed that is zero in a design, where
+    the engine has no torque, and for rate and preload of a gas or torsion spring.
     """
     if case.spring.shape is not None and key.endswith((".preload", "spring.rate")):
         return False
@@ -98,7 +98,8 @@ def count_of(factors: Mapping[str, Factor]) -> int:
 
 
 def groups(case: Case, factors: Mapping[str, Factor]) -> Iterator[Group]:
-    """Designs grouped by the values without an array path, in order of first appearance.
+    """Designs of one group differ in keys of array paths alone; groups in order of first
+    appearance. A design whose case or values are refused is a group of its own with `refused`.
 
     Raises
     ------
@@ -153,7 +154,7 @@ def _plain(value: object) -> TomlValue:
 
 
 def _numbers(quantity: object, values: Factor, rows: Sequence[int]) -> Array:
-    """Values in SI (m,)."""
+    """Values of a factor in the given rows (m,), SI; NaN where a value cannot be read."""
     if isinstance(values, np.ndarray) and _is_numeric(values):
         return np.asarray(values[rows], dtype=float)
     if not isinstance(quantity, In):
@@ -162,6 +163,7 @@ def _numbers(quantity: object, values: Factor, rows: Sequence[int]) -> Array:
 
 
 def _number(quantity: In, value: TomlValue) -> float:
+    """Value of a case file, a number in SI or text with a unit, in SI; NaN where it cannot be read."""
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
         return np.nan
     if not isinstance(value, str):
@@ -200,7 +202,7 @@ def refusals(
 
 
 def _require_guided(case: Case, highest: float) -> None:
-    """Refuse guides that the roller enters, or that the stem leaves."""
+    """Refuse guides that the roller enters, or that the stem leaves; `highest`: maximum lift, m."""
     if not isfinite(highest):
         return
     state = machine(case, case.load_cases[0])

@@ -86,10 +86,10 @@ def factors_of(
 ) -> LineFactors | None:
     """Axial pressure factors of the designs; 1 without contact, NaN for no closed contour.
 
-    None where the case lacks an end, or the designs have too many shapes of contact, see
-    `has_many_shapes`. Of a line without crown, whose greatest pressure, moment and load of a pin
-    over the turn count alone, they are solved at the angles near these; between others they are
-    linear.
+    None where the case lacks an end, or the designs have more shapes of contact than are solved,
+    see `has_many_shapes`. With a crown each angle is solved. Without one, solved are some angles
+    first and those near the greatest pressure, moment and load of the pin, which alone count over
+    the turn; the others are interpolated linearly.
 
     Parameters
     ----------
@@ -153,9 +153,12 @@ def factors_of(
 def _between(
     factors: Array, first: NDArray[np.bool_], contact: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
-    """Factors (m, n) linear between those at the first angles, and their upper bound there.
+    """Factors (m, n), linear between those at the first angles, and upper bounds (m, n) for where
+    to solve again: the greater of both neighbours; beside an angle without contact the greatest of
+    the design.
 
-    The greater of both neighbours; beside one without contact the greatest of the design.
+    first : (m, n), angles solved, the same in each design; contact : (m, n), where there is
+    contact.
     """
     columns, count = np.flatnonzero(first[0]), factors.shape[1]
     at = np.arange(count)
@@ -204,7 +207,9 @@ def has_many_shapes(designs: DesignValues) -> bool:
 
 
 def _shapes(designs: DesignValues) -> tuple[list[str], Array, NDArray[np.intp]]:
-    """Keys that vary, shapes of contact by their values after a zero, shape of each design (m,)."""
+    """Different shapes of contact: keys that vary among the designs (k); one row (s, 1 + k) per
+    shape, a zero and the values of the keys, SI; number of the row of each design (m,).
+    """
     keys = _KEYS if designs.machine.is_crowned else _STRAIGHT
     varied = [key for key in keys if key in designs.columns]
     rows = np.concatenate([np.zeros((designs.count, 1)), *(designs.value(k) for k in varied)], 1)
@@ -219,7 +224,9 @@ def _of_shape(machine: Machine, values: Mapping[str, float]) -> Machine:
 
 
 def _tilt(designs: DesignValues, shaft: Array) -> LineTilt:
-    """Tilt of the line of contact (m, n); see `TurnOfLine.tilt`."""
+    """Tilt of the line of contact (m, n), rad; see `TurnOfLine.tilt`. shaft : slope of the
+    camshaft, rad.
+    """
     machine = designs.machine
     follower, radius = machine.follower, machine.follower.contact_radius
     sizes = designs.value("roller.radius") if radius is not None else 0.0
@@ -243,7 +250,9 @@ def _yields(designs: DesignValues) -> Array:
 
 
 def _held_couple(designs: DesignValues, rubbing: tuple[Array, Array]) -> Array:
-    """Couple (m, n), N m, that friction of the guides can hold."""
+    """Couple (m, n), N m, that the friction of the guides can hold; `rubbing`: normal loads of
+    guides A and B (m, n), N.
+    """
     load_a, load_b = rubbing
     on_a, on_b = (designs.numbers[f"guides.{side}.friction_greatest"] for side in "ab")
     held = np.minimum(on_a * load_a, on_b * load_b)

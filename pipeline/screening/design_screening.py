@@ -125,6 +125,7 @@ def screen_designs(
 def _put(
     columns: dict[str, Column], rows: NDArray[np.intp], own: Mapping[str, Column | str]
 ) -> None:
+    """Write columns of some designs into those of all; a new one is "" or NaN in the other rows."""
     count = len(columns["message"])
     for name, values in own.items():
         if name not in columns:
@@ -146,6 +147,9 @@ class _Blocks:
 
     @classmethod
     def of(cls, case: Case, group: Group, positions: int) -> _Blocks:
+        """The group with its lifts and torques solved: stored energy of the synthesis of a
+        constrained case, engine torque of each load case at the speeds of the designs.
+        """
         energy = None
         if case.lift is None and case.smoothing.kind == "constrained":
             case, energy = synthesis(case)
@@ -184,6 +188,9 @@ class _Blocks:
                 yield from self._solved(rows[half], own)
 
     def _columns(self, values: Mapping[str, Array]) -> dict[str, Column]:
+        """Columns by name (m,) of designs with these values (m,) by key, SI; status "" and NaN, and
+        the reason as message, where the lift refuses a design.
+        """
         designs = self._designs(values)
         columns = judged_columns(designs) | headline_columns(designs)
         refused = np.array(refusals_of(designs, values), dtype=object)
@@ -196,6 +203,9 @@ class _Blocks:
         return columns
 
     def _designs(self, values: Mapping[str, Array]) -> Designs:
+        """Designs of the group with these values (m,) by key, SI; their lift is stated, smoothed or
+        by the energy of the synthesis.
+        """
         case, count = self.case, 1 if not values else len(next(iter(values.values())))
         torques = {
             k: each.at(values.get(f"load_case[{k}].speed")) for k, each in self.torques.items()
@@ -246,7 +256,7 @@ def resampled(torque: Array, count: int) -> Array:
 
 
 def _smoothed(case: Case, values: Mapping[str, Array], torque: Array, count: int) -> Array:
-    """Torque (1 or m, N) behind a smoother in each design, crank N m."""
+    """Torque (1 or m, N) behind the smoother of each design, crank N m; one row where all share it."""
     keys = [key for key in values if key.startswith("smoothing.")]
     if not keys:
         return smoothed(torque, Smoother.from_case(case.smoothing, case.period))
@@ -265,7 +275,9 @@ _SYNTHESES: dict[str, tuple[Case, Array]] = {}  # by the hash of the case, made 
 
 
 def synthesis(case: Case) -> tuple[Case, Array]:
-    """Case as drawn by its synthesis, and stored energy over the turn (N,), J."""
+    """Case with the results of its synthesis, and energy stored over the turn (N,), J; that of the
+    last case is kept.
+    """
     key = case.sha256
     if key not in _SYNTHESES:
         trial = preview_case(case, corners=False)
@@ -323,7 +335,13 @@ def _lost_loads(designs: Designs) -> dict[str, NDArray[np.bool_]]:
 def _without_lost_loads(
     designs: Designs, screened: Screened, lost: NDArray[np.bool_] | None
 ) -> tuple[Array, Array | float | None, NDArray[np.bool_]] | None:
-    """Demand (m,), limit, and whether the demand is a bound (m,), as by the other load cases."""
+    """Demand (m,), limit, and whether the demand is only a bound (m,); None where the check does
+    not apply.
+
+    A load case without loads (`lost` (k, m), of designs that lock or leave the cam) is left out of
+    the demand of its design. That is NaN where such a load case has a figure of its own and no
+    other is left.
+    """
     judged = screened.judged(designs)
     if judged is None:
         return None
@@ -356,7 +374,12 @@ def _figures(
     limit: Array | float | None,
     bound: NDArray[np.bool_],
 ) -> dict[str, Column]:
-    """Demand, limit, utilisation, error and status (m,) in the unit of the record."""
+    """Columns (m,) of a check in the unit of the record: demand, limit, utilisation, error and
+    status.
+
+    A demand that is only a bound (`bound` (m,)) is open while it is within its limit; status ""
+    where the check does not apply to a design.
+    """
     allowed = np.broadcast_to(
         np.asarray(np.nan if limit is None else limit, dtype=float), demand.shape
     )

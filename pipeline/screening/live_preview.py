@@ -171,6 +171,9 @@ class _Neighbours:
         return replace(near, torques=near._solved_torques())
 
     def _solved_torques(self) -> dict[int, TorqueOfSpeed]:
+        """Engine torques by number of the load case, over the range of speeds that the preview can
+        choose.
+        """
         speed = next((each for each in self.factors if each.is_speed), None)
         torques = {}
         for k, state in enumerate(self.case.load_cases):
@@ -190,7 +193,7 @@ class _Neighbours:
         return np.asarray(np.exp(0.5 * (low + high) + 0.5 * places * (high - low)))
 
     def at(self, multiples: Array) -> Designs:
-        """Designs of factors (m, d) on the values of the run."""
+        """Designs whose factors are those of the run times `multiples` (m, d), 1: the run itself."""
         values = self._values(multiples)
         stroke = [k for k, each in enumerate(self.factors) if each.is_stroke]
         scaled = multiples[:, stroke[0], None] if stroke else np.ones((1, 1))
@@ -233,9 +236,9 @@ class _Neighbours:
     def solved(
         self, multiples: Array, start: int = 0
     ) -> Iterator[tuple[NDArray[np.intp], Designs]]:
-        """Designs that are accepted, with their numbers among those of the factors (m, d).
-
-        Left out are those that the case refuses, with undercut, or that lock.
+        """Designs about the run that the case accepts, block by block: their row numbers, from
+        `start`, in `multiples` (m, d), and the designs. Left out are those with undercut, that lock
+        or that the case refuses.
         """
         count = len(multiples)
         for begin in range(0, count if count > _DESIGNS_A_BLOCK else 0, _DESIGNS_A_BLOCK):
@@ -257,6 +260,9 @@ class _Neighbours:
             yield start + np.flatnonzero(good), self.at(multiples[good])
 
     def _good(self, designs: Designs, multiples: Array) -> NDArray[np.bool_]:
+        """Which designs (m,) the case accepts, without undercut and without locking in any load
+        case.
+        """
         refused = refusals_of(designs, self._values(multiples))
         good = np.array([not words for words in refused]) & (designs.least_factor > 0.0)
         for cam in designs.cams:
@@ -314,7 +320,9 @@ Measured = Callable[[Designs], _Figures | None]
 
 
 def _check_figures(screened: Screened) -> Measured:
-    """Demands of a check in each load case, SI; None where the screening does not know them all."""
+    """Function of designs for the demands of a check, SI, in each load case or, for one that joins
+    them, over all (-1); its result is None where the screening does not know them all.
+    """
     declared = DECLARED[screened.check]
     how = declared.measured
     of_turns = how is not None and how.reduce in ("angles", "forces", "mean")
@@ -370,6 +378,7 @@ class _Headline(NamedTuple):
     rests: bool = True
 
     def figures(self, designs: Designs) -> _Figures | None:
+        """Values of the key figure by load case (-1: of none); None where no load case has one."""
         cams = designs.cams if self.of_turns else designs.cams[:1]
         values = {k: self.value(designs, cam) for k, cam in enumerate(cams)}
         parts = {k if self.of_turns else -1: v for k, v in values.items() if v is not None}
@@ -426,7 +435,9 @@ class _Sample:
 
     @classmethod
     def of(cls, near: _Neighbours, multiples: Array, measures: Mapping[str, Measured]) -> _Sample:
-        """Designs of factors (m, d), solved block by block."""
+        """Sample at `multiples` (m, d) of the values of the run, solved block by block. measures :
+        by name, see `_check_figures`; one that is None for some block is `unknown`.
+        """
         sample = cls(len(multiples), {name: {} for name in measures})
         for rows, designs in near.solved(multiples):
             sample.states = sample.states or _state_names(designs)
@@ -491,6 +502,9 @@ def live_record(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument 
 
 
 def _fitted(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | None:
+    """Document of response surfaces about the design of a run, fitted to screened designs; None
+    where no range or no surface can be had.
+    """
     near = _in_range(case, lift)
     if not near.factors:
         return None
@@ -556,6 +570,7 @@ def greatest(final: TrialRecord) -> list[str]:
 
 
 def _key_figure(figure: _Headline, sample: _Sample, fit: SurfaceFit) -> LiveQuantity | None:
+    """Surfaces of a key figure by load case; None where it lacks a value or a surface."""
     if figure.id in sample.unknown or sample.is_partial(figure.id):
         return None
     values = sample.parts[figure.id]
@@ -585,7 +600,9 @@ class _RunDesign(NamedTuple):
     demands: Mapping[str, float | None]
 
     def deviation(self, name: str, *, at_most: bool) -> float:
-        """Of a check by screening from the preview, over the greater of demand and limit."""
+        """Deviation of the screening of a check from its preview, at the run, over the greater of
+        demand and limit; 0 where either lacks a demand.
+        """
         demand, parts = self.demands.get(name), self.screened.parts[name]
         valued = [float(v[0]) for k, v in parts.items() if self.screened.valued(name, k)[0]]
         if demand is None or not valued:
@@ -647,9 +664,9 @@ class _Away(NamedTuple):
     def record(
         self, surface: Surface | None, values: Array, valued: NDArray[np.bool_]
     ) -> LiveSurface | None:
-        """Surface of values (m,) with its error from the preview; None without a finite one.
-
-        Of the designs (m,) that have a value, to which the surface is fitted.
+        """Record of a surface of values (m,), its error increased by the deviation of the screening
+        from the preview; None without a surface or a finite error. `valued` (m,): designs with a
+        value, to which the surface is fitted.
         """
         if surface is None:
             return None

@@ -117,13 +117,15 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def jam_worst(self) -> Array:
+        """Jam index (m, n) at the greatest friction of the guides, -."""
         keys = (f"guides.{side}.friction_greatest" for side in "ab")
         most = OfGuides(*(np.asarray(self.numbers[key]) for key in keys))
         rubbing = self._settled(most)
         return most.a * rubbing.a + most.b * rubbing.b
 
     def _settled(self, friction: OfGuides) -> OfGuides:
-        """Rubbing load of the guides over the axial force at equilibrium.
+        """Normal loads of guides A and B over the axial force (m, n), at equilibrium with this
+        friction.
 
         Fixed point of the axial force, whose friction depends on the guides' loads; the change of
         their ratios with the force is small.
@@ -159,6 +161,9 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def bearing(self) -> OfGuides:
+        """Bearing loads of guides A and B (m, n), N, with the couple of the line of contact on the
+        stem.
+        """
         guides, block = self.guides, self.block
         couple = forced_part(block, self.shaft_tilt, self.follower_moment)
         couple = couple * np.cos(self.motion.pressure_angle)

@@ -44,7 +44,9 @@ from camwright.pipeline.screening.screened_cam import ScreenedCam
 
 
 def _by_measure(declared: Declaration, measure: Measure, how: Measured) -> Screened | None:
-    """Screening of a check that is declared by a measure; None where it states no deviation."""
+    """Screening of a check declared by a measure (`how`: its reduction and limit); None where it
+    states no deviation from the preview.
+    """
     if how.deviation is None:
         return None
 
@@ -83,7 +85,9 @@ _BOUNDED: Mapping[Bounded, Callable[[Designs], bool]] = {
 def _of_strokes(
     either: Array, limit: Array, demands: Sequence[Array], limits: Sequence[Value]
 ) -> tuple[Array, Array]:
-    """Demand and limit (m, 1) of the stroke that governs; of either without limits of each."""
+    """Demand and limit (m, 1) of the stroke, such as opening and closing, of the greatest
+    utilisation; `either` and `limit` where a stroke has no limit of its own.
+    """
     known = np.all([~np.isnan(each) & np.ones(limit.shape, dtype=bool) for each in limits], axis=0)
     demand, own = np.broadcast_arrays(demands[0], limits[0], either)[:2]
     for other, allowed in zip(demands[1:], limits[1:], strict=True):
@@ -107,6 +111,7 @@ def _demand(measure: Measure, how: Measured, designs: Designs, numbers: Numbers)
 
 
 def _known(measure: Measure, how: Measured, designs: Designs, numbers: Numbers) -> Array:
+    """Demand (m, 1) by the worst value of a measure, all needed values being stated; see `_demand`."""
     if how.reduce in ("case", "top"):
         return np.asarray(how.value(measure(designs.top), numbers))
     if how.reduce == "contour":
@@ -123,7 +128,7 @@ def _known(measure: Measure, how: Measured, designs: Designs, numbers: Numbers) 
 
 
 def _of_turn(measure: Measure, how: Measured, cam: ScreenedCam) -> Array:
-    """Mean or worst value of a measure over the turn (m, 1), once for the checks that share it."""
+    """Mean or worst value of a measure over the turn (m, 1), stored for other checks that share it."""
     key = measure, "mean" if how.reduce in ("mean", *BY_DUTY) else how.worst, how.smooth
     if key not in cam.figures:
         values = measure(cam)
@@ -153,9 +158,11 @@ def _over_duty(
     life: bool,
     steady: bool = False,
 ) -> Array:
-    """As `over_duty`: sum of wear, or of damage by lives, of the load cases by their duty.
+    """Wear, the sum of duty times wear, or with `life` the life, 1 / sum of duty over life, of the
+    load cases together (m, 1); see `over_duty`.
 
-    steady: of those of the case alone.
+    The worst of them where a duty is not stated; NaN where none runs. steady : load cases of the
+    case file alone, without standstill and over-speed. of_turn : figure (m, 1) of a load case.
     """
     cams = [cam for cam in designs.cams if cam.state.steady or not steady]
     running = [cam for cam in cams if cam.state.duty != 0.0]
@@ -174,10 +181,11 @@ def _over_duty(
 
 
 def torque_after(designs: Designs, cam: ScreenedCam) -> Array:
-    """Measure: crank torque of engine and cam (m, k), N m, at the cam angles of the engine's.
+    """Measure: crank torque of engine and cam together (m, k), N m, at the cam angles of the engine
+    torque.
 
-    That of the cam, smooth between the cam angles of its loads, is a cubic there: peaks of the
-    engine are narrower.
+    The cam torque is interpolated by cubics between the cam angles of its loads; the peaks of the
+    engine torque are narrower.
     """
     before = np.zeros(1) if cam.state.torque is None else cam.state.torque
     torque = cam.torque
@@ -187,7 +195,7 @@ def torque_after(designs: Designs, cam: ScreenedCam) -> Array:
 
 
 def _between(values: Array, step: int) -> Array:
-    """Periodic values (m, n) at `step` times as many equal angles, cubic through four of them."""
+    """Periodic values (m, n) interpolated to (m, n step) equal angles, cubic through four of them."""
     at = np.arange(step) / step
     weights = (
         -at * (at - 1.0) * (at - 2.0) / 6.0,
@@ -201,6 +209,9 @@ def _between(values: Array, step: int) -> Array:
 
 
 def _torque_reduction(designs: Designs) -> Judged | None:
+    """Least reduction of the torque ripple (m,), as a share, over the load cases that require one,
+    and its limit.
+    """
     shares = [
         (demands.ripple_reduction(cam.state.torque, torque_after(designs, cam)), required)
         for cam in designs.cams
@@ -214,7 +225,9 @@ def _torque_reduction(designs: Designs) -> Judged | None:
 
 
 def _grease_life(designs: Designs) -> Judged | None:
-    """None with oil."""
+    """Grease life of the roller bearing over the load cases and its target (m,), s; NaN where
+    lubrication or target is not stated. None with oil.
+    """
     numbers, shape = designs.numbers, (designs.count, 1)
     if (lubrication := designs.case.roller.bearing.lubrication) == "oil":
         return None
@@ -225,9 +238,8 @@ def _grease_life(designs: Designs) -> Judged | None:
 
 
 def _counterweights(designs: Designs) -> tuple[Counterweight, Array, CounterweightBody] | None:
-    """Counterweight, its unbalance (m, 1) and its bodies; None without one, or with a drilled cam.
-
-    The hole of a drilled cam is sought one cam at a time.
+    """Counterweight, the unbalance it has to balance (m, 1), kg m, and its body in each design;
+    None without one, or with a drilled cam, whose hole is sought one cam at a time.
     """
     shaft = designs.machine.camshaft
     weight = None if shaft is None else shaft.counterweight
@@ -244,6 +256,7 @@ def _of_each(value: Value, designs: Designs) -> Array:
 
 
 def _counterweight_gap(designs: Designs) -> Judged | None:
+    """Gap between counterweight and its neighbours and its limit (m,), m; None without one."""
     counterweights = _counterweights(designs)
     if counterweights is None:
         return None
@@ -254,6 +267,9 @@ def _counterweight_gap(designs: Designs) -> Judged | None:
 
 
 def _counterweight_unbalance(designs: Designs) -> Judged | None:
+    """Unbalance to balance and the greatest that fits the counterweight (m,), kg m; None without
+    one.
+    """
     counterweights = _counterweights(designs)
     if counterweights is None or counterweights[0].width is None:
         return None
@@ -263,6 +279,9 @@ def _counterweight_unbalance(designs: Designs) -> Judged | None:
 
 
 def _friction_power(designs: Designs) -> Judged | None:
+    """Greatest friction power over the mean power of the machine, and its limit (m,), -; None where
+    no load case has a power.
+    """
     shares = [cam.friction_power / cam.state.power for cam in designs.cams
               if cam.state.power is not None]  # fmt: skip
     if not shares:
@@ -272,7 +291,12 @@ def _friction_power(designs: Designs) -> Judged | None:
 
 
 def _mechanism_temperature(designs: Designs) -> Judged | None:
-    """Not known of a machine without stated cooling that still air would not keep cool enough."""
+    """Temperature of the mechanism by its friction power and the least that a part allows (m,),
+    degC.
+
+    None where no part states one. NaN where the housing in still air exceeds it and the case states
+    no cooling.
+    """
     stated, cooling = torque_balance.stated_temperatures(designs.numbers), designs.machine.cooling
     if not stated:
         return None
@@ -290,6 +314,9 @@ def _mechanism_temperature(designs: Designs) -> Judged | None:
 
 
 def _bulk_temperature(designs: Designs) -> Judged | None:
+    """Bulk temperature of the flat face, by oil and mean flash temperature, and its limit (m,),
+    degC; NaN where thermal data or friction lack.
+    """
     machine, limit = designs.machine, designs.numbers.limit(SURFACE_TEMPERATURE)
     allowed = _of_each(flat_face_sliding.bulk_allowed(machine, limit), designs)
     cold = designs.numbers.get("lubricant.temperature")
@@ -300,7 +327,9 @@ def _bulk_temperature(designs: Designs) -> Judged | None:
 
 
 def _contact_temperature(designs: Designs) -> Judged | None:
-    """At the load case and angle of the greatest utilisation, as of the check."""
+    """Contact temperature of the flat face and its limit (m,), degC, at the load case and angle of
+    the greatest utilisation, as in the check; NaN where data lack.
+    """
     oil, machine = designs.machine.lubricant, designs.machine
     if flat_face_sliding.heat_missing(machine, *flat_face_sliding.OF_OIL) or oil is None:
         top = designs.numbers.get("lubricant.scuffing_temperature")
@@ -328,6 +357,7 @@ def _gas_stroke_rate(designs: Designs) -> Judged | None:
 
 
 def _gas_heating(designs: Designs) -> Judged | None:
+    """Gas temperature of a gas spring over the load cases by duty (m,), and its limit, degC."""
     case, strokes, lift = designs.case, _strokes(designs), designs.highest[:, None]
     preload, rate = (designs.value(f"spring.{key}") for key in ("preload", "rate"))
     work = spring_energy(preload, rate, lift, case.spring.shape)

@@ -99,7 +99,7 @@ class Change:
 
 
 def number_of(key: str, value: str | float) -> float:
-    """Value at a key as a number in SI.
+    """Value at a key of a case file as a number in SI; `value` is one, or text with a unit.
 
     Raises
     ------

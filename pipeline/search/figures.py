@@ -93,7 +93,8 @@ def verdict_of(feasible: bool, shortfalls: Collection[Shortfall], left: Collecti
 
 
 def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> DraftJudgement:
-    """Figures of a case by its synthesis, without its corrections and checks.
+    """Figures of a case by its synthesis alone, without corrections for the guides and without
+    checks.
 
     The limit of the ripple is compared with its minimum afterwards: as a constraint it would hide
     the ripple of an infeasible case.
@@ -147,7 +148,9 @@ def _shortfall(check: Check) -> Shortfall:
 
 
 def _root_shortfall(trial: Trial) -> list[Shortfall]:
-    """Of the keyway root by finite elements, where the preview leaves it to them."""
+    """Failure of the keyway root by finite elements, where the closed form of the preview does not
+    decide; empty where it holds with a reserve or is decided.
+    """
     numbers = trial.solution.numbers
     left = [check for check in trial.checks if check.id == keyway_root.id and check.judged_at]
     solved = hub_fatigue(trial.contour, trial.cycles, numbers) if left else None

@@ -28,7 +28,11 @@ def front(
 
 
 def thinned(places: Sequence[int], figures: Sequence[tuple[float, float]], most: int) -> list[int]:
-    """At most `most` points of a front: its ends are kept, points of least area dropped."""
+    """At most `most` of the points of a front, as indices: its ends, and the others less those
+    whose loss takes the least area.
+
+    places : indices of the front in `figures`, by increasing first objective.
+    """
     kept = list(places)
     while len(kept) > max(most, 2):
         areas = [

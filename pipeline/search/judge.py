@@ -89,7 +89,11 @@ class Judgement:
     _outcomes: dict[str, dict[Corner, Outcome]] = field(default_factory=dict, init=False)
 
     def check(self, name: str, *, everywhere: bool = False) -> Check | None:
-        """Check at its worst corner, or at every corner; None where it does not apply."""
+        """A check by its id, with its worst demand over the tolerance corners; None where it does
+        not apply.
+
+        everywhere : over all corners; else over those in `worst`.
+        """
         declared = DECLARED[name]
         corners = corners_of(self.solved.case) if everywhere else self.worst
         made = checks_of(self.solved, [declared])
@@ -98,7 +102,9 @@ class Judgement:
         return made[0] if made else None
 
     def _outcomes_at(self, declared: Declaration, corners: Sequence[Corner]) -> tuple[Outcome, ...]:
-        """Outcomes of one check; a corner that is already solved is not solved again."""
+        """Outcomes of one check at these corners, in their order; a corner already solved is not
+        solved again.
+        """
         known = self._outcomes.setdefault(declared.id, {})
         left = [corner for corner in corners if corner not in known]
         if left:
@@ -109,7 +115,9 @@ class Judgement:
 
     @cached_property
     def checks(self) -> Mapping[str, Check]:
-        """Every must-have check of the design at its worst corner, by id."""
+        """Every required check of the design by id, each with its worst demand over the governing
+        corners.
+        """
         solved = self.solved
         made = checks_of(solved, _DECIDING)
         if self.governing:
@@ -202,9 +210,9 @@ class Judge:
         return change.applied(self.base, self.folder)
 
     def used(self, change: Change, names: Collection[str]) -> dict[str, float]:
-        """Utilisation of each check at its governing corner, by coarse closed forms.
-
-        At the nominal where no corner governs; infinite where it is not known.
+        """Utilisation of each of these checks with a change, at the tolerance corner that governs
+        it, by coarse closed forms; at the nominal where no corner governs, infinite where it cannot
+        be evaluated.
 
         Raises
         ------
@@ -226,9 +234,11 @@ class Judge:
         return {name: used(by_corner[corner].get(name)) for name, corner in governing.items()}
 
     def judged(self, change: Applicable, depth: Depth, *, quick: bool = False) -> Judgement:
-        """Judgement of the changed case with a drawn cam.
+        """Judgement of the case with a change: its cam solved and checked to a depth.
 
-        Its lift is held by the judge, or of the smoother of the case.
+        The lift is that of the judge or, if it has none, is calculated by the smoother of the
+        changed case. The tolerance corners are those that `depth` names; all of them where it has
+        None.
 
         Parameters
         ----------
@@ -270,7 +280,7 @@ class Judge:
     def drafted(
         self, change: Applicable, *, fine: bool = False
     ) -> DraftJudgement | RefusedJudgement:
-        """Record of the synthesis alone, from the store or solved.
+        """Record of the synthesis of the changed case alone, from the store or solved.
 
         Parameters
         ----------
@@ -317,6 +327,9 @@ class Judge:
         return self.base.sha256
 
     def _contour(self, case: Case, *, undercut: bool = False) -> Contour:
+        """Contour of a case by the lift of the judge or its smoother; GeometryError if it is
+        undercut and may not be.
+        """
         contour = case.contour(cam_lift(case, self.torques) if self.lift is None else self.lift)
         if not (undercut or is_body(contour)):
             raise GeometryError("the contour is undercut")

@@ -132,7 +132,7 @@ def ranked(results: Sequence[Compared]) -> list[Compared]:
 
 
 def recommendation(best: Compared) -> str:
-    """Best of the ranked results with its reason, in one sentence."""
+    """Sentence that recommends the best of the ranked smoothers, with the reason."""
     if best.lift is None:
         return "no smoother gives a cam"
     left, before = best.ripple(), best.ripple("initial")
@@ -157,9 +157,8 @@ def common_missing(results: Sequence[Compared]) -> tuple[str, ...]:
 
 
 def lines(results: Sequence[Compared]) -> list[str]:
-    """Lines: recommendation, smoothers by rank, missing data once.
-
-    No line is longer than `WIDTH`.
+    """Lines of text: recommendation, table of the smoothers by rank, missing data; at most `WIDTH`
+    wide.
 
     Parameters
     ----------
@@ -179,7 +178,9 @@ def lines(results: Sequence[Compared]) -> list[str]:
 
 
 def _missing_line(results: Sequence[Compared]) -> list[str]:
-    """Count of the must-have checks without data, for all smoothers at once."""
+    """Line on the number of required checks without data under all smoothers; none in a list
+    without any.
+    """
     common = len(common_missing(results))
     most = max(len(one.missing) for one in results)
     if not most:
@@ -191,7 +192,9 @@ def _missing_line(results: Sequence[Compared]) -> list[str]:
 
 
 def _state(one: Compared, columns: int) -> str:
-    """Failing checks, the worst first; the reason without a cam."""
+    """Failing checks of a smoother, the worst first, or the reason why it gives no cam, in
+    `columns` characters.
+    """
     if one.lift is None:
         return shortened(f"no cam: {one.record['why']}", columns)
     if not one.failing:
@@ -220,6 +223,7 @@ def _without(kind: str, words: str, error: CamError, width: float | None = None)
 
 
 def _constrained(case: Case, torques: Mapping[str, Torque]) -> Compared:
+    """Result of the constrained synthesis of the case, in place of its smoother."""
     smoothing = case.smoothing.model_copy(update={"kind": "constrained"})
     judge = Judge(case.model_copy(update={"smoothing": smoothing}), torques)
     trial = judge.synthesised(Change()).trial

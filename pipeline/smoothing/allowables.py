@@ -49,9 +49,11 @@ _LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 
 
 def ratings_of(case: Case) -> Ratings:
-    """Ratings of a case; the wall over the bore limits a free prime radius.
+    """Ratings of a case: its limits as bounds of the constraints of a synthesis, with the numbers
+    of the machine.
 
-    The root of a keyway under a fit is judged by finite elements alone: its bound is too wide.
+    The wall over the bore limits a prime radius that is a variable. The root of a keyway under a
+    fit is left to finite elements: its bound is too wide.
     """
     states = machines(case)
     numbers, machine = numbers_of(case, states), states[0]
@@ -67,9 +69,11 @@ def ratings_of(case: Case) -> Ratings:
 
 
 def limits_of(case: Case) -> dict[str, dict[str, float]]:
-    """Limits by constraint and check, SI, without those outside the scope.
+    """Limits of a case, SI, by constraint and, within it, by check; those outside the scope left
+    out.
 
-    Of a row its value, else of the measure of the check.
+    The limit is the value of its row or, where the constraint is on a part or group, of the measure
+    of the check.
     """
     states = machines(case)
     numbers, machine = numbers_of(case, states), states[0]
@@ -108,7 +112,9 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
 
 
 def edge_load(machine: Machine, guide: Guide, temperature: float) -> float | None:
-    """Line load at which a guide's edge pressure reaches yield, N/m; None if not known."""
+    """Line load of a guide, N/m, at which its edge pressure reaches the yield strength at a
+    temperature, K; None where either is not known or no load in range reaches it.
+    """
     strength, peak = guide.material.yield_strength_at(temperature), edge_pressure_of(machine, guide)
     if not strength > 0.0 or guide.clearance <= 0.0:
         return None
@@ -123,7 +129,8 @@ def edge_load(machine: Machine, guide: Guide, temperature: float) -> float | Non
 
 
 def softening(machine: Machine, guide: Guide, temperature: float) -> tuple[float, float]:
-    """Remaining shares of pressure limit and line load of a guide at a temperature, K.
+    """Pressure limit, then line load at yield, of a guide at a temperature, K, each over that at
+    room temperature.
 
     1 where they are not known at the temperature: the check is then not evaluated.
     """
@@ -162,7 +169,7 @@ class Surge(NamedTuple):
 
 
 def surge_of(solved: Solution) -> Surge | None:
-    """Surge of the spring of a solved cam; None without a spring design."""
+    """Surge of the spring of a solved cam, over the speed range; None without a spring design."""
     design, sweep = solved.machine.spring.design, solved.hardest_spring
     if design is None or sweep is None:
         return None
@@ -203,10 +210,11 @@ class TopCam(LoadedCam):
 
 
 def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
-    """Normal force, N, and contact pressure, Pa, at which further checks reach their limits, by id.
+    """Normal force, N, and contact pressure, Pa, at which checks without a closed form reach their
+    limits, by id.
 
-    From their utilisation on a solved cam: they depend on the whole turn, on the unbalance or on
-    the stress below the surface, and have no closed form by cam angle.
+    Extrapolated by a power of the load from their utilisation on a solved cam: they depend on the
+    whole turn, on the unbalance or on the stress below the surface.
     """
     force = max(float(cycle.loads.normal_force.max()) for cycle in solved.cycles)
     pressure = max(float(cycle.surface.p0.max()) for cycle in solved.cycles)
@@ -224,7 +232,9 @@ def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
 
 
 def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
-    """Ratings with limits scaled from a solved cam; see `surge_of`, `scaled_limits`."""
+    """Ratings with the limits that follow from a solved cam: of the lift by its surge, and those of
+    `scaled_limits`.
+    """
     case = solved.case
     limits = limits_of(case)
     scaled = {
@@ -240,11 +250,11 @@ def _travel_limit(case: Case, surge: Surge | None = None) -> dict[str, float]:
 
 
 def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
-    """Greatest lift, m, that each kept check allows, by id.
+    """Greatest lift, m, that each check at maximum lift allows, by id; a check that every lift, or
+    none, passes is left out.
 
-    Without those that no lift, or every lift of the law of the spring, passes. Where rate or
-    preload is free, the spring design is open. Without a surge, which depends on the lift, stress
-    and fatigue are a lower bound.
+    Where rate or preload is a variable, the checks of the spring are left out. Without a surge,
+    which depends on the lift, stress and fatigue are a lower bound.
     """
     states = machines(case)
     numbers, last = numbers_of(case, states), surge or Surge(1.0, 0.0, 0.0, 0.0)

@@ -75,6 +75,7 @@ def _times(key: str, ratings: Ratings, factor: float) -> Ratings:
 
 
 def _of_row(row: AnyLimit, ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
+    """Bound of a constraint by the row of its limit; `value`: the limit, SI."""
     unit = row.quantity.unit or "-"
     shown, factor = in_unit(value, unit), min(one.kept.factor_max, one.kept.value_max / value)
     is_fixed = ratings.by.get(one.key) == machine_shaft_gap.id  # no limit of the case moves it
@@ -83,7 +84,9 @@ def _of_row(row: AnyLimit, ratings: Ratings, one: AnyConstraint, value: float) -
 
 
 def _of_part(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
-    """What the synthesis bounds for the check that sets the limit: of its part, else of its row."""
+    """Bound of a constraint on a part, in the unit and words of the check that sets it; `value`:
+    the bound, SI.
+    """
     declared, rule = DECLARED[ratings.by.get(one.key, one.check)], one.kept
     row, shown = declared.limit, in_unit(value, rule.unit)
     words = declared.kept_as or (declared.title if row is None else row.title)
@@ -105,7 +108,9 @@ def _guide_gap(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
 
 
 def _bearing_life(ratings: Ratings, one: AnyConstraint, _: float) -> Bound | None:
-    """Life grows with the cube of the rating, at the same fatigue load limit."""
+    """Bound of the bearing life as one on the dynamic rating, N: at the same fatigue load limit
+    life grows with its cube. None without a rating.
+    """
     rating = ratings.numbers.get(_RATING)
     if rating is None:
         return None
@@ -113,7 +118,7 @@ def _bearing_life(ratings: Ratings, one: AnyConstraint, _: float) -> Bound | Non
 
 
 def _with_rating(ratings: Ratings, factor: float) -> Ratings:
-    """With a dynamic rating of the roller bearing times a factor."""
+    """Ratings with the dynamic rating of the roller bearing, and the life by it, times a factor."""
     rated = ratings.numbers | {_RATING: ratings.numbers[_RATING] * factor}
     with_life = roller_life.id in ratings.bounds
     life = ratings.times(roller_life.id, factor**BALL_LIFE_EXPONENT) if with_life else ratings
@@ -121,7 +126,9 @@ def _with_rating(ratings: Ratings, factor: float) -> Ratings:
 
 
 def _concave_radius(ratings: Ratings, one: AnyConstraint, value: float) -> Bound | None:
-    """Utilisation -kappa (a R_tool - r): it grows with the tool radius."""
+    """Bound of the concave radius as one on the tool radius R: the utilisation -kappa (a R - r)
+    grows with R. None where the roller is no smaller.
+    """
     room = value - float(ratings.numbers["roller.radius"])
     if room <= 0.0:
         return None

@@ -116,7 +116,9 @@ class ScenarioCam(LoadedCam):
 
     @cached_property
     def spin_mean(self) -> Array:
-        """Mean roller speed of the solved cam; before the first one, that on the prime circle."""
+        """Mean roller speed, rad/s: share of the speed from the last solved cam; before there is
+        one, by the prime circle.
+        """
         rolling, path = self.fix.rolling[..., :1], roller_of(self.motion)  # one value
         prime = path.prime_radius[..., :1]
         share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
@@ -124,7 +126,9 @@ class ScenarioCam(LoadedCam):
 
     @property
     def direction(self) -> Array:
-        """Sign of the motion, averaged over the cell of an angle with one; see `Scenario`."""
+        """Sign of the follower motion, -1 to 1: averaged over the cell of a cam angle in which it
+        reverses, so that it is differentiable; see `Scenario`.
+        """
         sharp, cell = super().direction, self.scenario.cell
         if not np.any(cell):
             return sharp
@@ -241,7 +245,7 @@ class Mean(NamedTuple):
         return self._slopes(self.means).T
 
     def hessian(self, weights: Array) -> Array:
-        """Second derivatives (m, m) of the utilisations by the means, weighted by (r,)."""
+        """Second derivatives (m, m), by the means, of the sum of the utilisations weighted by (r,)."""
         means = self.means
         steps = np.diag(
             _SECOND_STEP * np.maximum(np.abs(means), np.finfo(float).tiny / _SECOND_STEP)
@@ -266,9 +270,10 @@ _SECOND_STEP = 1e-5  # of a mean: step of the second derivatives
 
 
 def duty_shares(scenario: Scenario) -> Array | None:
-    """Shares (r, s) of stacked scenarios in the operating time at each tolerance corner.
+    """Duty of each stacked scenario (r, s), a row per tolerance corner with zeros for the scenarios
+    of others.
 
-    None without a duty: each scenario counts for the whole life.
+    None where the case states no duty: each scenario counts for the whole life.
     """
     if scenario.duty is None:
         return None

@@ -136,7 +136,7 @@ class Cones:
         self._linear.append(_Block.of(matrix, bound))
 
     def rows_at_most(self, entries: ArrayLike, columns: NDArray[np.intp], bound: ArrayLike) -> None:
-        """Sum of entries (m, w) times x[columns] <= bound (m,)."""
+        """Add the constraints: sum over w of entries (m, w) times x[columns (m, w)] <= bound (m,)."""
         rows = np.broadcast_to(np.arange(len(columns))[:, None], columns.shape)
         values = np.broadcast_to(np.asarray(entries, dtype=float), columns.shape)
         side = np.broadcast_to(np.asarray(bound, dtype=float), (len(columns),))
@@ -145,7 +145,9 @@ class Cones:
     def norm_at_most(
         self, slopes: Array, level: Array, variable: int | None, ceiling: float = 0.0
     ) -> None:
-        """|level + slopes @ x| <= ceiling + x[variable]; slopes (m, w) of the first unknowns."""
+        """Add the cone |level + slopes @ x| <= ceiling + x[variable]; slopes (m, w) of the first
+        unknowns, level (m,). variable None: the ceiling alone.
+        """
         rows, columns = np.nonzero(slopes)
         values = -slopes[rows, columns]
         rows = rows + 1
@@ -158,7 +160,7 @@ class Cones:
     def square_at_most(
         self, matrix: scipy.sparse.csr_array, room: scipy.sparse.csr_array, level: float
     ) -> None:
-        """(matrix @ x)^2 <= level + room @ x, row by row, each (m, size)."""
+        """Add the cones (matrix @ x)^2 <= level + room @ x, row by row; both matrices (m, size)."""
         rows = matrix.shape[0]
         stacked = scipy.sparse.vstack([-room, -room, -2.0 * matrix], format="csr")
         side = np.concatenate([np.full(rows, level + 1.0), np.full(rows, level - 1.0),
@@ -167,7 +169,9 @@ class Cones:
         self._cones.append((_Block.of(stacked[order], side[order]), 3))
 
     def solved(self) -> tuple[Array, Array, float] | None:
-        """x, multipliers of the linear constraints in order, cost; None if not solved."""
+        """Optimum: x (size,), multipliers of the linear constraints in the order added, least cost;
+        None where the solver finds none.
+        """
         blocks = [*self._linear, *(block for block, _ in self._cones)]
         linear = sum(block.side.size for block in self._linear)
         cones = [clarabel.NonnegativeConeT(linear)]
@@ -261,7 +265,7 @@ def _solved(
     ripple_weight: float,
     reach: Reach | None,
 ) -> ConeSolution | None:
-    """The program of `solved` with all of the norms in it."""
+    """The cone program of `solved` with every one of the norms in it."""
     size = slope.size
     costs = list(dict.fromkeys(row.name for row in rows if row.cost))
     names = costs + list(dict.fromkeys(r.name for r in rows if r.elastic and not r.cost))

@@ -66,7 +66,9 @@ def approached(problem: Problem) -> State:
 
 
 def started(problem: Problem, ripple_weight: float = 1.0) -> Search:
-    """Search started from the seed, or the better of exact energy and convex optimum."""
+    """Search started from the seed of the problem or, without one, from the better of exact energy
+    and optimum of the convex part.
+    """
     search = Search(problem)
     core = convex_start(problem) if problem.seed is None else None
     if core is not None:
@@ -90,6 +92,9 @@ class _Peaks(NamedTuple):
 
 
 def _beside_peaks(search: Search, state: State) -> Grid:
+    """Cam angles, finer than the points, beside those where a limit is nearly reached; with their
+    splines.
+    """
     points, step = search.problem.points, search.turn.theta[1]
     near = np.zeros(points, dtype=bool)
     for each in state.pointwise.values():
@@ -102,7 +107,9 @@ def _beside_peaks(search: Search, state: State) -> Grid:
 
 
 def _between(state: State, peaks: _Peaks) -> Array:
-    """Cam angles between the points at which a limit is exceeded more than at them."""
+    """Cam angles between the points, rad, at which the utilisation of a limit has a peak above that
+    at the points by more than a share of the reserve; empty where none has.
+    """
     angles: list[Array] = []
     for name, value in peaks.uses.items():
         bound = max(1.0 - 0.5 * RESERVE, state.utilisation[name] + 0.2 * RESERVE)
@@ -112,6 +119,9 @@ def _between(state: State, peaks: _Peaks) -> Array:
 
 
 def _design(search: Search, descent: Descent, steps: int, peaks: _Peaks) -> Design:
+    """Design of the last state of a search, its energy raised where it is below the least between
+    the points.
+    """
     state, theta, points = descent.state, search.turn.theta, search.problem.points
     # Between the points the energy may dip below its least value by their spacing squared.
     rise = search.problem.energy[0] - lowest(state.coefficients)
@@ -145,7 +155,7 @@ def _design(search: Search, descent: Descent, steps: int, peaks: _Peaks) -> Desi
 
 
 def _multipliers(descent: Descent) -> dict[str, float]:
-    """Sum of the multipliers of each limit."""
+    """Multiplier of each limit by name: sum over its rows; those next to zero left out."""
     model, program = descent.model, descent.program
     if model is None or program is None:
         return {}

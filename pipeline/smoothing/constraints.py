@@ -62,6 +62,9 @@ def _utilisations(
     ratings: Ratings,
     names: Container[str] | None,
 ) -> Mapping[str, Array | Mean]:
+    """Utilisations by name of those constraints that the ratings bound; `names`: of these alone,
+    None: of all.
+    """
     uses: dict[str, Array | Mean] = {}
     for each in constraints:
         if names is not None and each.name not in names:
@@ -76,10 +79,10 @@ def _utilisations(
 def constraints_of(
     checks: Iterable[Declaration],
 ) -> tuple[tuple[Constraint[LoadedCam], ...], tuple[Constraint[ScenarioCam], ...]]:
-    """Constraints on shape and on loads, from the checks declared as kept.
+    """Constraints on the unloaded shape, then those on the loads, from the checks declared as kept.
 
-    Of a group one with each kind of follower; of the checks at maximum lift that of the spring
-    travel, which `travel_limits` bounds.
+    Of a group one constraint for each kind of follower; of the checks at maximum lift that of the
+    spring travel alone, whose bound is the least of `travel_limits`.
     """
     shape: list[Constraint[LoadedCam]] = []
     loads: list[Constraint[ScenarioCam]] = []

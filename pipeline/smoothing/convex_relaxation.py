@@ -87,7 +87,11 @@ def convex_start(problem: Problem) -> Core | None:
 
 
 def _program(search: Search) -> Cones:
-    """Unknowns: coefficients over their scale, the ripple, and sigma / P at each point."""
+    """Cone program of the convex problem.
+
+    Unknowns: coefficients over their scale, the ripple, and at each point sigma / P, which is at
+    most the spring force over that at zero lift.
+    """
     problem, variables, ratings = search.problem, search.problem.variables, search.problem.ratings
     count, points = problem.coefficients, problem.points
     theta = uniform_turn(points)
@@ -130,7 +134,9 @@ def _program(search: Search) -> Cones:
 
 
 def _ripple(search: Search, program: Cones) -> None:
-    """Add the greatest weighted ripple, and the jerk of the energy in place of that of the lift."""
+    """Add to the cost of a program the greatest weighted ripple and the weighted jerk of the
+    energy, which stands for that of the lift.
+    """
     problem = search.problem
     count = problem.coefficients
     slope, third = (

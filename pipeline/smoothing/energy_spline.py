@@ -80,7 +80,9 @@ def basis_rows(
 def _rows(
     theta: ArrayLike, count: int, derivatives: Sequence[int], lobes: int
 ) -> tuple[Array, NDArray[np.intp]]:
-    """As `basis_rows`, of several derivatives (d,): (d, n, 6)."""
+    """Non-zero entries (d, n, 6) of d derivatives of the B-splines at cam angles (n,), rad, and
+    their columns (n, 6).
+    """
     if not count >= LEAST_COEFFICIENTS:
         raise InputError("smoothing.coefficients", count, f">= {LEAST_COEFFICIENTS}")
     angle = np.mod(lobes * finite("theta", theta), FULL_TURN)
@@ -140,7 +142,8 @@ class Grid:
 
 
 def reversals(turn: Grid, coefficients: Array, lobes: int) -> Grid:
-    """Reversal angles of the follower, each approached from both sides, (2 r,).
+    """Cam angles at which the follower reverses (E' = 0), by Newton's method, each twice, as
+    approached from either side (2 r,).
 
     The angles move with the coefficients: E' stays zero, so that the entries are total derivatives,
     B^(k) - E^(k+1)/E'' B'. Reversals of next to no curvature, as in a dwell, are left out.

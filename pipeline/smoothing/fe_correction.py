@@ -263,7 +263,7 @@ def shares(changes: Array) -> Array:
 
 
 def _mixed(corrections: Sequence[Correction], weights: Array) -> Correction:
-    """Weighted mean of corrections at equal cam angles."""
+    """Mean of corrections at equal cam angles, weighted by `weights` (m,)."""
     mean, total = corrections[0], float(weights[0])
     for one, weight in zip(corrections[1:], weights[1:], strict=True):
         total += float(weight)
@@ -272,7 +272,9 @@ def _mixed(corrections: Sequence[Correction], weights: Array) -> Correction:
 
 
 def corrections_of(solved: Solution) -> dict[str, Correction]:
-    """Finite-element corrections of a solution, by load case."""
+    """Corrections by load case: results of the finite elements of a solved cam over those of closed
+    forms, with the surge over the speed range.
+    """
     swept = {sweep.preload: _at_least_force(solved, sweep) for sweep in solved.speed_sweeps}
     guides = zip(GUIDES, solved.machine.guides.both, strict=True)
     left = [
@@ -312,7 +314,8 @@ def _at_least_force(solved: Solution, sweep: SpeedSweep) -> Correction:
 
 
 def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float]]) -> Correction:
-    """Results of a cycle over closed forms (n,), and the surge at its speed.
+    """Correction of a load case: results of its cycle over closed forms (n,), and the surge at its
+    speed.
 
     Parameters
     ----------
@@ -352,7 +355,9 @@ class _Statics(NamedTuple):
 
     @classmethod
     def of(cls, loads: Loads, spacing: float, both: tuple[Array, Array]) -> _Statics:
-        """From the loads on the stem."""
+        """Magnitudes of the support loads `both` (A, B), and of those by side force and couple each
+        alone.
+        """
         side, couple = np.abs(loads.tangential_force), np.abs(loads.end_moment) / spacing
         lever_a, lever_b = levers(loads.overhang, spacing)
         on_a, on_b = (np.abs(each) for each in both)

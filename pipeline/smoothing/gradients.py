@@ -116,7 +116,9 @@ def _steps(at: Point, step: complex, freed: bool) -> list[Point]:
 
 
 def _step(at: Point, place: int, step: complex) -> Point:
-    """The point with a step in one argument."""
+    """The arguments with a step added to one of them; place : E to E''' first, then maximum lift,
+    then k, P, r0.
+    """
     orders = len(at.energy)
     if place < orders:
         part = np.asarray(at.energy[place] + step)

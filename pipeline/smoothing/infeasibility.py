@@ -142,7 +142,8 @@ def _with_margin(problem: Problem, margin: float) -> Problem:
 def _conflicting(
     problem: Problem, names: list[str], *, needed: bool = False
 ) -> tuple[list[str], Problem]:
-    """Names of a group of limits that conflict with the rest, and the problem without the others.
+    """Names of those of a group of limits that conflict with the others, and the problem without
+    the rest of the group; by halving the group.
 
     Parameters
     ----------
@@ -194,7 +195,9 @@ def _ripple_over_ceilings(problem: Problem) -> Problem | None:
 
 
 def _candidates(problem: Problem, conflict: list[str]) -> list[_Candidate]:
-    """Single changes to try: bounds of the conflict, then spring and prime radius."""
+    """Single changes that may make a problem feasible: bound of a limit in conflict, spring rate,
+    preload, prime radius.
+    """
     candidates = [
         _Candidate(
             bound.words,
@@ -223,6 +226,8 @@ def _with_ratings(relaxed: bounds.Change) -> Change:
 
 
 def _with_variable(name: str) -> Change:
+    """Change that multiplies a variable of the design by a factor."""
+
     def change(problem: Problem, factor: float) -> Problem:
         value = getattr(problem.variables, name) * factor
         return replace(problem, variables=replace(problem.variables, **{name: value}))
@@ -231,7 +236,9 @@ def _with_variable(name: str) -> Change:
 
 
 def _smallest(problem: Problem, tried: _Candidate, margin: float) -> Relaxation | None:
-    """Smallest feasible change times a margin; None up to the maximum factor."""
+    """Smallest factor of a change with which a cam keeps all limits, by bisection, times a margin;
+    None where not even the greatest factor does.
+    """
     low, high = 1.0, tried.factor_max
     if high <= margin or not _feasible(tried.change(problem, high**tried.direction)):
         return None
@@ -253,10 +260,11 @@ def _smallest(problem: Problem, tried: _Candidate, margin: float) -> Relaxation 
 def _from_catalogue(
     problem: Problem, rollers: Iterable[tuple[str, Problem]], relaxations: list[Relaxation]
 ) -> list[Relaxation]:
-    """First roller of a catalogue with a feasible cam.
+    """First roller of a catalogue with which a cam keeps all limits, as a relaxation; empty without
+    one.
 
-    Rollers rated far below the necessary force are skipped. The threshold is below that force,
-    as a larger roller lowers the pressure angle.
+    Rollers rated far below the necessary force are skipped. The threshold is below that force, as a
+    larger roller lowers the pressure angle.
     """
     force = problem.ratings.bounds.get(NORMAL_FORCE)
     if force is None:
@@ -278,7 +286,8 @@ def _replaced_by(other: Problem) -> Change:
 
 
 def _less_reduction(problem: Problem, fine: Problem, margin: float) -> list[Relaxation]:
-    """Torque ripple reduction feasible within the other limits: the greatest one required.
+    """Relaxation of the required ripple reduction to the greatest one that a cam within the other
+    limits reaches, less a margin; empty where no cam keeps the others.
 
     Less than the one required by the margin at least, which a coarse problem may seem to keep.
 

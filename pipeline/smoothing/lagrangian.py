@@ -127,7 +127,9 @@ def lagrangian_curvature(
 def _of_rows(
     search: Search, state: State, summit: Summit, priced: Sequence[tuple[Linear, Array]]
 ) -> Array:
-    """Of limits at single angles, each row alone with its own limit."""
+    """Part of the Hessian (size, size) from limits at single cam angles, each row with its own
+    multiplier.
+    """
     total = np.zeros((search.size, search.size))
     for names in search.families(limit.name for limit, _ in priced):
         pairs = [pair for pair in priced if pair[0].name in names]
@@ -152,7 +154,7 @@ def _of_rows(
 def _of_means(
     search: Search, state: State, here: Model, priced: Sequence[tuple[Linear, Array]]
 ) -> Array:
-    """Of limits and costs from means over the turn."""
+    """Part of the Hessian (size, size) from limits and costs that are means over the turn."""
     summit = here.summit
     total = np.zeros((search.size, search.size))
     by_name = {name: np.zeros(rows.size) for name, rows in state.means.items()}
@@ -179,7 +181,9 @@ def _of_means(
 def _of_ripples(
     search: Search, state: State, summit: Summit, model: Model, program: ConeSolution
 ) -> Array:
-    """Of the delivered torque, weighted by the slope of the ripples by the crank torque."""
+    """Part of the Hessian (size, size) from the curvature of the delivered torque, weighted by the
+    slope of the ripples with it.
+    """
     problem, variables = search.problem, state.variables
     left = search.residual_torque(state)
     slope = np.zeros_like(left)
@@ -217,7 +221,9 @@ def _of_ripples(
 def _assembled(
     search: Search, state: State, summit: Summit, second: Array, points: NDArray[np.intp]
 ) -> Array:
-    """Second derivatives by the scaled unknowns from those (q, q, m) at angles (m,) of the grid."""
+    """Hessian (size, size) in the scaled unknowns from second derivatives (q, q, m) by the local
+    arguments (E to E''', maximum lift, k, P, r0) at angles `points` (m,) of the grid.
+    """
     size, orders = search.size, state.grid.entries.shape[0]
     entries = search.scale * state.grid.entries[:, points]
     columns = state.grid.columns[points]

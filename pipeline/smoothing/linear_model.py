@@ -85,7 +85,9 @@ class Model(NamedTuple):
     slope: Array
 
     def slopes_of(self, name: str, scenarios: NDArray[np.intp]) -> Array | None:
-        """Derivatives of the means of a limit in some scenarios, rising; None: not in the model."""
+        """Derivatives (m, size) of the means of a limit in `scenarios`, which rise; None where the
+        model lacks one.
+        """
         if name not in self.means:
             return None
         modelled, slopes = self.means[name]

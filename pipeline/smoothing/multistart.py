@@ -202,7 +202,9 @@ def _best(designs: Sequence[Design]) -> Design | None:
 
 
 def _random(problem: Problem, size: float, random: np.random.Generator) -> Problem:
-    """The problem with a smooth random energy of a size, J, and random free variables as start."""
+    """Problem whose search starts from a smooth random energy of about `size`, J, and random values
+    of the free variables.
+    """
     count = problem.coefficients
     order = np.arange(1, count // 4)
     theta = uniform_turn(count)
@@ -219,7 +221,7 @@ def _random(problem: Problem, size: float, random: np.random.Generator) -> Probl
 
 
 def refined(coefficients: Array, count: int) -> Array:
-    """Least-squares coefficients (count,) of an energy on finer splines."""
+    """Coefficients (count,), J, of an energy on more splines, by least squares."""
     theta = uniform_turn(8 * count)
     level = basis_matrix(theta, count)
     energy = basis_matrix(theta, coefficients.size) @ coefficients

@@ -134,7 +134,7 @@ def harmonics(orders: Iterable[int]) -> Residual:
 
 
 def torque_integral(values: Array) -> Array:
-    """Zero-mean integral of periodic columns (n, ...) over the cam angle."""
+    """Integral of periodic columns (n, ...) over the cam angle, less its mean; by Fourier series."""
     spectrum = np.fft.rfft(values, axis=0)
     order = np.arange(spectrum.shape[0]).reshape(-1, *[1] * (spectrum.ndim - 1))
     spectrum = np.divide(spectrum, 1j * order, out=np.zeros_like(spectrum), where=order > 0)
@@ -147,7 +147,9 @@ def _loss(at: Turning) -> Mean:
 
 
 def _spring_energy(at: Turning) -> Array:
-    """F_s^2/(2 k), the preload included; of another spring that beyond zero lift and P^2/(2 k)."""
+    """Cost: energy of the spring, F_s^2/(2 k) with that of the preload, over the energy swing of
+    the engine; of a spring that is not linear, the work from zero lift and P^2/(2 k).
+    """
     rate = at.variables.rate * at.loads.scenario.rate_factor
     if at.variables.shape is not None:
         preload = at.variables.preload * at.loads.scenario.preload_factor
@@ -257,7 +259,9 @@ def residuals(objective: Objective, item: Scenario, values: Array) -> Array:
 
 
 def residuals_slope(objective: Objective, item: Scenario, values: Array) -> Array:
-    """Gradient (n,) of the norm of `residuals` by the crank torque (n,), N m."""
+    """Gradient (n,), 1/(N m), of the norm of `residuals` by the crank torque (n,), N m; zero where
+    the norm is.
+    """
     slope, square = np.zeros_like(values), 0.0
     for each in objective:
         if isinstance(each.term, Residual):

@@ -53,7 +53,12 @@ def _edge_use(side: Side, at: ScenarioCam, limit: float) -> Array:
 
 
 def _swept_force(at: ScenarioCam, limit: float) -> Array:
-    """At the speed with the least force of the solved cam, with its surge; first the fastest."""
+    """Utilisation of the least contact force in the speed range, 1 where it is `limit` times the
+    least spring force.
+
+    At the speed at which the solved cam has the least force, with its surge there; before a solved
+    cam, at the greatest speed without surge.
+    """
     fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
     push = at.closing + fix.swept_surge
@@ -64,7 +69,9 @@ def _swept_force(at: ScenarioCam, limit: float) -> Array:
 
 
 def _elastic_contact(at: ScenarioCam, limit: float) -> Array:
-    """As `_swept_force`, without friction, with the change by the elastic stem."""
+    """Utilisation of the least contact force with an elastic stem, as `_swept_force`, without
+    friction.
+    """
     fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
     inertia = (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.lift_d2
@@ -73,6 +80,9 @@ def _elastic_contact(at: ScenarioCam, limit: float) -> Array:
 
 
 def _keyway_root(at: ScenarioCam, limit: float) -> Array | None:
+    """Utilisation (..., n) of the keyway root by torque, normal force and wall over the keyway;
+    None without a keyway that closed forms judge.
+    """
     keyway = at.ratings.keyway
     if keyway is None:
         return None
@@ -82,10 +92,11 @@ def _keyway_root(at: ScenarioCam, limit: float) -> Array | None:
 
 
 def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
-    """Equivalent load over that at the life of the grease, both at the mean speed.
+    """Utilisation of the grease life: equivalent load over the load at which the grease lasts for
+    the target, at the mean roller speed; None without grease.
 
-    With a duty the factor on the rating at which the grease lasts, and in each load case the load
-    over the greatest one of the estimate.
+    With a duty: factor on the rating with which the grease lasts over the load cases together, and
+    in each of them the load over the greatest one of the estimate.
     """
     grease = at.ratings.grease
     if grease is None:

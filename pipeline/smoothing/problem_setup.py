@@ -145,7 +145,9 @@ def _objective(case: Case) -> Objective:
 
 
 def _scenarios(case: Case, machine: Machine) -> list[Scenario]:
-    """The load case and, where the case includes them, its tolerance corners."""
+    """Nominal scenario of a load case and, where the case asks for them, those of the tolerance
+    corners and of the ends of speed and load.
+    """
     points, torque = _points(case), machine.torque
     values = np.zeros(points)  # at rest the engine has no torque
     if torque is not None:
@@ -169,7 +171,8 @@ def _scenarios(case: Case, machine: Machine) -> list[Scenario]:
 
 
 def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
-    """Ends of the range of speed and load of a load case, weighted; none above the over-speed.
+    """Scenarios at the ends of the stated range of speed and load of a load case, none above the
+    over-speed; each weighted.
 
     The load is a factor on the intake pressure of a cylinder model, else on the engine torque.
     """
@@ -201,7 +204,9 @@ def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
 
 
 def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Scenario]:
-    """All combinations of the tolerances of spring and friction; mass and phase one at a time."""
+    """Scenarios at all combinations of the tolerances of spring rate, preload and friction; those
+    of mass and phase one at a time.
+    """
     spring, tolerances = case.spring, case.tolerances
     # Both guides share their lubrication.
     frictions = dict.fromkeys((friction.least, friction.greatest))

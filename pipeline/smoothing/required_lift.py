@@ -20,7 +20,8 @@ _TORQUE_ROUND_OFF = 1e-9  # of the torque
 
 
 def cam_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None = None) -> Lift:
-    """Lift of a case: stated, or required by the smoothed engine torque.
+    """Lift of a case: that which the case states, or the one required by the smoothed engine
+    torque.
 
     Parameters
     ----------

@@ -138,6 +138,9 @@ class Search:
         return self.problem.coefficients + len(self.problem.freed)
 
     def _exact(self) -> Array:
+        """Coefficients, J, of the energy that balances the torque of the scenario of greatest
+        weight within travel and pressure angle; see `exact_start`.
+        """
         problem, variables = self.problem, self.problem.variables
         first = max(problem.scenarios, key=lambda item: item.weight)
         torque = problem.gear_ratio * first.torque
@@ -196,7 +199,7 @@ class Search:
         return self._last[1]
 
     def summit(self, state: State) -> Summit:
-        """Maximum lift at a state with its derivatives."""
+        """Maximum lift at a state, m, with its derivatives by coefficients and free variables."""
         peaks = self._peaks(state.coefficients)
         at = Point(peaks.energy(state.coefficients), 0.0, state.variables)
         lift = differentiated(_lift, at, self.freed)["lift"]
@@ -205,7 +208,9 @@ class Search:
         )
 
     def _lower_peaks(self, state: State) -> list[Linear]:
-        """Other peaks, no higher than that of the maximum lift, whose slope the models have."""
+        """Linear rows that keep the other peaks of the lift below the highest one, whose
+        derivatives the models have.
+        """
         peaks = self._peaks(state.coefficients)
         energy = peaks.energy(state.coefficients)[0][1:] - peaks.energy(state.coefficients)[0][0]
         count = energy.size
@@ -233,7 +238,9 @@ class Search:
         return bool(self.problem.freed)
 
     def stack(self, grid: Grid, variables: DesignVariables) -> Scenario:
-        """Stacked scenarios with their corrections at the angles of a grid."""
+        """All scenarios as one (s, n), with torques and corrections at the angles of a grid,
+        advanced by the phase.
+        """
         phase = float(variables.phase)
         if grid is not self.grid:
             return stacked(self.problem.scenarios, grid.theta + phase)
@@ -242,7 +249,9 @@ class Search:
         return self._stacks[phase]
 
     def _angles(self, coefficients: Array, variables: DesignVariables) -> tuple[Grid, Scenario]:
-        """Angles of the limits, with the reversals where loads jump, and the scenarios there."""
+        """Splines and stacked scenarios at the angles of the limits; where loads jump at a
+        reversal, its angle is added, from either side.
+        """
         stack = self.stack(self.grid, variables)
         if not self._jumps:
             return self.grid, stack
@@ -262,7 +271,9 @@ class Search:
     def function(
         self, names: frozenset[str], state: State, take: Callable[[Array], Array]
     ) -> Function:
-        """Function of the limits on shape, or of limits on loads and costs, in some scenarios."""
+        """Function of jet, maximum lift and variables that gives the limits `names` by name: of
+        shape, or of loads and costs in the scenarios that `take` selects from the stacked arrays.
+        """
         if names <= SHAPE_LIMITS:
             return self.shape(names)
         stack = taken(state.stack, take)
@@ -329,7 +340,9 @@ class Search:
     def utilisations(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
-        """Greatest of the scenarios at the angles of a uniform grid, (n,); (1,) for means."""
+        """Utilisation of each limit by name: the greatest over the scenarios at each angle of a
+        uniform grid (n,); (1,) for a mean over the turn.
+        """
         loads = self._loaded(coefficients, variables, grid, self.stack(grid, variables))
         pointwise, means = self._uses(loads, variables, grid.theta.size)
         worst = {name: value.max(axis=0) for name, value in pointwise.items()}
@@ -338,7 +351,9 @@ class Search:
     def pointwise(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
-        """Greatest of the scenarios at cam angles, (n,), for the pointwise limits."""
+        """Utilisation of each limit at single angles by name: the greatest over the scenarios at
+        the cam angles of a grid (n,).
+        """
         loads = self._loaded(coefficients, variables, grid, self.stack(grid, variables))
         values, _ = self._uses(loads, variables, 0)
         limits = values.keys() - self.costs
@@ -359,7 +374,9 @@ class Search:
     def _uses(
         self, loads: ScenarioCam, variables: DesignVariables, points: int
     ) -> tuple[dict[str, Array], dict[str, Mean]]:
-        """Utilisations (s, n) at the angles of a grid; means over its first points."""
+        """Utilisations and costs by name: of single angles (s, n) at a grid; then those that are
+        means over the first `points` angles, none with 0.
+        """
         shape = self.shape()(loads.jet, np.nan, variables)  # the maximum lift does not matter
         charged = self._charged(self.costs, self._weights, loads, variables)
         pointwise: dict[str, Array] = {}
@@ -376,7 +393,7 @@ class Search:
         return pointwise, means
 
     def state(self, coefficients: Array, variables: DesignVariables) -> State:
-        """State at coefficients, J, and variables."""
+        """State of the search: ripples, costs and utilisations at coefficients, J, and variables."""
         problem = self.problem
         grid, stack = self._angles(coefficients, variables)
         loads = self._loaded(coefficients, variables, grid, stack)
@@ -418,7 +435,7 @@ class Search:
         )
 
     def residual_torque(self, state: State) -> Array:
-        """Crank torque with the cam (w, n), N m, of each scenario whose ripple counts."""
+        """Crank torque that is left with the cam (w, n), N m, in each scenario whose ripple counts."""
         coefficients, variables = state.coefficients, state.variables
         jet = lift_jet(self.turn.energy(coefficients), variables)
         top, stack = self.highest(coefficients, variables), self._weighted_stack(state)
@@ -426,7 +443,9 @@ class Search:
         return self._engine(variables) - cam / self.problem.gear_ratio
 
     def _engine(self, variables: DesignVariables) -> Array:
-        """Engine torque of the weighted scenarios at the points of the turn, (w, n)."""
+        """Engine torque of the weighted scenarios at the points of the turn (w, n), N m, by the
+        phase of the cam.
+        """
         phase = float(variables.phase)
         if phase not in self._engines:
             items = [self.problem.scenarios[k] for k in self.weighted]
@@ -435,7 +454,9 @@ class Search:
         return self._engines[phase]
 
     def near(self, state: State) -> dict[str, NDArray[np.bool_]]:
-        """Masks of near-active rows by limit, without those far behind another scenario."""
+        """Which utilisations at single angles, by limit (s, n), are near their limit and not far
+        below that of another scenario at the same angle.
+        """
         rows = {}
         for name, value in state.pointwise.items():
             level = self.level(name, value)
@@ -444,7 +465,7 @@ class Search:
         return rows
 
     def near_means(self, state: State) -> dict[str, NDArray[np.bool_]]:
-        """Masks of near-active utilisations from means."""
+        """Which utilisations from means, by limit (r,), are near their limit."""
         rows = {}
         for name, value in state.means.items():
             level = self.level(name, value)
@@ -454,7 +475,9 @@ class Search:
         return rows
 
     def model(self, state: State) -> Model:
-        """Models of the ripples and of the limits near them, at a state."""
+        """Linear models, at a state, of the ripples, of the limits that are nearly reached and of
+        the jerk.
+        """
         summit = self.summit(state)
         at = self.point(state, 0.0, self.every)
         gradient = differentiated(_jerk, at, self.freed)["jerk"]
@@ -477,7 +500,9 @@ class Search:
         return np.flatnonzero(greatest | (state.excess >= most - _RIPPLE_BEHIND))
 
     def norms(self, state: State, summit: Summit, wanted: NDArray[np.intp]) -> list[Norm]:
-        """Models of the ripples of some of the weighted scenarios."""
+        """Models of the ripples of some scenarios, `wanted` being their numbers among the weighted
+        ones.
+        """
         problem, variables = self.problem, state.variables
         at = self.point(state, summit.lift, self.every)
         gradient = differentiated(self.torque(state, wanted), at, self.freed)["torque"]
@@ -504,7 +529,9 @@ class Search:
         return norms
 
     def _dense(self, local: Array, shared: Array, state: State, summit: Summit) -> Array:
-        """Derivatives (n, size) of values at the points of the turn."""
+        """Derivatives (n, size), by the scaled unknowns, of values at the points of the turn;
+        local, shared: see `Gradient`.
+        """
         entries, columns = self._entries(self.every, local, shared, state, summit)
         dense = np.zeros((self.every.size, self.size))
         np.add.at(dense, (self.every[:, None], columns), entries)
@@ -550,7 +577,9 @@ class Search:
     def rows(
         self, state: State, summit: Summit, wanted: Mapping[str, NDArray[np.bool_]]
     ) -> list[Linear]:
-        """Linear models of the wanted rows, (s, n) by limit."""
+        """Linear models of limits at single angles; `wanted`: by limit, which scenarios and angles
+        (s, n).
+        """
         models = []
         for names in self.families(name for name, rows in wanted.items() if rows.any()):
             any_row = np.any(np.broadcast_arrays(*(wanted[name] for name in names)), axis=0)
@@ -579,7 +608,9 @@ class Search:
     def means(
         self, state: State, summit: Summit, wanted: Mapping[str, NDArray[np.bool_]]
     ) -> tuple[list[Linear], dict[str, tuple[NDArray[np.intp], Array]]]:
-        """Linear models of the wanted utilisations from means, (r,) by limit; see `Model.means`."""
+        """Linear models of utilisations from means, and the derivatives of the means, see
+        `Model.means`; `wanted`: by limit, which utilisations (r,).
+        """
         models, slopes = list[Linear](), {}
         for names in self.families(name for name, rows in wanted.items() if rows.any()):
             turn = self.of_means(state, summit, {name: wanted[name] for name in names})
@@ -614,6 +645,9 @@ class Search:
         return self._means_slopes(gradient, state, summit)
 
     def _means_slopes(self, gradient: Gradient, state: State, summit: Summit) -> Array:
+        """Derivatives (m, size), by the scaled unknowns, of the means over the turn of terms (m,
+        n).
+        """
         slopes = np.zeros((gradient.terms.shape[0], self.size))
         for each, local in zip(slopes, np.moveaxis(gradient.local, 1, 0), strict=True):
             np.add.at(each, self.turn.columns, self.scale * self.turn.chained(local))
@@ -638,9 +672,10 @@ class Search:
         )
 
     def new_reversals(self, state: State, there: State) -> NDArray[np.intp]:
-        """Points whose direction of motion changes by a stroke new in another state.
+        """Numbers of the points at which the follower moves the other way in another state, by a
+        stroke that the first one does not have.
 
-        Where a reversal of the state has moved, the points it has passed do not count.
+        Points that an existing reversal has passed in moving do not count.
         """
         sides = [self.turn.energy(each.coefficients)[1] > 0.0 for each in (state, there)]
         flipped = np.flatnonzero(sides[0] != sides[1])
@@ -656,7 +691,7 @@ class Search:
         return np.concatenate([*new, np.zeros(0, dtype=np.intp)]) % self.every.size
 
     def kept_sides(self, state: State, points: NDArray[np.intp]) -> list[Linear]:
-        """The sign of the slope of the lift at points, which a step is to keep."""
+        """Linear rows by which a step keeps the sign of the slope of the lift at some points."""
         if not points.size:
             return []
         slope = self.turn.energy(state.coefficients)[1]
@@ -672,6 +707,9 @@ class Search:
         ]  # fmt: skip
 
     def _least_energy(self, state: State) -> list[Linear]:
+        """Linear rows of the least energy at each point near it, and of the greatest initial
+        energy, where it is bounded.
+        """
         low, high = self.problem.energy
         energy = self.turn.energy(state.coefficients)[0]
         entries, columns = self.turn.entries[0], self.turn.columns

@@ -78,7 +78,9 @@ class Ratings:
         return replace(self, bounds={**self.bounds, key: self.bounds[key] * factor})
 
     def least(self, limits: Mapping[str, Mapping[str, float]]) -> Ratings:
-        """Ratings with the lowest limit of several checks by key; keys without one are dropped."""
+        """Ratings with, by key, the lowest of the limits of several checks; a key without a limit
+        is dropped.
+        """
         by = {key: min(each, key=lambda name: each[name]) for key, each in limits.items() if each}
         least = {key: float(limits[key][name]) for key, name in by.items()}
         others = {key: value for key, value in self.bounds.items() if key not in limits}

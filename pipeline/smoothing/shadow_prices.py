@@ -188,7 +188,9 @@ def _of_phase(design: Design, of: str) -> MachinePriceRecord:
 
 
 def _changed(number: MachineNumber, case: Case) -> tuple[Case, float]:
-    """Case with a number changed by a small share, and the share; smaller at its upper bound."""
+    """Case with a number changed by a small share, and that share; negative where the number is at
+    its upper bound.
+    """
     step = _PRICE_STEP * number.value(case)
     try:
         return number.increased(case, step), _PRICE_STEP
@@ -224,12 +226,14 @@ def objective(design: Design, problem: Problem) -> str:
 def prices(design: Design, problem: Problem) -> list[PriceRecord]:
     """Shadow prices of the active limits, greatest first; none for an unconverged design.
 
-    The price is the decrease of the crank-torque ripple (std, N m) per unit of the limit, to
-    first order: the multiplier times the slope of the utilisation. With costs or a jerk
-    weight it is that of their sum, the objective. Of the utilisation of the contact
-    pressure, r kappa + N/F_lim, only the second part depends on the limit, by its square;
-    its mean over the active angles is taken, as of the PV value of a face. A mean over the turn
-    has no active angles.
+    The price is the decrease of the crank-torque ripple (std, N m) per unit of the limit, to first
+    order: multiplier times engine ripple, N m, in which the objective is measured, times the slope
+    of the utilisation by the limit. With costs or a jerk weight it is that of their sum, the
+    objective.
+
+    Of the utilisation of the contact pressure, r kappa + N/F_lim, only the second part depends on
+    the limit, by its square; its mean over the active angles is taken, as of the PV value of a
+    face. A limit on a mean over the turn has no active angles.
 
     Parameters
     ----------
@@ -288,7 +292,9 @@ def _before(problem: Problem) -> float:
 
 
 def _load_share(design: Design, problem: Problem, name: str) -> float:
-    """N / F_lim of the contact pressure, mean over the active angles."""
+    """Part N / F_lim of the utilisation of the contact pressure, mean over the angles at which it
+    is active; 1 at none.
+    """
     theta, use = design.strip[name]
     binds = _binding(use)
     if not binds.any():
@@ -299,6 +305,7 @@ def _load_share(design: Design, problem: Problem, name: str) -> float:
 
 
 def _sentence(known: Bound, price: float, of: str) -> str:
+    """Sentence on what one more, or one less, of a bound takes off the objective `of`; price: N m."""
     shown = "" if known.unit == "-" else f" {known.unit}"
     if price < 0.0:
         one = f"one{shown} less" if shown else "one less"
@@ -313,7 +320,9 @@ def _binding(use: Array) -> NDArray[np.bool_]:
 
 
 def _ranges_record(theta: Array, use: Array) -> list[tuple[float, float]]:
-    """Active ranges of cam angle, deg."""
+    """First and last cam angle, deg, of each range in which a limit is active; none for a mean over
+    the turn.
+    """
     tight = _binding(use)
     if not tight.any() or np.ptp(use) == 0.0:
         return []

@@ -178,6 +178,7 @@ def smoothed(torque: ArrayLike, smoother: Smoother) -> Array:
 
 
 def _moving_average(smoother: Smoother, order: Array) -> Array:
+    """Transfer factor of a moving average of `points` values by harmonic order of the cycle."""
     step = 2.0 * np.pi / smoother.period.angle
     phase = order * step * smoother.spacing  # from one point to the next
     reach = smoother.points // 2
@@ -192,6 +193,9 @@ def _moving_average(smoother: Smoother, order: Array) -> Array:
 
 def _savitzky_golay(smoother: Smoother, order: Array) -> Array:
     # Fit to a continuous window: a polynomial in the Legendre basis, at the middle.
+    """Transfer factor of a Savitzky-Golay fit over a continuous window by harmonic order of the
+    cycle.
+    """
     step = 2.0 * np.pi / smoother.period.angle
     argument = 0.5 * smoother.points * smoother.spacing * order * step
     factor = np.zeros_like(order)
@@ -207,6 +211,7 @@ def _gaussian(smoother: Smoother, order: Array) -> Array:
 
 
 def _harmonic(smoother: Smoother, order: Array) -> Array:
+    """Transfer factor by harmonic order: 1 up to the last harmonic, then a cosine taper to 0."""
     share = order / smoother.harmonics
     if smoother.taper == 0:
         return np.where(share <= 1.0 + 1e-12, 1.0, 0.0)

@@ -99,7 +99,11 @@ def best_attempt(attempts: Sequence[Attempt]) -> int:
 
 
 def _end(attempts: Sequence[Attempt], room: int, cause: str) -> Next | Stop:
-    """Stop if the latest trial is the best; else repeat the best while trials are left."""
+    """Stop where the latest trial is the best or none is left; else the smoother of the best one,
+    as last trial.
+
+    room : trials left; cause : reason of the end, in words.
+    """
     best = best_attempt(attempts)
     latest, chosen = attempts[-1], attempts[best]
     is_best = best == len(attempts) - 1 or latest.smoother == chosen.smoother
@@ -113,7 +117,9 @@ def _end(attempts: Sequence[Attempt], room: int, cause: str) -> Next | Stop:
 
 
 def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
-    """Binding checks, their utilisation at trial 1 and now."""
+    """Reason of the end in words: cause, then each binding check with its utilisation at trial 1
+    and now.
+    """
     first = {check.id: check for check in attempts[0].checks}
     by_id = {check.id: check for check in latest.checks}
     parts, unknown = [cause], []
@@ -134,6 +140,9 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
 
 
 def _reached(attempts: Sequence[Attempt]) -> str:
+    """Why no smoother passes, in words: torque reduction lost at once, or the other checks fail up
+    to the widest one that keeps it.
+    """
     if not any(keeps_torque(item.checks) for item in attempts):
         failed = any(c.status == "fail" for c in attempts[0].checks if c.id == TORQUE_REDUCTION.id)
         state = "fails" if failed else "is not evaluated"
@@ -149,6 +158,7 @@ def _reached(attempts: Sequence[Attempt]) -> str:
 
 
 def _why(latest: Attempt, candidate: Smoother) -> str:
+    """Reason for the next smoother in words."""
     change = f"{latest.smoother.width_in_words}; next: {candidate.width_in_words}"
     if not keeps_torque(latest.checks):
         return f"{TORQUE_REDUCTION.id} is lost at {change}"

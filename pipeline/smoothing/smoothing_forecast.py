@@ -38,9 +38,10 @@ def keeps_torque(checks: Sequence[Check]) -> bool:
 
 
 def score(checks: Sequence[Check]) -> Score:
-    """Order of forecasts: torque reduction lost; failures, worst utilisation; missing data.
+    """Score of checks, the least is best: whether the torque reduction is lost, number of failing
+    checks, their worst utilisation, number without data.
 
-    The least score is the best: a failed check is worse than any number of missing data.
+    A failed check is worse than any number of missing data.
     """
     blocking = [check for check in checks if check.blocks]
     failing = [check for check in blocking if check.status == "fail"]
@@ -112,7 +113,11 @@ def _score(
     known: Sequence[tuple[Attempt, Mapping[str, Check]]],
     candidate: Mapping[str, Check],
 ) -> Score:
-    """Score of the forecast checks of a smoother; known: trials and their own forecasts."""
+    """Score of the forecast checks of a smoother, each that of the nearest trial corrected by the
+    change of the forecast.
+
+    known : trials with the forecasts of their own smoothers.
+    """
     if not candidate:
         return (True, sys.maxsize, math.inf, sys.maxsize)
     if not known:  # no trial so far had a cam
@@ -124,9 +129,10 @@ def _score(
 
 
 def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, Check]) -> Check:
-    """A trial's check plus the difference of two forecasts; unchanged without a forecast.
+    """Check of a trial, its demand changed by the difference of the forecasts of `candidate` and of
+    the trial (`own`); unchanged without a forecast.
 
-    The demand at its tolerance corner moves as that of the nominal cam, in proportion.
+    The demand at its tolerance corner changes in proportion.
     """
     there, here = candidate.get(check.id), own.get(check.id)
     if there is None or here is None:
@@ -139,7 +145,7 @@ def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, C
 
 
 def _with_margin(check: Check) -> Check:
-    """The check with its demand moved towards the limit by the margin."""
+    """Check with its demand moved towards, or beyond, its limit by a share `MARGIN` of the limit."""
     if check.demand is None or check.limit is None:
         return check
     side = 1.0 if check.sense == "at_most" else -1.0
@@ -147,7 +153,7 @@ def _with_margin(check: Check) -> Check:
 
 
 def _moved(check: Check, by: float) -> Check:
-    """The check with another demand, and another one at its tolerance corner."""
+    """Check with its demand increased by `by`, SI, and that at its tolerance corner in proportion."""
     demand, corner = float(check.demand or 0.0), check.corner_demand
     if corner is not None:
         corner += by * (abs(corner / demand) if demand else 1.0)

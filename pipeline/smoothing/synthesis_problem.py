@@ -218,7 +218,9 @@ def ripple_of(problem: Problem, item: Scenario, values: Array) -> Array:
 
 
 def torque_slope(item: Scenario, values: Array) -> Array:
-    """Gradient (n,) of the norm of `torque_ripple` by the crank torque (n,)."""
+    """Gradient (n,), 1/(N m), of the norm of `torque_ripple` by the crank torque (n,), N m; zero
+    where the norm is.
+    """
     level = torque_ripple(item, values)
     size = float(np.linalg.norm(level))
     spread = np.sqrt(values.size) * float(np.std(item.torque))

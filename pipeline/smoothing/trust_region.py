@@ -208,9 +208,10 @@ def descended(
 def _nearer(
     search: Search, state: State, step: Array, there: State, penalty: float, ripple_weight: float
 ) -> State:
-    """Best of the end of a step, its middle and the least of the parabola of their merits.
+    """State of the least merit among the end of a step, its middle, and the minimum of the parabola
+    through their merits.
 
-    Where the curvature of the model is too small, steps fall to and fro across a valley.
+    Where the curvature of the model is too small, steps overshoot to and fro across a valley.
     """
     middle = search.state(*search.after(state, 0.5 * step))
     merits = [each.merit(penalty, ripple_weight) for each in (state, middle, there)]
@@ -234,7 +235,9 @@ def _stuck(search: Search, state: State, model: Model, share: float) -> bool:
 
 
 def _corrected(search: Search, model: Model, program: ConeSolution, there: State) -> Model:
-    """The model with levels that its rows have after the step: a second-order correction."""
+    """The model with the levels that its rows have after the step, less their linear change: a
+    second-order correction of the step.
+    """
     limits = []
     for each in model.limits:
         sampled = (each.point < there.grid.theta.size).all()  # reversals may end
@@ -274,9 +277,11 @@ def _convex(curvature: Array) -> Array:
 def _program(
     search: Search, state: State, model: Model, trust: float, penalty: float, ripple_weight: float
 ) -> tuple[ConeSolution | None, State, Model]:
-    """Solution within a trust region, the state there, and the model with the rows it needed.
+    """Solution of the cone program within a trust region (None: not solved), the state after its
+    step, and the model with the rows added.
 
-    Rows that the state there violates more than those of the model are added to it.
+    Rows outside the model that the state after the step violates more than those in it are added,
+    and the program is solved again.
     """
     # The box alone does not bound short waves, which a speed ripple does not contain.
     reach, box = Reach(search.root_hessian, trust), search.box(state, trust)
@@ -306,7 +311,9 @@ def _program(
 def _missing(
     search: Search, state: State, model: Model, program: ConeSolution, there: State
 ) -> Mapping[str, NDArray[np.bool_]]:
-    """Rows by limit that are violated by more than the rows of the model, and not in it."""
+    """Rows to be added to the model, by limit (s, n): violated at the state `there`, after the step
+    of the program, by more than any row of the model, the worst scenario of each angle.
+    """
     missing = {}
     for name, value in there.pointwise.items():
         level = search.level(name, value)[:, : state.grid.theta.size]  # reversals may begin
@@ -326,7 +333,10 @@ def _missing(
 
 
 def _missing_ripples(model: Model, program: ConeSolution, there: State) -> NDArray[np.intp]:
-    """Scenarios of the greatest ripple and over their ceiling the most, if not in the model."""
+    """Numbers of the scenarios whose ripple is to be added to the model: the one of greatest ripple
+    at the state `there`, after the step, and the one furthest above its ceiling, each only where it
+    is above what the program and the modelled ones have.
+    """
     modelled = [norm.number for norm in model.norms]
     allowed = (program.ripple, program.slack.get(TORQUE_REDUCTION.id, 0.0))
     missing = []

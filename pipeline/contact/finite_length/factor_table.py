@@ -266,7 +266,13 @@ class FactorTable:
         self._nodes[key] = computed if known is None else known.joined(computed)
 
     def _computed(self, key: tuple[int, int], moments: Array) -> _Node:
-        """Pressures of one half-width and line load at moments, from the disk cache or computed."""
+        """Node of the table, read from the disk cache or computed, for moments over force and
+        length (k,), >= 0.
+
+        key : power of the ratio of neighbouring nodes of the half-width or, where results depend on
+        the load, of the curvature; then that of the line load. Cell edges, m, pressure along the
+        line over p0, and tilt over half-width squared times curvature, times the length of contact.
+        """
         line_load = _LOAD * _LOAD_RATIO ** key[1]
         per_curvature = 4.0 * line_load / (np.pi * self.pair.contact_modulus)
         if self._depends_on_load:

@@ -140,9 +140,11 @@ class CrownDesign(Displayed):
         return max(float(each.moment[0]) for each in solved)
 
     def line(self, crown: Crown, row: int, *, tilted: bool) -> AxialLine:
-        """Pressure along the contact with a crown at a row, of the worse end; half-spaces.
+        """Pressure over that of plane strain along the line of contact at one load state, of the
+        end with the greater one; by half-spaces.
 
-        Aligned, or under the greatest moment.
+        row : number of the state in `problem.states`; tilted : under the greatest moment, else
+        aligned.
         """
         states, lines = self.chosen.problem.states, []
         loads = states.curvature[[row]], states.force[[row]]
@@ -178,7 +180,10 @@ class CrownDesign(Displayed):
 
     @property
     def lives(self) -> list[CrownLife]:
-        """Load cycles to endurance of the bodies whose card has a line, over plane strain."""
+        """Life of each body, as a share of that under plane-strain pressure, without and with the
+        crown: the pressure ratio to the power of the endurance line of its material. Bodies without
+        a line are left out.
+        """
         straight, crowned = float(self.chosen.straight.max()), self.chosen.ratio
         costs: list[CrownLife] = []
         for body, card in self.machine.bodies.items():
@@ -241,7 +246,9 @@ class CrownDesign(Displayed):
         return self.chosen.family.crown(load) if np.isfinite(load) else None
 
     def columns(self) -> dict[Column, Array]:
-        """Drop table: y from the middle, drop, and drops at the ends of the range."""
+        """Drop table: y from the middle, m; drop of the crown, of the least and, if known, of the
+        greatest one within the ratio, m.
+        """
         crown = self.chosen.crown
         family = self.chosen.family
         y = np.append(0.5 * family.length * np.linspace(0.0, 1.0, _ROWS)[:-1], family.gauge)
@@ -384,6 +391,7 @@ def crown(
 
 
 def _kind(text: str) -> CrownKind:
+    """The text as a kind of crown; InputError if it is none."""
     for kind in KINDS:
         if kind == text:
             return kind
@@ -391,6 +399,9 @@ def _kind(text: str) -> CrownKind:
 
 
 def _require(case: Case, ratio: float, on: str | None, tolerance: float) -> None:
+    """InputError unless ratio, crowned body and tolerance, m, are in bounds and the case describes
+    the ends of both bodies.
+    """
     if not 0 < ratio < np.inf:
         raise InputError("ratio", ratio, "> 0")
     if on not in (None, "cam", case.facing.word):

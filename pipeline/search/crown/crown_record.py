@@ -113,7 +113,7 @@ def _range_words(design: CrownDesign) -> str:
 
 
 def _shape_record(design: CrownDesign) -> CrownShape | None:
-    """The crown in the units of its keys; None: straight."""
+    """The crown with its lengths in the units of its keys; None: straight."""
     chosen, shape = design.chosen, design.shape
     if shape is None:
         return None

@@ -93,10 +93,11 @@ class ContactStates:
 
     @property
     def governing(self) -> IntArray:
-        """Non-dominated load states of each load case (force, curvature, couple, tilt).
+        """Rows of the load states that no other of the same load case exceeds in force, curvature,
+        couple and tilt alike.
 
-        The pressure grows with each of them: the greatest of a load case is at one of them.
-        Of more than 16 rows of a load case those evenly between them, and the greatest p0, force,
+        The pressure grows with each of these: the greatest of a load case is at one of them. Of
+        more than 16 in a load case, 16 evenly between them, and those of the greatest p0, force,
         couple and forced tilt.
         """
         chosen = []
@@ -374,9 +375,11 @@ def _ladder(problem: CrownProblem, family: CrownFamily) -> list[float]:
 def _of_family(
     problem: CrownProblem, family: CrownFamily, ratio: float, straight: Array
 ) -> LeastCrown:
-    """Least crown of a family within a ratio, or that of the lowest ratio.
+    """Crown of least drop of a family within a ratio, or that of the lowest ratio where none is
+    within it.
 
-    The search holds the ratio at few states; each that violates it with the crown joins them.
+    The search evaluates few load states; after it, those that exceed the ratio at its crown are
+    added and it is repeated.
     """
     rows, aim = _governing(problem.states, straight), ratio
     while True:
@@ -413,17 +416,18 @@ class _CrownSearch:
         self._values: dict[float, float] = {}
 
     def at(self, load: float) -> float:
-        """Greatest ratio."""
+        """Greatest pressure ratio of the rows with the crown of a design load, N/m."""
         if load not in self._values:
             crown = self._family.crown(load)
             self._values[load] = float(self._problem.ratios(crown, self._rows).max())
         return self._values[load]
 
     def within(self, ratio: float) -> tuple[float, float]:
-        """Least and greatest design load within a ratio, about that of the lowest ratio.
+        """Least and greatest design load, N/m, of the crowns within a ratio, about that of the
+        lowest ratio.
 
-        The greatest is infinite beyond the ladder; both are that of the lowest ratio where it is
-        beyond the ratio.
+        The greatest is infinite where all loads tried above keep it; where even the lowest ratio is
+        too great, both are its load.
         """
         lowest = min(self._ladder, key=self.at)
         if not self.at(lowest) <= ratio:
@@ -445,7 +449,9 @@ class _CrownSearch:
         return least, np.inf
 
     def _crossing(self, outside: float, within: float, ratio: float) -> float:
-        """Design load of the ratio, on the side of `within`; of three digits if it is the least."""
+        """Design load, N/m, between one `outside` and one `within` the ratio at which the ratio is
+        reached; it keeps it, and is rounded to three digits where it is the least.
+        """
 
         def keeps(load: float) -> float | None:
             return load if self.at(load) <= ratio else None
@@ -457,7 +463,9 @@ class _CrownSearch:
         return rounded if self.at(rounded) <= ratio else within
 
     def _lowest(self) -> float:
-        """Design load of the lowest ratio, by golden sections about the least of the ladder."""
+        """Design load, N/m, of the lowest ratio, by golden sections between the neighbours of the
+        best load tried.
+        """
         best, last = min(self._ladder, key=self.at), len(self._ladder) - 1
         place = self._ladder.index(best)
         left, right = self._ladder[max(place - 1, 0)], self._ladder[min(place + 1, last)]

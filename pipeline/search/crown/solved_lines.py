@@ -77,7 +77,12 @@ class SolvedLines:
     def _solved(
         self, curvature: ArrayLike, force: ArrayLike, yields: float = 0.0, **turned: ArrayLike
     ) -> Iterator[tuple[NDArray[np.intp], LengthContact, Array]]:
-        """Rows of like half-width, their contacts, and p0, Pa, of plane strain."""
+        """Contacts in groups of similar half-width, which share their cells: rows of the group, its
+        contacts, and p0 of plane strain, Pa.
+
+        yields : compliance of the support, rad/(N m); turned : `moment`, N m, or `tilt`, rad, by
+        name.
+        """
         (name, value), pair = next(iter(turned.items())), self.pair
         kappa, load, turn = np.broadcast_arrays(
             *(np.atleast_1d(np.asarray(v, dtype=float)) for v in (curvature, force, value))
@@ -115,7 +120,9 @@ class SignedRange(NamedTuple):
 
 
 def signed_range(lines: SolvedLines, loads: ContactLoads) -> SignedRange:
-    """Worst stated pressure of contacts over plane strain, aligned or at the greatest moment."""
+    """Stated pressure of contacts over that of plane strain, aligned or at the greatest moment to
+    either side, whichever is worse.
+    """
     moment = greatest_moment(lines, loads)
     sides = (0.0, 1.0) if lines.pair.is_symmetric else (-1.0, 0.0, 1.0)
     at = loads.curvature, loads.force

@@ -80,9 +80,8 @@ class Candidate:
 
     @property
     def with_offset(self) -> Candidate:
-        """The design with the offset at which rise and return have equal pressure angles.
-
-        By the greatest and least torque at the mean spring force, rounded to 0.1 mm.
+        """The design with the offset at which rise and return have equal pressure angles: the mean
+        of the greatest and least torque over the mean spring force, rounded to 0.1 mm.
         """
         design = self.design
         task, spring = design.task, design.spring
@@ -94,7 +93,9 @@ class Candidate:
 
 
 def spring_wire(task: DesignTask, folder: Path | None) -> HelicalSpring:
-    """Wire of wound springs, as a spring of nominal size."""
+    """Spring of nominal size with the wire, treatment, relaxation and temperature of those to be
+    wound.
+    """
     card = wire_values(without_provenance(known_cards(folder)["wires"][WIRE]))
     size: Tables = {"wire_diameter": "5 mm", "mean_diameter": "30 mm", "coils": 5.0,
                     "free_length": "80 mm"}  # fmt: skip
@@ -110,9 +111,9 @@ def candidates(
     progress: Progress,
     names: Collection[str] | None = None,
 ) -> list[Candidate]:
-    """Screened designs of all catalogue rollers that can bear the force.
+    """Screened designs of all catalogue rollers that can bear the force, by closed forms.
 
-    Without those that are larger than `FAR` times one that is within all limits.
+    Left out are designs larger than `FAR` times the smallest one that is within all limits.
 
     Parameters
     ----------
@@ -138,7 +139,7 @@ def candidates(
     for k, name in enumerate(order, start=1):
         card = rollers[name]
         springs = _springs(task, card, wire, list(parts.springs.values()))
-        for own in _alike(task, springs) if card.balls is not None else ():
+        for own in _by_energy(task, springs) if card.balls is not None else ():
             force = max(point.greatest for point in own)
             torque = _PEAK * task.ratio * task.demand.peak * max(_share(task, each) for each in own)
             frame = frame_of(name, card, torque, force, task.ratio, sizes)
@@ -161,7 +162,9 @@ def candidates(
 def _springs(
     task: DesignTask, card: BearingCard, wire: HelicalSpring, catalogue: list[HelicalSpring]
 ) -> list[SpringPoint]:
-    """Springs that store the energy, with forces within the ratings of the roller."""
+    """Springs, wound or of the catalogue, that store the energy to be balanced, their greatest
+    force within the ratings of the roller; over a grid of share of the energy, travel and preload.
+    """
     swing = task.demand.energy_swing
     least = min(task.remove + _REMOVED_MORE, 1.0)
     shares = np.linspace(least, 1.0, max(_LEAST_SHARES, ceil((1.0 - least) / _SHARED_SHAFT) + 1))
@@ -195,8 +198,8 @@ def _share(task: DesignTask, point: SpringPoint) -> float:
     return min(point.energy / task.demand.energy_swing, 1.0)
 
 
-def _alike(task: DesignTask, springs: Sequence[SpringPoint]) -> Iterator[list[SpringPoint]]:
-    """Springs in groups of nearly equal energy: their camshafts carry the same torque."""
+def _by_energy(task: DesignTask, springs: Sequence[SpringPoint]) -> Iterator[list[SpringPoint]]:
+    """Springs in groups of nearly equal energy, whose camshafts carry the same torque."""
     groups: dict[int, list[SpringPoint]] = {}
     for point in springs:
         groups.setdefault(round(_share(task, point) / _SHARED_SHAFT), []).append(point)
@@ -212,7 +215,9 @@ def _screened(
     file: str,
     largest: float,
 ) -> list[Candidate]:
-    """Closed-form checks of a frame with each spring on several base circles, up to a size, m."""
+    """Designs of a frame with each spring on several base circles, no larger than `largest`, m,
+    with their closed-form checks.
+    """
     designs = [
         Machinery(task, frame, spring, float(radius), spring.travel, 0.0, oils=oils)
         for spring in springs
@@ -228,7 +233,9 @@ def _screened(
 
 
 def _radii(task: DesignTask, frame: MachineFrame, spring: SpringPoint) -> Array:
-    """Prime radii from a steep to a flat pressure angle, not below the hub, within the space."""
+    """Prime radii to be tried, m, geometrically from a steep to a flat pressure angle, not below
+    the hub and within the space; empty where none fits.
+    """
     mean = 0.5 * (spring.preload + spring.greatest)
     slope = _share(task, spring) * task.ratio * task.demand.peak / mean
     low = max(frame.least_radius, slope / np.tan(_STEEP) - 0.5 * spring.travel)
@@ -242,6 +249,7 @@ def _radii(task: DesignTask, frame: MachineFrame, spring: SpringPoint) -> Array:
 
 
 def _factors(task: DesignTask, designs: list[Machinery]) -> dict[str, Array]:
+    """Values of the designs (m,) by key of the case file, SI, for the screening."""
     springs = [each.spring for each in designs]
     windings = ("wire_diameter", "mean_diameter", "coils", "free_length", "end_factor",
                 "shear_modulus", "density", "strength_at_1mm", "strength_exponent")  # fmt: skip
@@ -263,6 +271,9 @@ def _factors(task: DesignTask, designs: list[Machinery]) -> dict[str, Array]:
 
 
 def _judged(designs: list[Machinery], columns: Mapping[str, Column]) -> list[Candidate]:
+    """The designs with their cam radius, ripple, excess of the utilisations and governing check
+    from the columns of the screening; those refused are left out.
+    """
     used = np.array([
         np.nan_to_num(np.asarray(columns[name], dtype=float), nan=0.0, posinf=99.0)
         for name in columns

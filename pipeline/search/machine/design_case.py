@@ -97,7 +97,7 @@ class Machinery:
 
     @property
     def conductance(self) -> float:
-        """Heat to still air from a housing about cam, gear and follower, W/K."""
+        """Thermal conductance to still air of a box housing about cam, gear and follower, W/K."""
         across = 2.0 * max(self.cam_radius, self.frame.gear_radius)
         height = across + self.frame.stem_length(self.lift)
         sides = (across, height, self.frame.housing_width)
@@ -105,7 +105,7 @@ class Machinery:
 
     @property
     def other_heat(self) -> float:
-        """Heat of gear and camshaft bearings at the greatest speed, W."""
+        """Friction heat of gear and camshaft bearings at the greatest speed, W."""
         speed = self.task.speeds[1] / self.task.ratio
         force = 0.5 * (self.spring.preload + self.spring.greatest)
         bearings = _BEARING_FRICTION * force * 0.5 * self.frame.seat.bore
@@ -113,9 +113,8 @@ class Machinery:
 
     @cached_property
     def oil(self) -> tuple[str, float]:
-        """Thinnest oil of sufficient viscosity for the roller bearing; its viscosity, m2/s.
-
-        The thickest one where none does.
+        """Name and viscosity, m2/s, of the thinnest oil that is viscous enough for the roller
+        bearing at the least speed; of the thickest one where none is.
         """
         card = self.frame.card
         turns = self.task.speeds[0] / self.task.ratio * self.prime_radius / self.frame.radius
@@ -236,6 +235,7 @@ source = @source@
 
 
 def _spring(design: Machinery) -> str:
+    """Text of the tables of the spring in the case file."""
     point, task = design.spring, design.task
     spring = point.spring
     origin = f"catalogue: spring {spring.name}" if spring.name else "wound for this design"
@@ -252,6 +252,7 @@ def _spring(design: Machinery) -> str:
 
 
 def _spring_source(spring: HelicalSpring) -> Source:
+    """Source of the spring: catalogue or wire, with temperature and relaxation assumed."""
     origin = f"spring {spring.name} of the catalogue"
     if not spring.name:
         origin = f"wound; wire: {spring.source.text}"
@@ -287,6 +288,7 @@ source = @key_source@
 
 
 def _cam(design: Machinery) -> str:
+    """Text of the table of the cam with seat, key and keyway in the case file."""
     frame, seat = design.frame, design.frame.seat
     least, greatest = frame.interferences
     keyway: Tables = {"width": _mm(seat.key_width), "depth": _mm(seat.hub_depth)}
@@ -337,6 +339,7 @@ source = { text = "ISO 6336-5, case-hardened steel, quality MQ", confirmed = fal
 
 
 def _shaft(design: Machinery) -> str:
+    """Text of the tables of camshaft, its bearings, gear and counterweight in the case file."""
     frame, seat = design.frame, design.frame.seat
     rotor = frame.rotor_mass(design.cam_radius)
     residual = _BENCH_UNBALANCE * rotor / design.task.cam_speed
@@ -399,6 +402,7 @@ source = @cooling_source@
 
 
 def _roller(design: Machinery) -> str:
+    """Text of the tables of roller, bearing, pin, fork, oil and cooling in the case file."""
     frame, card = design.frame, design.frame.card
     oil, value = design.oil
     inside = card.bore if card.pitch_diameter is None else card.pitch_diameter
@@ -454,6 +458,7 @@ c45 = { card = "c45" }
 
 
 def _follower(design: Machinery) -> str:
+    """Text of the tables of follower, guides and materials in the case file."""
     frame, stem = design.frame, _mm(design.frame.stem)
     text = filled(
         _FOLLOWER, lift=_mm(design.lift), mass=_round(design.mass, "g"), stem=stem,
@@ -513,6 +518,7 @@ source = @source@
 
 
 def _requirements(design: Machinery, smoothing: str, positions: int) -> str:
+    """Text of the tables of smoothing, requirements, limits and load cases in the case file."""
     task = design.task
     room = design.room if task.space is not None else 1e-3 * np.ceil(1.15e3 * design.cam_radius)
     cases = [_load_case("running", task.speed, None, "given")]

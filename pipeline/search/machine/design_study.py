@@ -116,7 +116,7 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Design
 
 
 def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> DesignDocument:
-    """As `designed`; the folder of the points is owned."""
+    """As `designed`, with `folder` for the points, which this process alone writes."""
     file, copied = _copied(task, folder, out)
     study = PointStudy(task, folder, file, versions()["source"])
     progress.stage("search rollers, springs and base circles")
@@ -179,9 +179,8 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
 
 
 def _without_limit(study: PointStudy, workers: Crew, progress: Progress) -> Exchanged | None:
-    """The smallest design that the search reaches by exchanges where the space is not limited.
-
-    None where there is none.
+    """The smallest design that the search reaches by exchange of parts without the limit of the
+    space; None where none passes.
     """
     task = study.task
     roomy = replace(study, task=replace(task, space=None))
@@ -195,7 +194,9 @@ def _without_limit(study: PointStudy, workers: Crew, progress: Progress) -> Exch
 
 
 def _within_space(study: PointStudy, point: Solved) -> list[Solved]:
-    """The design with the limit of the space, if it is small enough and passes."""
+    """The design solved again with the limit of the space, in a list; empty if it is too large or
+    fails.
+    """
     space = study.task.space
     if space is None or _SPARE_PRINTED * point.size > space:
         return []
@@ -204,9 +205,9 @@ def _within_space(study: PointStudy, point: Solved) -> list[Solved]:
 
 
 def _copied(task: DesignTask, folder: Path, out: Path) -> tuple[str, list[str]]:
-    """Copy the torque table and the user's cards to the points and beside the case.
+    """Copy the torque table and the user's cards to the folder of the points and beside the case.
 
-    Returns the name of the table, and the names of the files beside the case that are copies.
+    Gives the name of the table, and the names of the files beside the case that are copies.
 
     Raises
     ------
@@ -252,7 +253,7 @@ def _demand_record(task: DesignTask) -> TorqueRecord:
 
 
 def _record(study: PointStudy, point: Solved, file: str = "") -> DesignPointRecord:
-    """Record of a point, in a case file or not yet."""
+    """Record of a solved point; `file`: name of its case file, "" where it is not written."""
     design, figures = point.design, point.whole
     spring = design.spring.spring
     name = spring.name or (
@@ -277,7 +278,9 @@ def _record(study: PointStudy, point: Solved, file: str = "") -> DesignPointReco
 
 
 def _drawing(study: PointStudy, point: Solved) -> DesignDrawing:
-    """Contour, roller and torque left of a design, for its picture; its values to be confirmed."""
+    """What the picture of a design shows: contour and roller at the least lift, mm, and the torque
+    left about its mean, N m; with its values to be confirmed.
+    """
     case = parse_case(study.text(point.design), study.folder)
     trial = preview_case(case, corners=False, kept=True)
     after, contour = trial.cycles[0].turn.torque_after, trial.contour
@@ -296,6 +299,7 @@ def _drawing(study: PointStudy, point: Solved) -> DesignDrawing:
 
 
 def _write_points(study: PointStudy, points: Sequence[Solved]) -> list[DesignPointRecord]:
+    """Write a case file per point of the front, in place of earlier ones, and give their records."""
     for old in study.folder.glob("point_*.toml"):
         old.unlink()
     rows: list[DesignPointRecord] = []
@@ -316,6 +320,9 @@ def _written(point: Solved, name: str, file: str, head: str) -> str:
 
 
 def _summary(study: PointStudy, points: Sequence[Solved], smaller: Exchanged | None) -> str:
+    """Comment at the head of the case file: ripple removed, size, exchanges of parts, and the
+    front.
+    """
     best, task = points[0], study.task
     row = _record(study, best)
     shown = "its parts are yet to be exchanged" if smaller is None else smaller.sentence
@@ -336,7 +343,10 @@ def _summary(study: PointStudy, points: Sequence[Solved], smaller: Exchanged | N
 
 
 def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[Solved]) -> list[str]:
-    """What no design keeps together; points: those that fail, the nearest first."""
+    """Titles of the limits that no design keeps together: of the nearest of the failing `points`;
+    without one, those that govern most screened designs; without these, what excludes every spring
+    and roller.
+    """
     if points:
         near = points[0]
         failing = near.failing or ["the limits of the synthesis at the ends of the tolerances"]

@@ -114,7 +114,9 @@ class MachineFrame:
         return 1e-3 * ceil(1e3 * (reach + self.seat_thickness) + 3.0)
 
     def mass(self, lift: float, spring: float) -> float:
-        """Moving mass of the follower with a third of the spring (kg), kg."""
+        """Moving mass of follower, roller and a third of the spring, kg; maximum lift, m, mass of
+        the spring, kg.
+        """
         solid = 0.25 * pi * STEEL
         disc = solid * (self.card.outer_diameter**2 - self.card.bore**2) * self.card.width
         pin = solid * self.card.bore**2 * (self.pin_span + self.cheek_width)
@@ -188,7 +190,11 @@ def cam_width_under(card: BearingCard) -> float:
 def frame_of(
     name: str, card: BearingCard, torque: float, force: float, ratio: float, sizes: Sequence[Seat]
 ) -> MachineFrame | None:
-    """Parts for a roller, cam torque, N m, and normal force, N; None: no seat is enough."""
+    """Parts for a roller card, cam torque, N m, and normal force, N, on the smallest shaft seat
+    whose key, shrink fit, bearings and shaft bear them; None where no seat does.
+
+    name : of the roller card; ratio : shaft turns per cam turn; sizes : seats by increasing size.
+    """
     cam_width = cam_width_under(card)
     width = cam_width - 4e-4
     for seat in sizes:
@@ -210,7 +216,9 @@ def frame_of(
 
 
 def _teeth(ratio: float) -> tuple[int, int]:
-    """Teeth of gear and pinion of a ratio of shaft turns per cam turn."""
+    """Numbers of teeth of gear on the camshaft and pinion for a ratio of shaft turns per cam turn;
+    the nearest where no exact one is small enough.
+    """
     for pinion in range(_PINION, _TEETH_MOST + 1):
         gear = pinion * ratio
         if abs(gear - round(gear)) < 1e-6 and round(gear) >= _PINION:

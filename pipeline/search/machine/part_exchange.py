@@ -157,6 +157,9 @@ def _words(each: Exchange) -> ExchangeRecord:
 
 
 def _shaft(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[Exchange]:
+    """Designs with a smaller shaft seat, key and bearings, `stride` below in the catalogue: with
+    the base circle less by what the hub is, then with the same; none where no smaller seat is left.
+    """
     frame = design.frame
     lesser = [each for each in catalogues.seats if each.bore < frame.seat.bore]
     if not lesser:
@@ -172,6 +175,7 @@ def _shaft(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[
 
 
 def _roller(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[Exchange]:
+    """Design with a smaller roller, `stride` below in the catalogue, and the same base circle."""
     frame = design.frame
     order = list(catalogues.rollers)
     if frame.roller not in order or order[0] == frame.roller:
@@ -186,6 +190,9 @@ def _roller(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator
 
 
 def _spring(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[Exchange]:
+    """Designs with a lighter catalogue spring, `stride` below, of the same energy over the same
+    travel; none for a wound spring.
+    """
     point = design.spring
     spring = point.spring
     if not spring.name:  # wound for its forces
@@ -206,6 +213,7 @@ def _spring(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator
 
 
 def _stem(design: Machinery, _: SortedParts, stride: int) -> Iterator[Exchange]:
+    """Design with a thinner standard stem and its bushes, `stride` below."""
     frame = design.frame
     lesser = [1e-3 * each for each in STEMS if 1e-3 * each < frame.stem - _EQUAL_LENGTHS]
     if lesser:
@@ -215,6 +223,9 @@ def _stem(design: Machinery, _: SortedParts, stride: int) -> Iterator[Exchange]:
 
 
 def _module(design: Machinery, _: SortedParts, stride: int) -> Iterator[Exchange]:
+    """Design with a smaller standard module, `stride` below, whose gear still has a rim about the
+    shaft.
+    """
     frame = design.frame
     rim = _RIM * frame.seat.bore
     modules = [1e-3 * each for each in MODULES if 0.5e-3 * each * frame.teeth[0] > rim]

@@ -100,7 +100,9 @@ class Bracket:
         return self.passing <= max(WIDTH, 2.0 * self.failing + _EQUAL_CHANGES) or self.lever.whole
 
     def inner(self) -> float:
-        """Next change to try: just below, at or above the needed one, or the middle."""
+        """Change to be tried next, between the failing and the passing one: just below, at or just
+        above the one that the draft needs, else the middle.
+        """
         for change in (self.needed - self.stride, self.needed, self.needed + _STRIDE):
             if self.failing + _EQUAL_CHANGES < change < self.passing - _EQUAL_CHANGES:
                 return change
@@ -127,7 +129,9 @@ class _Search:
         return self.failing.get(lever.name, 0.0) > min(change, lever.greatest) - _EQUAL_CHANGES
 
     def bracket(self, lever: Lever, change: float) -> Bracket | None:
-        """Bracket that passes with a change, at most the greatest; None: no design passes."""
+        """Bracket whose passing end is a change, at most the greatest, tried by one more search;
+        None where no design passes.
+        """
         self.progress.advance(self.tried, max(_USUAL, self.tried + 1))
         self.tried += 1
         change = min(change, lever.greatest)
@@ -143,7 +147,7 @@ class _Search:
         return Bracket(lever, failing, change, lever.needed(draft))
 
     def narrowed(self, bracket: Bracket) -> Bracket:
-        """The bracket as narrow as `WIDTH`."""
+        """The bracket narrowed by trials until it is as narrow as `WIDTH`."""
         while not bracket.narrow:
             change = bracket.inner()
             inner = self.bracket(bracket.lever, change)
@@ -154,9 +158,8 @@ class _Search:
         return bracket
 
     def smallest(self, lever: Lever, failing: float) -> Bracket | None:
-        """Change that passes, half of which does not; None: none up to the greatest passes.
-
-        failing: change up to which it is doubled.
+        """Bracket with a change of an option that passes, half of which fails, by doubling from
+        `failing`, a change that fails; None: not even the greatest change passes.
         """
         change = lever.greatest if lever.whole else 2.0 * max(failing, WIDTH)
         while not self.fails(lever, change):
@@ -167,7 +170,7 @@ class _Search:
         return None
 
     def halved(self, bracket: Bracket) -> Bracket:
-        """The bracket with at least half of its change failing."""
+        """The bracket, its passing change halved by trials until half of it fails."""
         while not bracket.halved:
             change = 0.5 * bracket.passing
             inner = self.bracket(bracket.lever, change)
@@ -221,7 +224,9 @@ def relaxations(
 
 
 def _first(search: _Search, levers: tuple[Lever, ...], nearest: Solved | None) -> Bracket | None:
-    """Change that passes: that of the nearest design, one of `_FIRST_CHANGE`, or the greatest."""
+    """First change that passes, of those tried in this order: what the nearest failing design
+    needs, `_FIRST_CHANGE` of each option, the greatest of each.
+    """
     trials = [(lever, change) for change in (_FIRST_CHANGE, inf) for lever in levers]
     if nearest is not None and nearest.has_cam:
         needed = [(lever, lever.needed(nearest) + _MORE) for lever in levers]
@@ -236,7 +241,9 @@ def _first(search: _Search, levers: tuple[Lever, ...], nearest: Solved | None) -
 
 
 def _rival(search: _Search, levers: tuple[Lever, ...], best: Bracket) -> Bracket | None:
-    """Another option that passes with the change with which the best one fails."""
+    """Bracket of another option that passes with the change at which the best one fails; None
+    without one.
+    """
     for lever in levers:
         if lever is not best.lever and not search.fails(lever, best.failing):
             bracket = search.bracket(lever, best.failing)
@@ -282,7 +289,7 @@ def _levers(task: DesignTask) -> Iterator[Lever]:
 
 
 def _slower(task: DesignTask, share: float) -> DesignOptions:
-    """Options of all speeds given, reduced alike."""
+    """Options of the command with all stated speeds times a share."""
     options: DesignOptions = {"speed": _text(share * task.speed, "rpm")}
     if "speeds" in task.options:
         least, most = (_text(share * each, "rpm") for each in task.speeds)

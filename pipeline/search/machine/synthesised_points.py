@@ -92,7 +92,9 @@ class PointStudy:
     def _judged(
         self, design: Machinery, smoothing: str, record: Callable[[Judge], R]
     ) -> R | RefusedJudgement:
-        """Record by the judge of a design, which is a case of its own; or its refusal."""
+        """Record that `record` makes of the case of a design, read from its text; its refusal where
+        it is none.
+        """
         try:
             case = parse_case(self.text(design, smoothing), self.folder)
             torques = engine_torques(case)
@@ -174,6 +176,7 @@ class Solved:
 
     @property
     def ripple(self) -> float:
+        """Torque ripple left, standard deviation, N m."""
         figures = self.figures
         if is_whole(figures):
             return figures["ripple_left_Nm"]
@@ -181,7 +184,9 @@ class Solved:
 
     @property
     def use(self) -> float:
-        """Greatest utilisation, of the ripple allowed where all checks pass; infinite: no cam."""
+        """Greatest utilisation of the checks that fail and of the allowed ripple; infinite without
+        a cam.
+        """
         if not self.has_cam:
             return inf
         ripple = self.ripple / ((1.0 - RESERVE) * self.design.task.ripple_allowed)
@@ -203,7 +208,9 @@ class Solved:
 
     @property
     def _shortfalls(self) -> list[tuple[str, float | None]]:
-        """Titles and utilisations of the checks that fail; of a draft the worst one alone."""
+        """Title and utilisation of each check that fails, None where it is unknown; of a draft the
+        worst one alone.
+        """
         figures = self.figures
         if is_whole(figures):
             return [(each["title"], each["utilisation"]) for each in figures["shortfalls"]]
@@ -233,7 +240,9 @@ def promising(task: DesignTask, screened: Sequence[Candidate]) -> list[Candidate
 def _screened_front(
     task: DesignTask, screened: Sequence[Candidate], excess: float, most: int
 ) -> list[Candidate]:
-    """Front of ripple and size of designs up to an excess, not far above the smallest one."""
+    """At most `most` designs of the front of ripple and size, of those whose excess of utilisations
+    is at most `excess`, none larger than `FAR` times the smallest.
+    """
     good = [each for each in screened if each.within(excess)]
     largest = FAR * min((each.size for each in good), default=0.0)
     good = [each for each in good if each.size <= largest]
@@ -256,11 +265,11 @@ def violation(candidate: Candidate) -> float:
 
 
 def draft(study: PointStudy, candidate: Candidate) -> Solved:
-    """Screened design with prime radius and preload of least ripple, by a coarse synthesis.
+    """Screened design with prime radius and preload of least ripple, by a synthesis on few cam
+    angles.
 
-    By the synthesis on few cam angles, both free about the values of the screening. The cam grows
-    where its limits conflict by little and the prime radius is the greatest one, unless the space
-    is limited.
+    Both are free about the values of the screening. Where the limits conflict by little at the
+    greatest prime radius and the space is not limited, a larger one is tried.
     """
     point = _free(study, candidate, 1.0)
     if study.task.space is not None or point.passes or not point.use <= _CURABLE:
@@ -278,7 +287,9 @@ def _free(study: PointStudy, candidate: Candidate, growth: float) -> Solved:
 
 
 def freed(design: Machinery, growth: float) -> str:
-    """Lines of a smoothing with the preload and, up to some growth, the prime radius free."""
+    """Lines of `[smoothing]` for a synthesis with the preload and the prime radius, up to `growth`
+    times that of the design, as variables.
+    """
     high = growth * design.prime_radius
     low = max(design.frame.least_radius, _SHRUNK * design.prime_radius)
     radii = 1e3 * min(low, 0.999 * high), 1e3 * high
@@ -349,6 +360,11 @@ def drafts(study: PointStudy, screened: Sequence[Candidate], workers: Crew) -> D
 def _with_offsets(
     study: PointStudy, chosen: Sequence[Candidate], points: list[Solved], workers: Crew
 ) -> Drafts:
+    """Drafts with the designs near to passing drafted again with an offset, if that improves the
+    best one.
+
+    chosen, points : screened designs and their drafts, in the same order.
+    """
     near = [k for k, each in enumerate(points) if each.use <= _CURABLE]
     replaced: list[int] = []
     shifted: list[Solved] = []
@@ -416,7 +432,7 @@ def passing_draft(
 
 
 def _passing(study: PointStudy, points: Sequence[Solved]) -> Solved | None:
-    """First of the drafts that passes in full."""
+    """First of the drafts, as a draft, that passes when solved in full; None without one."""
     for each in points:
         point = synthesised(study, each) if each.passes else each
         if point.has_cam and point.passes:

@@ -203,6 +203,9 @@ def _as_text(value: str | float) -> str:
 def _range(
     speeds: str | tuple[str | float, str | float] | None, running: float
 ) -> tuple[float, float]:
+    """Least and greatest speed, rad/s, of a range about the running speed; both that speed where
+    none is stated.
+    """
     if speeds is None:
         return running, running
     if isinstance(speeds, str):
@@ -219,6 +222,7 @@ def _range(
 
 
 def _share(value: str | float) -> float:
+    """Share in 0 to 1 from a number or text such as ``60%``."""
     text = str(value).strip()
     try:
         share = 0.01 * float(text[:-1]) if text.endswith("%") else float(text)
@@ -230,7 +234,10 @@ def _share(value: str | float) -> float:
 
 
 def _cycle(path: Path, cycle: str | float | None) -> float:
-    """Angle of the cycle, rad; that of the table where it is not given."""
+    """Shaft angle of a cycle, rad: as stated, or the whole turns that the angles of the table span.
+
+    InputError where they span no whole number of turns.
+    """
     if cycle is not None:
         return _number(cycle, "deg", "cycle", above=0.0)
     text = trace_text(path, "angle_deg,torque_Nm")
@@ -270,6 +277,7 @@ def _period(cycle: float, ratio: float | None) -> Period:
 
 
 def _demand(path: Path, cycle: float) -> TorqueDemand:
+    """Torque about its mean at `SAMPLES` equal angles of the cycle, and the mean, N m, of a table."""
     source = TabledTorqueFile(file=path.name, cycle=cycle)
     values = tabled_torque(source, path).torque(uniform_cycle(SAMPLES, cycle))
     mean = float(values.mean())

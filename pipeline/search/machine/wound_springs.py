@@ -128,9 +128,9 @@ def of_catalogue(
     travels: Sequence[float],
     cam_speed: float,
 ) -> list[SpringPoint]:
-    """Catalogue springs with the preload at which they store an energy, J, over a travel, m.
-
-    Those that do not hold it are left out.
+    """Catalogue springs with the preload, N, at which they store an energy, J, over a travel, m,
+    for each pair of both; those that would exceed a limit, or have too little preload, are left
+    out.
     """
     points = []
     for spring in springs:

@@ -78,7 +78,9 @@ def exclusions(
 
 
 def _lines(record: ExclusionReasons) -> list[str]:
-    """Limits by the number of excluded choices, and the smallest changes that admit one."""
+    """Lines of text: limits by the number of choices that they exclude, the nearest choice, and the
+    smallest changes that admit one.
+    """
     counts = [
         f"{each['limit']}{' (' + each['title'] + ')' if each['title'] else ''}: {each['count']}"
         for each in record["excluded"]
@@ -103,7 +105,9 @@ def _lines(record: ExclusionReasons) -> list[str]:
 
 
 def _reason(record: DraftJudgement | PreviewJudgement | RefusedJudgement) -> str:
-    """Limit that a judged case exceeds most; field of the case that refuses it; "": none."""
+    """Name of the limit that a judged case exceeds most, or of the key that refuses it; "" where it
+    exceeds none.
+    """
     if is_refused(record):
         return record["why"].partition(" = ")[0][:60]
     if is_whole(record):
@@ -118,7 +122,7 @@ def _excess(record: PreviewJudgement) -> tuple[int, float]:
 
 
 def _way(shortfall: Shortfall) -> str:
-    """The limit at which a check would pass."""
+    """Change with which a failing check would pass, in words: demand instead of limit, with unit."""
     unit = unit_text(shortfall["unit"])
     demand, limit = shortfall["demand"], shortfall["limit"]
     if demand is None or limit is None:

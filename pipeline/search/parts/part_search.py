@@ -62,11 +62,11 @@ class RollerSearch:
     tried: list[Tried] = field(default_factory=list)
 
     def searched(self, least: Mapping[str, float], bushes: Sequence[str]) -> list[Tried]:
-        """All choices of the roller.
+        """All choices of spring and bush for the roller, with their judgements.
 
-        First without a limit on the cam radius, then under limits below the best cam so far. A
-        smaller limit never reduces the ripple: the ripple of a pair is its bound under the next
-        limit.
+        First without a limit on the cam radius, then under limits ever further below the radius of
+        the best cam so far. A smaller limit never reduces the ripple: that of a pair bounds it
+        under the next limit.
 
         Parameters
         ----------
@@ -83,7 +83,10 @@ class RollerSearch:
     def _unbounded(
         self, least: Mapping[str, float], bushes: Sequence[str]
     ) -> tuple[list[Pair], DraftJudgement | None]:
-        """All springs with the first bush, then the other bushes with the best spring."""
+        """Without a limit on the cam radius: all springs with the first bush, then the other bushes
+        with the best spring. Gives the feasible pairs with a lower bound of their ripple, and the
+        best judgement.
+        """
         pairs: list[Pair] = []
         good: list[DraftJudgement] = []
         ripples: dict[str, float] = {}
@@ -105,7 +108,10 @@ class RollerSearch:
     def _within(
         self, pairs: Sequence[Pair], room: float
     ) -> tuple[list[Pair], DraftJudgement | None]:
-        """Pairs by increasing bound until a bound is not below the best ripple."""
+        """Under a limit on the cam radius (`room`, m): pairs by increasing bound, until the bound
+        is not below the best ripple. Gives the pairs still possible under a smaller limit, and the
+        best judgement; None without a feasible one.
+        """
         best: DraftJudgement | None = None
         after: list[Pair] = []
         for pair in sorted(pairs, key=lambda p: (p.bound, p.spring, p.bush)):
@@ -201,7 +207,9 @@ class _Least:
         return 1.0 - (self.design.torque_reduction or 0.0)
 
     def by_spring(self, force: float) -> dict[str, float]:
-        """Bounds by spring for a roller load limit (N)."""
+        """Lower bound of the residual ripple, as a share of the ripple before, by spring, for a
+        greatest roller load, N.
+        """
         case, problem, design = self.case, self.problem, self.design
         bound = ripple_bounds.RippleBound(design.torque, problem.gear_ratio)
         relief = ripple_bounds.relief_of(problem.scenarios, problem.ratings.bounds.get(JUMP.id))

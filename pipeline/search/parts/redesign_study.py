@@ -90,7 +90,9 @@ class RedesignTask:
         return self.judge().previewed(Change() if choice is None else choice)
 
     def conflict(self, choice: Choice | None) -> ConflictJudgement | RefusedJudgement:
-        """Infeasibility of a choice, None: of the case."""
+        """Limits in conflict in the case of a choice, and their relaxations; None: of the case as
+        it is.
+        """
         judge = self.judge()
 
         def conflict(case: Case) -> ConflictJudgement:
@@ -165,7 +167,7 @@ def redesign(
 
 
 def _against(name: str) -> Against:
-    """The second objective of a name; InputError for another."""
+    """The text as second objective of the front; InputError for any other."""
     for known in AGAINST:
         if known == name:
             return known
@@ -173,7 +175,9 @@ def _against(name: str) -> Against:
 
 
 def _begin(search: RedesignTask) -> None:
-    """Copy the files that the case includes; the folder may hold a redesign of this case alone."""
+    """Copy the files that the case includes to the output folder; ResultError if it has the
+    redesign of another case.
+    """
     out, case = search.out, search.case
     record = out / RECORD
     held = read_json(record) if record.is_file() else {"case": case.name}
@@ -186,7 +190,9 @@ def _begin(search: RedesignTask) -> None:
 def _searched(
     search: RedesignTask, parts: Selection, workers: ProcessPoolExecutor, progress: Progress
 ) -> list[Tried]:
-    """All choices of the rollers with their judgements by the synthesis alone, by choice."""
+    """Choices of all rollers, in the order of their names, with their judgements by the synthesis
+    alone.
+    """
     waiting = [
         workers.submit(search.searched, roller, least, parts.bushes)
         for roller, least in parts.springs.items()
@@ -232,7 +238,9 @@ def _chosen(tried: Sequence[Tried], against: Against) -> list[Choice]:
 def _judged_whole(
     search: RedesignTask, chosen: Sequence[Choice], workers: ProcessPoolExecutor, progress: Progress
 ) -> tuple[PreviewJudgement | RefusedJudgement, list[Judged]]:
-    """Given case and choices by synthesis and preview, at their worst tolerance corners."""
+    """Judgement of the case as it is, and choices with theirs, by synthesis and preview at the
+    worst tolerance corners.
+    """
     progress.stage(f"solve {len(chosen)} points of the front")
     waiting = [workers.submit(search.whole, choice) for choice in (None, *chosen)]
     records: list[PreviewJudgement | RefusedJudgement] = []
@@ -243,9 +251,10 @@ def _judged_whole(
 
 
 def _split(judged: Sequence[Judged], against: Against) -> tuple[list[Whole], list[Judged]]:
-    """Points of the front by increasing size, and the other judgements.
+    """Judged choices on the front of ripple and second objective, by increasing size, then the
+    others.
 
-    No point fails; where one passes, those that lack data are not on the front.
+    The front has none that fails and, where one passes, none that lacks data.
     """
     whole = [(choice, record) for choice, record in judged if not is_refused(record)]
     best = "pass" if any(record["verdict"] == "pass" for _, record in whole) else "incomplete"
@@ -257,7 +266,7 @@ def _split(judged: Sequence[Judged], against: Against) -> tuple[list[Whole], lis
 
 
 def _why(record: PreviewJudgement | RefusedJudgement, front: str) -> str:
-    """Reason why a judged choice is not on a front of points of this verdict."""
+    """Reason why a judged choice is not on the front, whose points have the verdict `front`."""
     if is_refused(record):
         return record["why"]
     if not record["feasible"]:
@@ -270,7 +279,7 @@ def _why(record: PreviewJudgement | RefusedJudgement, front: str) -> str:
 
 
 def _written(search: RedesignTask, kept: Sequence[Whole]) -> list[FrontPoint]:
-    """Write the points as case files, replacing earlier ones; their records."""
+    """Write a case file per point of the front, in place of earlier ones, and give their records."""
     for old in search.out.glob("point_*.toml"):
         old.unlink()
     records: list[FrontPoint] = []
@@ -290,6 +299,7 @@ def _written(search: RedesignTask, kept: Sequence[Whole]) -> list[FrontPoint]:
 def _tried_record(
     choice: Choice, record: DraftJudgement | RefusedJudgement
 ) -> TriedPoint | TriedRefusal:
+    """Record of a choice with its judgement by the synthesis, or its refusal."""
     if is_refused(record):
         refused: TriedRefusal = {**_named(choice), **record}
         return refused

@@ -82,9 +82,10 @@ def bearable_energy(force: float, rate: float, preload: float, relief: float) ->
 
 
 def relief_of(scenarios: tuple[Scenario, ...], jump: float | None) -> float:
-    """Maximum share of the spring force relieved by inertia in the slowest load case.
+    """Greatest share of the spring force that inertia relieves in the slowest load case, 0 to 0.9.
 
-    The limit of jump holds in the fastest; inertia is proportional to the square of the speed.
+    `jump` limits that share in the fastest load case (None: 1); inertia grows with the square of
+    the speed.
     """
     speeds = [float(item.numbers["cam.speed"]) for item in scenarios]
     fastest = max(speeds)

@@ -74,7 +74,7 @@ class Workbench:
         return catalogue_of(self.folder)
 
     def acts(self, lever: Lever) -> bool:
-        """Whether a lever can be pulled in this case."""
+        """Whether the case has what a lever changes, so that the lever can be applied."""
         case = self.case
         if isinstance(lever, Drilled):
             return case.cam.counter_hole is None
@@ -91,7 +91,9 @@ class Workbench:
         return bool(first) and next(iter(first.values())) > 0.0
 
     def scaled(self, lever: Scaled, size: float) -> Step:
-        """Step of a scaled lever: values of three digits, changed by at least `size`."""
+        """Step of a lever that multiplies values by exp(+-size): rounded to three digits away from
+        those of the case. `along`: keys changed by the same difference.
+        """
         factor = math.exp(lever.direction * size)
         before = self._numbers(lever.keys)
         texts: dict[str, str] = {}
@@ -104,7 +106,10 @@ class Workbench:
         return Step(Change.of(texts), abs(math.log(new / before[first])))
 
     def cards(self, lever: Catalogued) -> list[Step]:
-        """Steps to each better card of the catalogue, the smallest change first."""
+        """Steps to each card of the catalogue with a better rating, the smallest change first; the
+        size is the logarithm of the ratio of the ratings, for a bearing with that of its
+        dimensions.
+        """
         here, unit = self.rating_here(lever), self.unit(lever)
         steps: list[tuple[float, float, Step]] = []
         for name, rating in self._ratings(lever).items():
@@ -165,7 +170,9 @@ class Workbench:
         return []
 
     def _numbers(self, keys: tuple[str, ...]) -> dict[str, float]:
-        """Numbers of the case at the keys that it has, SI."""
+        """Numbers of the case at those of the keys that it has, SI, by key; `[*]` stands for every
+        load case.
+        """
         numbers: dict[str, float] = {}
         for pattern in keys:
             name = pattern.replace("{cam}", self.case.cam.material.name)
@@ -177,7 +184,7 @@ class Workbench:
         return numbers
 
     def _ratings(self, lever: Catalogued) -> dict[str, float]:
-        """Rating of each card that has one, SI; without the card of the case."""
+        """Rating of each card of the catalogue that has one, SI, by its name."""
         if lever.key == BEARING:
             known = {name: getattr(card, lever.rating) for name, card in self.parts.rollers.items()}
             return {name: value for name, value in known.items() if value is not None}
@@ -215,7 +222,9 @@ def without_exponent(value: float, unit: str, digits: int = 4) -> str:
 
 
 def _rounded(key: str, value: float, direction: int) -> str:
-    """Text of a value (SI) in the unit of its key, rounded away from that of the case."""
+    """Value (SI) as text in the unit of its key, rounded up (`direction` > 0) or down to a few
+    digits.
+    """
     unit = unit_at(key)
     exact = Decimal(units.in_unit(value, unit) if unit else value)
     digit = Decimal(1).scaleb(exact.adjusted() - _DESIGN_DIGITS + 1)

@@ -86,7 +86,8 @@ def failures_of(trial: Trial) -> tuple[Failure, ...]:
 
 
 def _worst_corners(trial: Trial, one: Check) -> tuple[str, ...]:
-    """Names of the tolerance corners with the worst demands of a check, the governing one first.
+    """Names of the `_CORNERS` tolerance corners with the worst demands of a check, the governing
+    one first; of all corners where the worst demands are equal or infinite.
 
     Every corner where the worst demands are equal or infinite: another one may then govern.
     """
@@ -122,7 +123,8 @@ class Order(NamedTuple):
 
     @property
     def parts(self) -> tuple[Order, ...]:
-        """Two orders of half of the checks each, related checks together.
+        """The order divided into two for two processes, each with half of the checks, related ones
+        together.
 
         The remedy of a check does not depend on the others that are sought.
         """
@@ -178,7 +180,7 @@ def with_remedies(checks: Iterable[Check], texts: Mapping[str, str]) -> tuple[Ch
 
 
 def as_drawn(trial: Trial) -> Case:
-    """Case of a trial with the smoother width by which its lift was drawn."""
+    """Case of a trial with its smoother as wide as in the last smoothing of the lift."""
     case, strength = trial.case, trial.smoothing.strength
     if strength is None or strength == 1.0:
         return case
@@ -220,7 +222,9 @@ def remedies(
 
 
 def _depth(corners: Mapping[str, Sequence[str]], names: Iterable[str]) -> Depth:
-    """Depth at the corners that govern checks and at the worst ones of them and of any."""
+    """Depth of a preview at the corners that govern the checks `names`, at their worst ones, and at
+    the governing corner of every check.
+    """
     of_names = [corners.get(name, ()) for name in names]
     of_any = {names[0] for names in corners.values() if names}
     governing = {name for names in of_names for name in names[:1]}
@@ -282,7 +286,7 @@ class _RemedySearch:
     hopeless: set[tuple[Lever, str]] = field(default_factory=set)
 
     def remedies(self) -> dict[str, Remedy]:
-        """Remedy of every failure, in their order."""
+        """Remedy of every failed check by id: levers with ever greater changes until one cures it."""
         quick = self._used(Change(), self.failures)
         self.scale = {
             name: _ratio(failure.used, quick[name]) for name, failure in self.failures.items()
@@ -307,7 +311,11 @@ class _RemedySearch:
     def _crossings(
         self, names: Iterable[str], below: float, level: float
     ) -> dict[str, list[_Crossing]]:
-        """Levers that cure a check by a step with a size above `below`, up to a level."""
+        """Levers that turn a check to pass by a change of a size from `below` to `level`, by id of
+        the check; by closed forms.
+
+        The step nearest to passing is stored in `closest`, the last one of a lever in `previous`.
+        """
         crossings: dict[str, list[_Crossing]] = {}
         for lever, every in self._levers(names):
             checks = [name for name in every if (lever, name) not in self.hopeless]
@@ -329,7 +337,7 @@ class _RemedySearch:
         return crossings
 
     def _levers(self, names: Iterable[str]) -> list[tuple[Lever, list[str]]]:
-        """Levers that act in the case, with the checks that each can cure."""
+        """Levers that can be applied to the case, each with those of the checks that it can cure."""
         table: dict[Lever, list[str]] = {}
         for name in names:
             for lever in DECLARED[name].levers:
@@ -337,7 +345,9 @@ class _RemedySearch:
         return [(lever, checks) for lever, checks in table.items() if self.bench.acts(lever)]
 
     def _steps(self, lever: Lever, below: float, level: float) -> Iterator[Step]:
-        """Steps of a lever with a size above `below`, up to a level."""
+        """Steps of a lever with a size above `below` and up to `level`: one of a scaled value, or
+        the cards of that range.
+        """
         if isinstance(lever, Scaled):
             most = math.log(lever.most)
             if below < most and (level in _COARSE_LEVELS or not self._is_coarse(lever)):
@@ -382,9 +392,10 @@ class _RemedySearch:
             return dict.fromkeys(names, math.inf)
 
     def _verified(self, name: str, ways: Sequence[_Crossing]) -> Remedy | None:
-        """Remedy by the smallest way that its judgement confirms; None without one.
+        """Remedy of a check by the smallest of the levers `ways` that a preview confirms; None
+        without one.
 
-        Of ways of about the same size the one that makes the fewest other checks fail.
+        Of changes of about the same size the one that makes the fewest other checks fail.
         """
         best: tuple[int, float, Remedy] | None = None
         for way in ways:
@@ -402,7 +413,9 @@ class _RemedySearch:
         return None if best is None else best[2]
 
     def _confirmed(self, name: str, way: _Crossing) -> _Confirmed | None:
-        """Least step of a way whose judgement confirms it at every corner; None without one."""
+        """Smallest step of a lever with which the preview passes at every tolerance corner, by
+        interpolation between a failing and a passing step; None without one.
+        """
         if not isinstance(way.lever, Scaled):
             judgement = self._judgement(name, way.below.step)
             return (
@@ -440,7 +453,9 @@ class _RemedySearch:
         return _Confirmed(step, judgement, value) if value <= 1.0 else None
 
     def _refined(self, name: str, way: _Crossing, lever: Scaled) -> float:
-        """Size of a change at which a check meets its limit, by one more interpolation."""
+        """Size of the change at which a check meets its limit, by one more evaluation and
+        interpolation.
+        """
         if way.size >= way.below.step.size:
             return way.size
         step = self.bench.scaled(lever, way.size)
@@ -449,7 +464,9 @@ class _RemedySearch:
         return _crossing(above, below, self.failures[name].used)
 
     def _judgement(self, name: str, step: Step) -> Judgement | None:
-        """Judgement of a step at the corners of a check; None without a solution."""
+        """Preview of the case with a step, at the tolerance corners of a check, stored; None where
+        it has no solution.
+        """
         key = self.failures[name].corners, step.change
         if key not in self.judgements:
             try:
@@ -470,6 +487,9 @@ class _RemedySearch:
         return math.inf if value <= 1.0 and (one is None or one.status != "pass") else value
 
     def _remedy(self, name: str, lever: Lever, confirmed: _Confirmed) -> Remedy:
+        """Remedy of a check by a confirmed step, with its side effects and the rating that would be
+        enough.
+        """
         step, judgement, value = confirmed
         words = effects(name, self.base, judgement)
         if isinstance(lever, Catalogued) and lever.inverse:
@@ -483,7 +503,9 @@ class _RemedySearch:
         return f"{words} {without_exponent(value, self.bench.unit(lever))}"
 
     def _none(self, name: str) -> Remedy:
-        """Closest change of a check that no single change cures."""
+        """Remedy that states that no single change cures a check, with the change that comes
+        closest.
+        """
         before = self.base.checks.get(name)
         if before is not None and before.without:
             return Remedy(name, Change(), effects=needed_first(before.without), cures=False)
@@ -495,7 +517,9 @@ class _RemedySearch:
         return Remedy(name, seen.step.change, seen.step.figure, (*needed, left), cures=False)
 
     def _needed(self, name: str) -> tuple[str, ...]:
-        """Rating that a check would need at the loads of the case; empty without one."""
+        """Rating that a check needs at the loads of the case, in words; empty where no rating
+        limits it.
+        """
         value = self.failures[name].used
         for lever in DECLARED[name].levers:
             if isinstance(lever, Catalogued) and lever.inverse and self.bench.acts(lever):
@@ -523,7 +547,11 @@ def _ratio(wanted: float, known: float) -> float:
 
 
 def _hopeless(lever: Scaled, seen: _Seen, first: float) -> bool:
-    """Whether the rest of the range of a lever is not worth a solution."""
+    """Whether a lever, by the slope of log utilisation so far, would stay far above the limit up to
+    its greatest change.
+
+    first : utilisation without a change; seen : with the last step.
+    """
     size = seen.step.size
     if size < _FROM or not (0.0 < first < math.inf and 0.0 < seen.used < math.inf):
         return False
@@ -532,7 +560,8 @@ def _hopeless(lever: Scaled, seen: _Seen, first: float) -> bool:
 
 
 def _crossing(above: _Seen | None, below: _Seen, first: float) -> float:
-    """Size of a change at the limit, by the logarithm of the utilisation; the middle of infinity.
+    """Size of the change at which the utilisation is 1, linear in its logarithm between two steps;
+    their middle where that of the smaller step is infinite.
 
     Parameters
     ----------

@@ -42,7 +42,9 @@ def _failing(judgement: Judgement) -> list[str]:
 
 
 def _changed(before: Judgement, after: Judgement) -> list[str]:
-    """Figures of the design that change."""
+    """Words on each figure of the design that a change moves by more than a trifle: old -> new; and
+    on the mass.
+    """
     words = []
     for (label, unit, old), (*_, new) in zip(_figures(before), _figures(after), strict=True):
         if old is not None and new is not None and abs(new - old) > _SLIGHT * abs(old):
