@@ -86,6 +86,20 @@ class Arm:
         radius: Value = np.sqrt((c - length) ** 2 + 4.0 * c * length * sine**2)
         return radius
 
+    def face_angle(self, height: Value, offset: Value) -> Value:
+        """Arm angle, rad, of a flat face along the arm at a height, m, over the cam axis.
+
+        offset: of its plane from the pivot towards the cam, m; NaN where the face does not reach it
+        """
+        with np.errstate(invalid="ignore"):
+            angle: Value = np.arcsin((height + offset) / self.centre_distance)
+        return angle
+
+    def face_radius(self, angle: Value, offset: Value) -> Value:
+        """Height of a flat face along the arm over the cam axis, m, at an arm angle, rad."""
+        radius: Value = self.centre_distance * np.sin(angle) - offset
+        return radius
+
     def travel(self, angle: Array) -> Array:
         """Direction of the arc at an arm angle from u, counter-clockwise, rad."""
         return self.sense * (_QUARTER_TURN - angle)
@@ -342,13 +356,23 @@ def disc_lift(eccentricity: float, prime_radius: float, arm: Arm, count: int = 7
     theta, start = uniform_turn(count), float(arm.angle(prime_radius))
     c, length = arm.centre_distance, arm.length
     first = np.arctan2(arm.sense * length * np.sin(start), c - length * np.cos(start))
-    around = first + np.pi - theta
-    along, across = c - eccentricity * np.cos(around), arm.sense * eccentricity * np.sin(around)
-    distance = np.hypot(along, across)
+    seen, distance = disc_seen(eccentricity, arm, first, theta)
     reach = distance**2 + length**2 - (prime_radius + eccentricity) ** 2
     with np.errstate(invalid="ignore"):
-        angle = np.arctan2(across, along) + np.arccos(reach / (2.0 * distance * length))
+        angle = seen + np.arccos(reach / (2.0 * distance * length))
     return Lift(theta, finite("lift.eccentricity", length * (angle - start)))
+
+
+def disc_seen(eccentricity: float, arm: Arm, first: float, theta: Array) -> tuple[Array, Array]:
+    """Centre of an eccentric disc from the pivot: angle from the cam axis, rad, and distance, m.
+
+    The angle grows with the lift. At cam angle 0 the centre is opposite to the direction `first`
+    from the line of centres, rad.
+    """
+    around = first + np.pi - theta
+    along = arm.centre_distance - eccentricity * np.cos(around)
+    across = arm.sense * eccentricity * np.sin(around)
+    return np.arctan2(across, along), np.hypot(along, across)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

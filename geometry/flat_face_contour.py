@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,9 +15,19 @@ from camwright.geometry.contour import Contour, Frame, Undercut
 from camwright.geometry.errors import InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import face_height
-from camwright.geometry.follower_path import FollowerPath, Reaction, reciprocal, require_offset
+from camwright.geometry.follower_path import (
+    FollowerPath,
+    Reaction,
+    Slide,
+    Sliding,
+    reciprocal,
+    require_offset,
+)
 from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import magnitude
+
+OF_STEM = "|s' - cam.offset|"
+"""Distance of the contact from the middle of a face on a stem, in words."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,6 +95,17 @@ class FacePath(FollowerPath):
         """Lever arm s' - e of the contact force about the stem's axis, along v, m."""
         return self.lift(theta, 1) - self.offset
 
+    def slide(self, theta: ArrayLike, friction: Value = 0.0) -> Slide:
+        return (
+            super()
+            .slide(theta, friction)
+            ._replace(
+                slip=self.height(theta),
+                along_face=self.lift(theta, 2),
+                on_face=self.push_arm(theta),
+            )
+        )
+
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Radius of curvature r + s + s'', m; zero at a cusp, negative where undercut.
 
@@ -98,8 +120,77 @@ class FacePath(FollowerPath):
         return np.abs(radius), reciprocal(radius)
 
 
+class PlaneMotion(Sliding):
+    """Kinematics of a plane face: its contact is the envelope of its line.
+
+    See `Motion`.
+    """
+
+    jet: Jet
+
+    @property
+    @abstractmethod
+    def height(self) -> Array:
+        """Height of the face over the cam axis."""
+
+    @property
+    @abstractmethod
+    def beside(self) -> Array:
+        """Contact from the cam axis across the travel, m."""
+
+    @property
+    @abstractmethod
+    def radius(self) -> Array:
+        """Radius of curvature of the contour."""
+
+    @property
+    def size(self) -> Array:
+        return self.height
+
+    @property
+    def pressure_angle(self) -> Array:
+        """Zero: the face is square to its travel."""
+        return np.zeros(self.jet.slope.shape)
+
+    @property
+    def contour_speed(self) -> Array:
+        return self.radius
+
+    @property
+    def path_speed(self) -> Array:
+        """Speed of the contact point, m/rad."""
+        return magnitude(self.contour_speed)
+
+    @property
+    def path_curvature(self) -> Array:
+        """Curvature of the contour, 1/m; infinite at a cusp."""
+        return reciprocal(self.radius)
+
+    @cached_property
+    def sharpness(self) -> Array:
+        """1 less the radius of curvature over the height: 1 at a cusp."""
+        return 1.0 - self.radius / self.height
+
+    @property
+    def contact_point(self) -> tuple[Array, Array]:
+        return self.height, self.beside
+
+    @cached_property
+    def contour_radius(self) -> Array:
+        along, across = self.contact_point
+        return np.sqrt(along**2 + across**2)
+
+    @property
+    def rolling(self) -> float:
+        """Zero: the face slides."""
+        return 0.0
+
+    def radius_at(self, lift: Value) -> Array:
+        return self.height - self.jet.lift + lift
+
+
 @dataclass(frozen=True, eq=False)
-class FaceMotion:
+class FaceMotion(PlaneMotion):
     """Kinematics of a flat face on the unloaded cam; the contact lies s' beside the cam axis.
 
     See `Motion`.
@@ -119,8 +210,11 @@ class FaceMotion:
 
     @cached_property
     def height(self) -> Array:
-        """Height of the face over the cam axis."""
         return self.base_height + self.jet.lift
+
+    @property
+    def beside(self) -> Array:
+        return self.jet.slope
 
     @cached_property
     def radius(self) -> Array:
@@ -128,18 +222,9 @@ class FaceMotion:
         return self.height + self.jet.lift_d2
 
     @property
-    def size(self) -> Array:
-        return self.height
-
-    @property
     def travel(self) -> float:
         """Zero: along the axis of the stem."""
         return 0.0
-
-    @property
-    def pressure_angle(self) -> Array:
-        """Zero: the face is square to the stem."""
-        return np.zeros(self.jet.slope.shape)
 
     @property
     def side(self) -> Array:
@@ -152,53 +237,39 @@ class FaceMotion:
         return self.jet.slope - self.offset
 
     @property
-    def path_speed(self) -> Array:
-        """Speed of the contact point, m/rad."""
-        return magnitude(self.radius)
-
-    @property
-    def path_curvature(self) -> Array:
-        """Curvature of the contour, 1/m; infinite at a cusp."""
-        return reciprocal(self.radius)
-
-    @cached_property
-    def sharpness(self) -> Array:
-        """-s''/(r + s): 1 at a cusp."""
-        return 1.0 - self.radius / self.height
-
-    @property
     def gain(self) -> float:
         """Normal over axial force: one, the face is square to the stem."""
         return 1.0
+
+    @property
+    def pressing(self) -> float:
+        """One: the normal is along the travel."""
+        return 1.0
+
+    @property
+    def lock(self) -> float:
+        """Zero: the friction is square to the travel."""
+        return 0.0
 
     @property
     def sliding(self) -> Array:
         return self.friction * self.height
 
     @property
-    def contact_point(self) -> tuple[Array, Array]:
-        return self.height, self.jet.slope
-
-    @cached_property
-    def contour_radius(self) -> Array:
-        along, across = self.contact_point
-        return np.sqrt(along**2 + across**2)
+    def slip(self) -> Array:
+        return self.height
 
     @property
-    def contour_speed(self) -> Array:
-        return self.radius
+    def along_face(self) -> Array:
+        return self.jet.lift_d2
+
+    @property
+    def on_face(self) -> Array:
+        return self.arm
 
     @property
     def curvature_slope(self) -> Array:
         return -(self.jet.slope + self.jet.jerk) / self.radius**3
-
-    @property
-    def rolling(self) -> float:
-        """Zero: the face slides."""
-        return 0.0
-
-    def radius_at(self, lift: Value) -> Array:
-        return self.height - self.jet.lift + lift
 
     def reactions(self, lever: tuple[Array, Array], spacing: Value) -> tuple[Reaction, Reaction]:
         """Of the friction along the face, and of the axial force beside the stem axis."""
@@ -213,17 +284,39 @@ class FaceMotion:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PlaneContour(Contour):
+class FacedContour(Contour):
+    """Cam surface under a face, on which it slides."""
+
+    from_middle: ClassVar[str] = OF_STEM
+    """Distance of the contact from the middle of the face, in words."""
+
+    @property
+    def rolls(self) -> bool:
+        return False
+
+    def face_width_min(self) -> float:
+        """Minimum width of a face centred on its reference point, m: twice the travel from it."""
+        count = self.lift.search_count
+        low, high = least(self.on_face, count), greatest(self.on_face, count)
+        return 2.0 * max(high.value, -low.value)
+
+    def on_face(self, theta: ArrayLike) -> Array:
+        """Place of the contact from the middle of the face, along v, m."""
+        return np.asarray(self.pitch.slide(theta).on_face)
+
+    def require_face(self, width: float) -> None:
+        """Check that the contact stays on a face of `width`, m; see `require_face_width`."""
+        require_face_width(width, self.face_width_min(), self.from_middle)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PlaneContour(FacedContour):
     """Cam surface under a plane face: the envelope of its line, convex in every part.
 
     References
     ----------
     Norton, Cam Design and Manufacturing Handbook (2009), ch. 7: flat-faced followers.
     """
-
-    @property
-    def rolls(self) -> bool:
-        return False
 
     @property
     def follower_curvature(self) -> float:
@@ -268,12 +361,6 @@ class PlaneContour(Contour):
         """The base circle's radius, m: any tool reaches a convex contour."""
         return self.pitch.radius_base
 
-    def face_width_min(self) -> float:
-        """Minimum width of a face centred on its reference point, m: twice the travel from it."""
-        count = self.lift.search_count
-        low, high = least(self.pitch.push_arm, count), greatest(self.pitch.push_arm, count)
-        return 2.0 * max(high.value, -low.value)
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FlatFaceContour(PlaneContour):
@@ -307,13 +394,11 @@ class FlatFaceContour(PlaneContour):
         )
         return gap
 
-    def require_face(self, width: float) -> None:
-        """Check that the contact stays on a face of `width`, m; see `require_face_width`."""
-        require_face_width(width, self.face_width_min())
 
-
-def require_face_width(width: float, needed: float) -> None:
+def require_face_width(width: float, needed: float, travel: str = OF_STEM) -> None:
     """Check that a face of `width` covers the travel of the contact, `needed`, m.
+
+    travel: from the middle of the face, in words
 
     Raises
     ------
@@ -321,5 +406,5 @@ def require_face_width(width: float, needed: float) -> None:
     """
     if not width > needed:
         shown, least = in_millimetres(width, needed)
-        limit = f"> {least}, twice the greatest |s' - cam.offset|"
+        limit = f"> {least}, twice the greatest {travel}"
         raise InputError("follower.face.width", shown, limit)

@@ -40,6 +40,28 @@ class Reaction(NamedTuple):
         return np.where(np.real(load) > 0.0, load, 0.0 * load)
 
 
+class Sliding(ABC):
+    """Kinematics of a surface that slides on the cam, beside those of `Motion`.
+
+    Arrays (..., n), real or complex, per cam speed.
+    """
+
+    @property
+    @abstractmethod
+    def slip(self) -> Array:
+        """Speed of the cam surface on the face, m."""
+
+    @property
+    @abstractmethod
+    def along_face(self) -> Array:
+        """Speed of the contact along the face, m."""
+
+    @property
+    @abstractmethod
+    def on_face(self) -> Array:
+        """Place of the contact from the middle of the face, along v, m."""
+
+
 class Motion(Protocol):
     """Kinematics and force ratios of a follower on the unloaded cam at given cam angles.
 
@@ -95,6 +117,14 @@ class Motion(Protocol):
         """Torque of the sliding friction on the cam over the axial force, m."""
 
     @property
+    def pressing(self) -> Value:
+        """Contact force along the travel over the axial force."""
+
+    @property
+    def lock(self) -> Value:
+        """Moment of the friction of a face about the pivot of its arm over that of the contact."""
+
+    @property
     def rolling(self) -> Value:
         """Angular speed of the roller relative to the stem over cam speed."""
 
@@ -119,6 +149,29 @@ class Motion(Protocol):
 
     def reactions(self, lever: tuple[Array, Array], spacing: Value) -> tuple[Reaction, Reaction]:
         """Loads of guides on points over the axial force."""
+
+
+class Slide(NamedTuple):
+    """Forces of a contact that slides, over its axial force, and its speeds over cam speed.
+
+    The axial force is that along the travel of the reference point with the moment of the normal
+    force; arrays (...).
+
+    lever: of the normal along the arm over the length, with a flat face; pressing: force along the
+    travel; side: force across it, signed like the pressure angle; torque: of the friction on the
+    cam, m; lock: axial force that the friction takes; slip: speed of the cam surface on the face,
+    m; along_face: speed of the contact along the face, m; on_face: place of the contact from the
+    middle of the face, along v, m.
+    """
+
+    side: Array
+    torque: Array
+    lever: Array | float = 1.0
+    pressing: Array | float = 1.0
+    lock: Array | float = 0.0
+    slip: Array | float = 0.0
+    along_face: Array | float = 0.0
+    on_face: Array | float = 0.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -185,6 +238,11 @@ class FollowerPath(Displayed, ABC):
     @abstractmethod
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Signed radius of curvature, m, positive where convex."""
+
+    def slide(self, theta: ArrayLike, friction: Value = 0.0) -> Slide:
+        """Forces and speeds of the contact with a friction coefficient of its surface."""
+        side = np.tan(self.pressure_angle(theta)) + friction
+        return Slide(side, friction * self.height(theta))
 
     def travel(self, theta: ArrayLike) -> Array:
         """Direction of travel from u, counter-clockwise, rad: zero of a stem."""

@@ -192,6 +192,16 @@ class RoundMotion(ABC):
         return np.zeros(self.jet.slope.shape)
 
     @property
+    def pressing(self) -> Value:
+        """One: without friction the axial force is that along the travel."""
+        return 1.0
+
+    @property
+    def lock(self) -> Value:
+        """Zero: without friction none takes a moment."""
+        return 0.0
+
+    @property
     def path_speed(self) -> Array:
         """Path length of the reference point per radian, m/rad."""
         return self._path[0]

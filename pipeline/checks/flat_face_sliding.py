@@ -56,7 +56,7 @@ _FLASH = {
 ).measured("angles", allowed=of_key("follower.face.width"), deviation=0.001, kept=Kept(unit="mm"))
 def face_width(cam: LoadedCam) -> Array:
     """Required face width, contact half-width included, m."""
-    return 2.0 * (magnitude(face_of(cam.motion).arm) + cam.half_width)
+    return 2.0 * (magnitude(face_of(cam.motion).on_face) + cam.half_width)
 
 
 def _of_its_source(demand: Demand, solution: Solution) -> Demand:
@@ -65,7 +65,7 @@ def _of_its_source(demand: Demand, solution: Solution) -> Demand:
 
 def _sliding(cam: LoadedCam) -> Array:
     """Mean over peak pressure of Hertz times the sliding speed, m/s."""
-    return np.asarray(MEAN_SHARE * cam.speed * face_of(cam.motion).height)
+    return np.asarray(MEAN_SHARE * cam.speed * face_of(cam.motion).slip)
 
 
 @check(

@@ -129,17 +129,18 @@ class FaceBody:
         return face_mesh(self.width, self.thickness, self.stem_diameter, ElementSize(far_size=size))
 
     def contacts(self, contour: Contour, theta: Array, /) -> tuple[Array, Array]:
-        """Contact at s' - e along the face."""
-        along = contour.pitch.push_arm(theta)
+        """Contact at its place along the face."""
+        along = np.asarray(contour.pitch.slide(theta).on_face)
         nothing, one = np.zeros_like(along), np.ones_like(along)
         return np.stack([along, nothing]), np.stack([nothing, one])
 
     def mesh_at(self, contour: Contour, theta: float, sizing: ElementSize) -> BodyMesh:
-        arm = float(contour.pitch.push_arm(theta))
+        arm = float(contour.pitch.slide(theta).on_face)
         here = replace(sizing, contact_point=np.array([arm, 0.0]))
         mesh = face_mesh(self.width, self.thickness, self.stem_diameter, here)
         middle = contour.points(theta) - arm * contour.tangent(theta)
-        return mesh.transformed(theta + 0.5 * np.pi, middle)
+        travel = theta + float(contour.pitch.travel(theta))
+        return mesh.transformed(travel + 0.5 * np.pi, middle)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> None:
         """None: the back is held."""

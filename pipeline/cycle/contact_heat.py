@@ -29,7 +29,7 @@ def flash_history(
     """
     if machine.face.friction is None:
         return None
-    through = machine.cam_speed * path.lift(theta, 2)
+    through = machine.cam_speed * np.asarray(path.slide(theta).along_face)
     heat = sliding.power / pair.width
     half_width = np.where(heat > 0, contact.half_width, 1.0)
     return flash_rise(machine, heat, sliding.speed, through, half_width)

@@ -35,7 +35,7 @@ from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, shaft_of,
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.camshaft_loads import ShaftLoads
-from camwright.pipeline.follower.follower_forces import Loads, follower_loads, share_left
+from camwright.pipeline.follower.follower_forces import Loads, follower_loads
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions, guide_reactions
 from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
@@ -182,8 +182,7 @@ class Cycle(Tabled):
         surge = spring_surge(self.machine, loads.lift)
         if surge is None:
             return loads.normal_force
-        share = share_left(loads.lift_slope, loads.jam_index)
-        added = surge / (share * np.cos(loads.pressure_angle))
+        added = surge / (loads.share * loads.lever * np.cos(loads.pressure_angle))
         return np.asarray(np.maximum(loads.normal_force + added, 0.0))
 
     @property

@@ -14,11 +14,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from camwright.geometry.arm_face import ArmFaceMotion, CurvedFaceMotion
 from camwright.geometry.arm_path import Arm, ArmMotion
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.flat_face_contour import FaceMotion
-from camwright.geometry.follower_path import Motion, Reaction
+from camwright.geometry.follower_path import Motion, Reaction, Sliding
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import RollerMotion, RoundMotion, magnitude, rolling_share
 from camwright.pipeline.case.case_values import wound_spring
@@ -38,19 +39,29 @@ def motion_of(jet: Jet, numbers: Numbers) -> Motion:
     if numbers.get("follower.arm.length") is not None:
         return _on_an_arm(jet, numbers)
     if numbers.get("follower.face.width") is not None:
-        friction = numbers.get("follower.face.friction")
-        return FaceMotion(jet, prime, offset, 0.0 if friction is None else friction)
+        return FaceMotion(jet, prime, offset, _friction(numbers))
     return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, numbers["roller.radius"])
 
 
-def _on_an_arm(jet: Jet, numbers: Numbers) -> ArmMotion:
-    """Motion of the roller of an arm, whose start angle follows from the prime radius."""
+def _on_an_arm(jet: Jet, numbers: Numbers) -> Motion:
+    """Motion of roller or face of an arm, whose start angle follows from the prime radius."""
     stated = numbers.known_case.follower.arm
     if stated is None:
         raise InputError("follower.arm", "missing", "given for its motion")
     distance, length = numbers["follower.arm.centre_distance"], numbers["follower.arm.length"]
-    arm = Arm(distance, length, stated.sense)
-    return ArmMotion(jet, arm, arm.angle(numbers["cam.prime_radius"]), numbers["roller.radius"])
+    arm, prime = Arm(distance, length, stated.sense), numbers["cam.prime_radius"]
+    if (offset := numbers.get("follower.face.offset")) is not None:
+        return ArmFaceMotion(jet, arm, arm.face_angle(prime, offset), offset, _friction(numbers))
+    start, radius = arm.angle(prime), numbers.get("follower.face.radius")
+    if radius is not None:
+        return CurvedFaceMotion(jet, arm, start, radius, _friction(numbers))
+    return ArmMotion(jet, arm, start, numbers["roller.radius"])
+
+
+def _friction(numbers: Numbers) -> Value:
+    """Friction coefficient of a face on the cam; 0 where the case has none."""
+    friction = numbers.get("follower.face.friction")
+    return 0.0 if friction is None else friction
 
 
 def roller_of(path: Motion) -> RoundMotion:
@@ -66,17 +77,17 @@ def roller_of(path: Motion) -> RoundMotion:
     raise GeometryError("the follower of the cam is no roller")
 
 
-def face_of(path: Motion) -> FaceMotion:
-    """Kinematics of a flat face; refused for a roller.
+def face_of(path: Motion) -> Sliding:
+    """Kinematics of a face that slides; refused for a roller.
 
     Raises
     ------
     GeometryError
         If it is that of a roller.
     """
-    if isinstance(path, FaceMotion):
+    if isinstance(path, Sliding):
         return path
-    raise GeometryError("the follower of the cam is no flat face")
+    raise GeometryError("the follower of the cam is no face")
 
 
 def not_negative(values: Array) -> Array:
@@ -302,7 +313,7 @@ class LoadedCam:
     @cached_property
     def share(self) -> Array:
         """Axial force without friction over axial force."""
-        return 1.0 - self.direction * self.jam
+        return 1.0 - self.direction * self.jam - self.motion.lock
 
     @cached_property
     def axial(self) -> Array:
@@ -366,7 +377,7 @@ class LoadedCam:
         friction, jam = greatest_friction(self.numbers), self.jam_worst
         if friction is None or jam is None:
             return None
-        axial = self.axial * self.share / (1.0 - self.direction * jam)
+        axial = self.axial * self.share / (1.0 - self.direction * jam - self.motion.lock)
         loads = self.hot_share
         return OfGuides(friction.a * loads.a * axial, friction.b * loads.b * axial)
 
@@ -393,7 +404,7 @@ class LoadedCam:
             return np.zeros(self.normal.shape)
         travel, on_cam, held = self.motion.travel, *self.thrown
         cos, sin = np.cos(travel), np.sin(travel)
-        along, across = self.axial, self.axial * self.motion.side
+        along, across = self.axial * self.motion.pressing, self.axial * self.motion.side
         pushed = -np.stack([along * cos + across * sin, across * cos - along * sin])
         bent = slope.under(pushed + on_cam, gear_force(self.torque, shaft), held)
         return in_the_normal(bent, self.motion.pressure_angle - travel)

@@ -18,7 +18,7 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.speed_sweep import highest_speed
-from camwright.pipeline.follower.follower_forces import Loads, share_left
+from camwright.pipeline.follower.follower_forces import Loads
 
 
 def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
@@ -150,7 +150,7 @@ class ForcesCam(ContourCam):
 
     @cached_property
     def share(self) -> Array:
-        return share_left(self.slope, self.jam)
+        return self.loads.share
 
     @property
     def axial(self) -> Array:

@@ -16,7 +16,7 @@ from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.limits import OVERSPEED
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.follower.follower_forces import Rubbing, follower_loads, share_left
+from camwright.pipeline.follower.follower_forces import Rubbing, follower_loads
 from camwright.pipeline.follower.spring import (
     DynamicStiffness,
     HelicalSpring,
@@ -298,8 +298,7 @@ class _Follower:
         theta = uniform_turn(ANGLES)
         system = replace(machine.system, rubbing=rubbing)
         loads = follower_loads(pitch, system, 1.0, theta)
-        share = share_left(loads.lift_slope, loads.jam_index)
-        sliding = system.face_friction * pitch.height(theta)
+        share, slide = loads.share, pitch.slide(theta, system.face_friction)
         return cls(
             machine=machine,
             resonant=_Resonant.of(machine.spring, machine.spring.design, pitch),
@@ -309,8 +308,8 @@ class _Follower:
             # The coils have their own inertia in the surge.
             inertia=loads.inertia_force * machine.mass_without_spring / machine.mass,
             viscous=loads.viscous_force,
-            gain=1.0 / (share * np.cos(loads.pressure_angle)),
-            arm=(loads.lift_slope + sliding) / share,
+            gain=1.0 / (share * loads.lever * np.cos(loads.pressure_angle)),
+            arm=(loads.lift_slope + slide.torque) / share,
         )
 
     def extremes(self, cam_speed: Array) -> dict[str, Array]:

@@ -19,8 +19,9 @@ MEAN_SHARE = pi / 4.0  # mean over peak pressure of Hertz
 class SlidingFace:
     """Contact position (n,), m, and surface speeds (n,), m/s, under a face.
 
-    place: of the contact from the stem axis; sliding: speed of the cam surface along the face;
-    entrainment: mean surface speed through the contact, which moves along the face at w s''.
+    place: of the contact from the middle of the face; sliding: speed of the cam surface along the
+    face; entrainment: mean surface speed through the contact, which moves along the face, at w s''
+    on a stem.
     """
 
     place: Array
@@ -32,11 +33,11 @@ class SlidingFace:
 
 
 def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> SlidingFace:
-    """Contact position and surface speeds of a face: sliding w (r + s), entrainment.
+    """Contact position and surface speeds of a face: sliding, on a stem w (r + s), entrainment.
 
     Parameters
     ----------
-    path : FollowerPath  of a flat face, with height r + s
+    path : FollowerPath  of a face
     cam_speed : float    w, rad/s
     theta : array (n,)   rad
 
@@ -50,9 +51,9 @@ def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> Slidi
     Dowson, Harrison and Taylor, Inst. Mech. Engrs C 255 (1986): cam and flat-faced follower.
     """
     angle, speed = finite("theta", theta), float(finite("cam_speed", cam_speed))
-    height, lift_d2 = path.height(angle), path.lift(angle, 2)
-    passing = np.abs(speed * (0.5 * height + lift_d2))
-    return SlidingFace(path.push_arm(angle), speed * height, passing)
+    slide = path.slide(angle)
+    passing = np.abs(speed * (0.5 * slide.slip + slide.along_face))
+    return SlidingFace(np.asarray(slide.on_face), np.asarray(speed * slide.slip), passing)
 
 
 def sliding_pv(peak: Array, speed: Array) -> Array:

@@ -58,7 +58,7 @@ class Push:
     @classmethod
     def of(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array) -> Push:
         """Load through the roller centre, or of a face beside the stem axis with its friction."""
-        side = np.tan(pitch.pressure_angle(theta)) + system.face_friction
+        side = pitch.slide(theta, system.face_friction).side
         return cls(side, pitch.push_arm(theta), system.guide_spacing)
 
     @property
@@ -178,7 +178,9 @@ class Loads(Displayed):
     force and side-load factor, which for a roller is |tan alpha|. `jam_index`: friction of the
     guides over axial force; limit 1 where the follower moves outward, elsewhere that of a reversed
     cam. `jam_index_statics`: that of point supports. `sliding_torque`: cam torque of the friction
-    of a face. `travel`: direction of the axial force from the follower axis, counter-clockwise,
+    of a face; `lock`: share that this friction takes of the axial force of an arm. `lever`: of the
+    normal of a flat face over the length of the arm; `pressing`: contact force in the direction of
+    the axial force over it. `travel`: that direction from the follower axis, counter-clockwise,
     rad, of an arm; 0 of a stem.
     """
 
@@ -209,6 +211,9 @@ class Loads(Displayed):
     end_moment: Array
     sliding_torque: Array
     travel: Array = field(default_factory=lambda: readonly(0.0))
+    lock: Array = field(default_factory=lambda: readonly(0.0))
+    lever: Array = field(default_factory=lambda: readonly(1.0))
+    pressing: Array = field(default_factory=lambda: readonly(1.0))
 
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
@@ -225,7 +230,7 @@ class Loads(Displayed):
         That axis is the one of a stem, or runs from the cam axis to the pivot of an arm.
         """
         cos, sin = np.cos(self.travel), np.sin(self.travel)
-        along, across = self.axial_force, self.tangential_force
+        along, across = self.axial_force * self.pressing, self.tangential_force
         return np.stack([along * cos + across * sin, across * cos - along * sin])
 
     @property
@@ -253,8 +258,13 @@ class Loads(Displayed):
 
     @property
     def jammed(self) -> NDArray[np.bool_]:
-        """Where the follower moves outward and jams at any force (n,), bool."""
-        return np.asarray((self.jam_index >= 1.0) & (self.lift_slope > 0.0))
+        """Where the follower jams at any force (n,), bool; by its guides where it moves outward."""
+        return np.asarray(np.sign(self.lift_slope) * self.jam_index + self.lock >= 1.0)
+
+    @property
+    def share(self) -> Array:
+        """Ratio of the axial force without friction to that with it, see `share_left`."""
+        return share_left(self.lift_slope, self.jam_index, self.lock)
 
     @property
     def ends(self) -> LoadEnds:
@@ -299,6 +309,7 @@ class Loads(Displayed):
     def friction_loss(self) -> float:
         """Friction loss of both guides and of a face over one cam turn, J."""
         rubbing = self.friction_force * np.abs(self.lift_slope) + self.sliding_torque
+        rubbing = rubbing + self.lock * self.axial_force * self.lift_slope
         return turn_integral(self.theta, rubbing + self.viscous_force * self.lift_slope)
 
 
@@ -326,9 +337,12 @@ def turn_integral(theta: Array, values: Array) -> float:
     return float(np.sum(0.5 * (steps + np.roll(steps, 1)) * values))
 
 
-def share_left(lift_slope: Array, jam_index: Array) -> Array:
-    """Ratio of the axial force without guide friction to that with it, at least `JAM_FLOOR`."""
-    share = 1.0 - np.sign(lift_slope) * jam_index
+def share_left(lift_slope: Array, jam_index: Array, lock: Values | float = 0.0) -> Array:
+    """Ratio of the axial force without friction to that with it, at least `JAM_FLOOR`.
+
+    lock: of a face on an arm, see `Loads`
+    """
+    share = 1.0 - np.sign(lift_slope) * jam_index - lock
     return np.where(share < JAM_FLOOR, JAM_FLOOR, share)  # NaN stays
 
 
@@ -361,11 +375,14 @@ def follower_loads(
     with F = P + k s + F_e + m a + c3 v, F_e: weight and external force. On a flat face F_a acts
     along the stem at s' - e from its axis, and mu F_a along the face in the direction of the cam
     surface: the guides carry the side force mu F_a and the couple (s' - e) F_a, and the cam torque
-    includes mu F_a (r + s). With an offset, side force and motion have independent signs; in a
-    dwell friction is zero. F <= 0: loss of contact; all cam and guide forces are zero, spring and
-    inertia force are those of the prescribed lift. The denominator is bounded below by `JAM_FLOOR`:
-    close to jamming the forces stay finite, and `jam_index` alone indicates the jam. Neglected: the
-    couple of the friction forces about the stem axis, the weight across it, rolling friction.
+    includes mu F_a (r + s). On a flat face along an arm F_a is that at its length l, N q / l with q
+    the lever of the normal force N; friction takes mu N f of the moment with its lever f, and the
+    axial force is F / (1 - sign(v) c |tan(alpha)| - mu f / q), see `Slide`. With an offset, side
+    force and motion have independent signs; in a dwell friction is zero. F <= 0: loss of contact;
+    all cam and guide forces are zero, spring and inertia force are those of the prescribed lift.
+    The denominator is bounded below by `JAM_FLOOR`: close to jamming the forces stay finite, and
+    `jam_index` alone indicates the jam. Neglected: the couple of the friction forces about the stem
+    axis, the weight across it, rolling friction.
 
     Parameters
     ----------
@@ -406,12 +423,14 @@ def follower_loads(
     on_points = push.on_points(*levers(overhang, system.guide_spacing))
     rubbing_a, rubbing_b = system.rubbing_factors(push, overhang, theta)
     jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.side_factor
-    axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index)
+    slide = pitch.slide(theta, system.face_friction)
+    axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index, slide.lock)
     side_load = axial_force * push.side_factor
     friction_a = system.friction_a * rubbing_a * side_load
     friction_b = system.friction_b * rubbing_b * side_load
-    sliding = system.face_friction * axial_force * pitch.height(theta)
+    sliding = axial_force * slide.torque
     friction_power = (friction_a + friction_b) * np.abs(slope) + viscous_force * slope + sliding
+    friction_power = friction_power + slide.lock * axial_force * slope
     return Loads(
         theta=theta,
         lift=lift,
@@ -424,7 +443,7 @@ def follower_loads(
         applied_force=applied_force,
         inertia_force=inertia_force,
         axial_force=axial_force,
-        normal_force=axial_force / np.cos(pressure_angle),
+        normal_force=axial_force / (slide.lever * np.cos(pressure_angle)),
         tangential_force=axial_force * push.side,
         friction_force_a=friction_a,
         friction_force_b=friction_b,
@@ -441,6 +460,9 @@ def follower_loads(
         end_moment=axial_force * push.arm,
         sliding_torque=sliding,
         travel=pitch.travel(theta),
+        lock=np.asarray(slide.lock),
+        lever=np.asarray(slide.lever),
+        pressing=np.asarray(slide.pressing),
     )
 
 
@@ -457,8 +479,7 @@ def torque_on_cam(
     still = follower_loads(pitch, system, 0.0, theta)
     slope, lift_d2 = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
     closing = still.closing_force
-    share = share_left(slope, still.jam_index)
-    arm = slope + system.face_friction * pitch.height(theta)
+    share, arm = still.share, slope + pitch.slide(theta, system.face_friction).torque
 
     def torque(speed: Array, cam_acceleration: Array) -> Array:
         inertia_force = system.mass * (lift_d2 * speed**2 + slope * cam_acceleration)

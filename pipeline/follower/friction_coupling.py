@@ -132,6 +132,8 @@ def guided_strokes(
     way = _joined([Push.of(s.pitch, s.system, s.theta) for s in strokes])
     slope = np.concatenate([each.lift_slope for each in points])
     force = np.concatenate([each.frictionless_force for each in points])
+    lock = np.concatenate([np.broadcast_to(each.lock, each.theta.shape) for each in points])
+    free = force / share_left(slope, np.zeros_like(slope), lock)
     sizes = [s.theta.size for s in strokes]
     friction_a = np.repeat([s.system.friction_a for s in strokes], sizes)
     friction_b = np.repeat([s.system.friction_b for s in strokes], sizes)
@@ -140,12 +142,12 @@ def guided_strokes(
     def mapping(push: Array, at: NDArray[np.intp]) -> Array:
         a, b = bores.factors(push, at)
         jam = (friction_a[at] * a + friction_b[at] * b) * way.side_factor[at]
-        return np.asarray(force[at] / share_left(slope[at], jam))
+        return np.asarray(force[at] / share_left(slope[at], jam, lock[at]))
 
     outward = slope > 0.0
-    high = np.where(outward, force / JAM_FLOOR, force)
+    high = np.where(outward, force / JAM_FLOOR, free)
     on_points = np.concatenate([each.axial_force for each in points])
-    low, start = np.where(outward, force, 0.0), np.where(outward, force, on_points)
+    low, start = np.where(outward, free, 0.0), np.where(outward, free, on_points)
     _, rounds = balanced(mapping, low, high, start)
     a, b = bores.last_factors
     ends = np.cumsum([0, *sizes])
@@ -289,7 +291,8 @@ def _residual(
     rubs = (
         system.friction_a * reactions.rubbing_load_a + system.friction_b * reactions.rubbing_load_b
     )
-    miss = loads.axial_force - np.sign(loads.lift_slope) * rubs - free
-    bounded = share_left(loads.lift_slope, loads.jam_index) <= JAM_FLOOR
+    rubs = np.sign(loads.lift_slope) * rubs + loads.lock * loads.axial_force
+    miss = loads.axial_force - rubs - free
+    bounded = loads.share <= JAM_FLOOR
     push = np.where(bounded, 0.0, loads.axial_force)
     return np.divide(np.abs(miss), push, out=np.zeros_like(miss), where=push > 0.0)

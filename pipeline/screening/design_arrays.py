@@ -23,7 +23,7 @@ from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.checks.torque_balance import NO_MEAN
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, motion_of
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, face_of, motion_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import keyway_cut, rotating_force
 from camwright.pipeline.follower.follower_forces import Push
@@ -193,9 +193,9 @@ class Designs:
 
     @property
     def contact_travel(self) -> Array:
-        """Minimum width 2 max|s' - e| of a face centred on the stem (m,), m."""
-        arm = self.whole.motion.arm
-        return np.asarray(2.0 * np.maximum(sampled_greatest(arm), -sampled_least(arm)))
+        """Minimum width of a face, twice the travel of its contact from its middle (m,), m."""
+        travel = face_of(self.whole.motion).on_face
+        return np.asarray(2.0 * np.maximum(sampled_greatest(travel), -sampled_least(travel)))
 
     @KeptResult
     def stroke(self) -> Array:

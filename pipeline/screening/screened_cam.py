@@ -101,7 +101,7 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def share(self) -> Array:
-        return share_left(self.slope, self.jam)
+        return share_left(self.slope, self.jam, self.motion.lock)
 
     @cached_property
     def axial(self) -> Array:
@@ -188,7 +188,8 @@ class ScreenedCam(LoadedCam):
     @cached_property
     def ends(self) -> LoadEnds:
         """First angles at which followers leave the cam or lock; see `Loads.ends`."""
-        return ends_of(self.normal <= 0.0, (self.jam >= 1.0) & (self.slope > 0.0))
+        index = np.sign(self.slope) * self.jam + self.motion.lock
+        return ends_of(self.normal <= 0.0, index >= 1.0)
 
     @cached_property
     def friction_power(self) -> Array:
@@ -199,6 +200,7 @@ class ScreenedCam(LoadedCam):
     def friction_loss(self) -> Array:
         """Friction loss of guides and face over a cam turn (m,), J."""
         work = self.jam * self.axial * np.abs(self.slope) + self.axial * self.motion.sliding
+        work = work + self.motion.lock * self.axial * self.slope
         return FULL_TURN * np.mean(work + self.viscous * self.slope, axis=-1)
 
     @cached_property
@@ -245,11 +247,11 @@ class ScreenedCam(LoadedCam):
         if self.numbers.get("follower.face.friction") is None:
             return None
         force = np.maximum(self.normal, 0.0)
-        sliding = np.broadcast_to(self.speed * motion.height, force.shape)
+        sliding = np.broadcast_to(self.speed * motion.slip, force.shape)
         friction = self.numbers["follower.face.friction"]
         heat = friction * force * sliding / self.numbers["contact.width"]
         half = np.where((heat > 0) & ~np.isnan(self.half_width), self.half_width, 1.0)
-        rise = flash_rise(machine, heat, sliding, self.speed * self.jet.lift_d2, half)
+        rise = flash_rise(machine, heat, sliding, self.speed * motion.along_face, half)
         lost = np.isnan(self.block.relative_radius)
         return None if rise is None else np.where(lost, np.nan, rise)
 
@@ -259,14 +261,14 @@ class ScreenedCam(LoadedCam):
 
         0 where a roughness or the oil is not known, NaN without contact.
         """
-        machine, block = self.block.machine, self.block
+        machine, block, motion = self.block.machine, self.block, face_of(self.motion)
         oil, rough = machine.lubricant, machine.cam.roughness
         other, rise = machine.follower.roughness, self.flash
         ratio = np.zeros(self.normal.shape)
         if oil is None or rough is None or other is None or rise is None:
             return ratio
         load = np.maximum(self.normal, 0.0) / self.numbers["contact.width"]
-        passing = self.speed * (0.5 * face_of(self.motion).height + self.jet.lift_d2)
+        passing = self.speed * (0.5 * motion.slip + motion.along_face)
         for k, radius in enumerate(block.relative_radius):
             ratio[k] = np.nan
             if np.isfinite(radius).all():

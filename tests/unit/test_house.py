@@ -414,6 +414,8 @@ FOLLOWERS = Kinds(
     classes=frozenset({
         "Roller", "FlatFace", "RollerMotion", "FaceMotion", "RollerContour", "FlatFaceContour",
         "PitchCurve", "FacePath", "ArmPath", "ArmContour", "ArmMotion", "RoundMotion",
+        "ArmFacePath", "ArmFaceContour", "ArmFaceMotion", "CurvedFacePath", "CurvedFaceContour",
+        "CurvedFaceMotion", "PlaneMotion", "Sliding",
         "RollerBody", "RingBody", "FaceBody", "RollerShapes", "FaceShapes",
     }),
     words=frozenset({"roller", "face", "flat", "oscillating"}),

@@ -385,7 +385,7 @@ class _SizeSearch:
         screened = self._screened(shape, spring)
         if FACE in gaps:
             widest = max(
-                float(np.max(np.abs(each.contour.pitch.push_arm(each.theta))
+                float(np.max(np.abs(each.contour.pitch.slide(each.theta).on_face)
                              + _FACE_HALF_WIDTHS * each.contact.half_width))
                 for each in screened.solved.cycles
             )  # fmt: skip
