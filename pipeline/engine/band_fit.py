@@ -104,7 +104,9 @@ def shared_edges(start: Array, end: Array) -> Array:
 
 
 def points(angle: Array, last: int, derivative: bool = False) -> Array:
-    """Values or slopes of a Fourier basis, constant to harmonic `last`, (n, 2 last + 1)."""
+    """Fourier basis of the cycle at crank angles (n,), rad: 1, cosines and then sines of harmonics
+    1 to `last`, (n, 2 last + 1); with `derivative` its slope, 1/rad.
+    """
     order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
     phase = np.outer(angle, order)
     if derivative:
@@ -113,7 +115,9 @@ def points(angle: Array, last: int, derivative: bool = False) -> Array:
 
 
 def integrals(start: Array, end: Array, last: int) -> Array:
-    """Integrals of a Fourier basis from `start` to `end`, (n, 2 last + 1)."""
+    """Integrals of the Fourier basis of `points` over the crank angle from `start` (n,) to `end`
+    (n,), rad, (n, 2 last + 1).
+    """
     order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
     from_, to = np.outer(start, order), np.outer(end, order)
     cosines, sines = (np.sin(to) - np.sin(from_)) / order, (np.cos(from_) - np.cos(to)) / order

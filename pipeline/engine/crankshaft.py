@@ -363,7 +363,11 @@ def _shape(speed: Array, load: Load) -> Array:
 
 
 def _speed(energy: Array, inertia: Array, mean_speed: float, span: float) -> Array:
-    """Speed of the kinetic energy `energy` + constant; `mean_speed` over time sets the constant."""
+    """Speed (n,), rad/s, whose kinetic energy is `energy` (n,), J, and a constant, set so that the
+    mean over time is `mean_speed`; inertia (n,), kg m2.
+
+    StallError where no constant above the lowest speed allowed gives that mean.
+    """
 
     def speed(floor: float) -> Array:
         return np.asarray(np.sqrt(2.0 * (energy + floor) / inertia))
@@ -437,7 +441,9 @@ def _orders(count: int, span: float) -> Array:
 
 
 def _integral(values: Array, span: float) -> Array:
-    """Integral over a span (rad) of values of zero mean, itself of zero mean."""
+    """Integral over the shaft angle of values (n,) of zero mean, itself of zero mean; they span
+    `span`, rad, at equal angles. By Fourier series.
+    """
     spectrum, order = np.fft.rfft(values), _orders(values.size, span)
     spectrum[0] = 0.0
     spectrum[1:] /= 1j * order[1:]
@@ -445,7 +451,9 @@ def _integral(values: Array, span: float) -> Array:
 
 
 def _derivative(values: Array, span: float) -> Array:
-    """Derivative by the shaft angle of values over a span (rad)."""
+    """Derivative by the shaft angle, 1/rad, of values (n,) at equal angles over `span`, rad; by
+    Fourier series.
+    """
     spectrum = np.fft.rfft(values) * 1j * _orders(values.size, span)
     if values.size % 2 == 0:
         spectrum[-1] = 0.0  # the highest harmonic of an even count has no slope at the samples

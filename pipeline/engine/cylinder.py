@@ -303,6 +303,9 @@ class CylinderEngine(CrankDrive):
         self._guard_burn()
 
     def _guard_valves(self) -> None:
+        """InputError for a lift table that is not closed at its ends, or a valve that is open for a
+        whole cycle.
+        """
         for name in ("intake", "exhaust"):
             table: tuple[LiftPoint, ...] = getattr(self, f"{name}_lift_table")
             if table:
@@ -313,6 +316,7 @@ class CylinderEngine(CrankDrive):
                 raise InputError(f"engine.{name}_valve_close", shown(closes, "deg"), limit)
 
     def _guard_burn(self) -> None:
+        """InputError for a spark or combustion outside the time in which both valves are shut."""
         if not pi <= self.spark <= 3.0 * pi:
             limit = "from 180 to 540 deg, with firing TDC at 360 deg"
             raise InputError("engine.spark", shown(self.spark, "deg"), limit)

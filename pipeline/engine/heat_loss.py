@@ -37,7 +37,8 @@ def wall_area(engine: CylinderEngine, theta: ArrayLike) -> Array:
 def film_coefficient(
     engine: CylinderEngine, crank_speed: float, theta: Array, volume: Array, charge: Charge
 ) -> FilmCoefficient:
-    """Film coefficient as a function of node of the cycle, pressure and temperature, W/(m2 K).
+    """Function of node number of the cycle, pressure, Pa, and temperature, K, for the film
+    coefficient of the walls, W/(m2 K).
 
     Parameters
     ----------

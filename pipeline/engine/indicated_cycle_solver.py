@@ -45,6 +45,9 @@ class _Steps:
 
 
 def _steps(engine: CylinderEngine, crank_speed: float) -> _Steps:
+    """Steps of the cycle, finer where open valves level the pressure fast, and the engine at their
+    nodes.
+    """
     intake, exhaust = intake_valve(engine), exhaust_valve(engine)
     start = ceil(degrees(engine.intake_window[1]) - 1e-9)
     whole = np.radians(start + np.arange(STEPS_PER_CYCLE + 1.0))
@@ -145,7 +148,10 @@ def _rates_of(
     steps: _Steps,
     film: FilmCoefficient,
 ) -> Rates:
-    """Flows at a node, as a function of mass, energy and specific enthalpy offered by the intake.
+    """Function of node number, mass, kg, energy, J, and specific enthalpy of the gas offered by the
+    intake, J/kg, for the flows per rad of the crank: mass through the intake and through the
+    exhaust valve, positive into the cylinder, kg; enthalpy with them, work of the gas, heat lost,
+    J.
 
     Its inputs are bound to local names, since it is called some 1e4 times per cycle.
     """
@@ -202,7 +208,9 @@ def _step(
     heat: float,
     offered: float,
 ) -> Flows:
-    """Flows of one classical Runge-Kutta step with heat released at a constant rate (J/rad).
+    """Flows over one classical Runge-Kutta step of `length`, rad, with heat released at a constant
+    rate `heat`, J/rad: mass through intake and exhaust valve, kg, enthalpy, work, heat lost, J; see
+    `_rates_of`.
 
     Written out: the loop over the steps takes the time of a cycle.
     """
@@ -228,7 +236,8 @@ def _step(
 
 
 def _exchange(content: _Content, port: _Port, intake: float, exhaust: float, gas: Gas) -> float:
-    """Update burnt gas and intake contents by the gas that passed the valves (kg).
+    """Update burnt gas and the gas in the intake by masses that passed the valves into the
+    cylinder, kg.
 
     Returns the excess enthalpy (J) of the gas drawn in over its mass at the enthalpy offered.
     """

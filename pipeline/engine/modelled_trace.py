@@ -64,10 +64,10 @@ def pickup_voltage(
     sample: float = SAMPLE,
     pitch_errors: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Times, s, and voltages, V, of a variable-reluctance pick-up over a periodic cycle.
+    """Times (n,), s, and voltages (n,), V, of a variable-reluctance pick-up over a periodic cycle.
 
-    The flux rises by a bell over each tooth, and the voltage is its rate: it falls through zero
-    in the middle of a tooth, in proportion to the speed.
+    The flux rises by a bell over each tooth, and the voltage is its rate: it falls through zero in
+    the middle of a tooth, in proportion to the speed.
 
     Parameters
     ----------

@@ -126,7 +126,13 @@ def passages_of(
 
 
 def _cycles(run: Sequence[Edges], wheel: TriggerWheel) -> list[tuple[Array, Array, Array]]:
-    """Nominal angles (rad), numbers and times (s) of the edges of each whole cycle of a run."""
+    """Nominal angles, rad, edge numbers and times, s, of the edges of each whole cycle of a run.
+
+    run : edges of each kind, rising and falling. Both ends of a cycle belong to it; times count
+    from its first edge, angles are as in the first cycle. Edges that are missed or too many have
+    been refused before (`counted`); a cycle whose number of edges differs from that of the first,
+    by round-off at its ends, is left out.
+    """
     angle = np.concatenate([wheel.angle(edges.places, edges.falling) for edges in run])
     times = np.concatenate([edges.times for edges in run])
     edge = np.concatenate([edges.numbers(wheel) for edges in run])
@@ -148,7 +154,8 @@ def _cycles(run: Sequence[Edges], wheel: TriggerWheel) -> list[tuple[Array, Arra
 def _half_orders(
     source: str, cycles: Sequence[tuple[Array, Array, Array]], harmonics: int
 ) -> tuple[Array, Array]:
-    """Half orders of the mean cycle of a run, and the variance (rad2) of the angle of an edge.
+    """Half orders of the mean cycle of a run, cosines then sines, rad, and the variance (m,), rad2,
+    of the angle of an edge in each cycle.
 
     The same edge passes twice in a cycle. The difference of its two times is free of pitch errors
     and holds half orders of the torque alone, those above `harmonics` are noise.

@@ -120,10 +120,12 @@ class Crossings:
 
     @property
     def mirrored(self) -> bool:
-        """Whether tooth middles are at the rising crossings: a pick-up of reversed polarity.
+        """Whether the middles of the teeth are at the rising crossings, as with a pick-up of
+        reversed polarity.
 
-        Those divide the gaps of the wheel in two. Without a gap, or a crossing in it, the steep
-        ones are the teeth; of vertical ones those with less jitter.
+        The crossings at the middles of teeth divide the gaps of the wheel in two: the others do
+        not. Without a gap, or a crossing in it, the steep ones are at the teeth; of equally steep
+        ones those with less jitter.
         """
         middles = middles_by_gaps(self.times[~self.rising], self.times[self.rising])
         if middles:
@@ -185,7 +187,9 @@ class Swing:
         return Crossings(times, rising, slopes)
 
     def upright(self, threshold: float) -> Swing:
-        """The voltage with its polarity corrected."""
+        """The voltage with its polarity such that the middles of the teeth are at falling
+        crossings.
+        """
         crossings = self.crossings(threshold)
         if crossings.times.size < CROSSINGS_MIN or not crossings.mirrored:
             return self
@@ -233,7 +237,8 @@ def swing_of(field: str, time: ArrayLike, voltage: ArrayLike) -> Swing:
 
 
 def _base(value: Array, half: float) -> float:
-    """Voltage without a tooth, from the middle: a rail of a rectified wave, the median of others.
+    """Voltage without a tooth, V, from the middle between the rails: a rail of a rectified wave,
+    the median of any other; half : half the distance of the rails, V.
 
     The median of a squared wave is at a rail as well; it crosses any level at once.
     """
@@ -245,7 +250,9 @@ def _base(value: Array, half: float) -> float:
 
 
 def _without_drift(volts: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Voltage without its drift, and the samples of the blocks in which teeth pass."""
+    """Voltage (n,) without its drift, V, and which samples (n,) are in blocks of the record in
+    which teeth pass.
+    """
     edges = np.linspace(0, volts.size, BLOCKS + 1).astype(int)
     rails = np.array([np.quantile(volts[a:b], RAILS) for a, b in pairwise(edges)])
     swings = rails[:, 1] - rails[:, 0]
@@ -281,7 +288,8 @@ def _even(time: Array) -> Array:
 def _lines(
     time: Array, value: Array, noise: float, before: NDArray[np.intp], after: NDArray[np.intp]
 ) -> tuple[Array, Array]:
-    """Times (k,) and slopes (k,) at which straight lines through flanks are zero.
+    """Times (k,), s, and slopes (k,), V/s, at which straight lines through the flanks are zero;
+    before, after : samples (k,) at both ends of each flank.
 
     A line is that of least squares through the samples that noise may bring to zero; where they are
     fewer than three, through the two beside the first change of sign.
@@ -333,7 +341,9 @@ def crossings_of(field: str, swing: Swing, threshold: float) -> Crossings:
 
 
 def _relative_speed(time: Array, middles: Array) -> Array:
-    """Speed over its mean at the times (s) of samples, by a spline through the teeth."""
+    """Speed over its mean at times (n,), s, by a spline through the times of the tooth middles
+    (m,), s.
+    """
     middles = np.delete(middles, extra_teeth(middles))
     intervals = np.diff(middles)
     pitches = np.maximum(np.round(intervals / local_median(intervals)), 1.0)
@@ -344,6 +354,7 @@ def _relative_speed(time: Array, middles: Array) -> Array:
 
 
 def _enough(field: str, crossings: Crossings) -> Crossings:
+    """The crossings; InputError if they are too few for a wheel."""
     if crossings.times.size < CROSSINGS_MIN:
         limit = f"{CROSSINGS_MIN} or more; check channel, record and engine.threshold"
         raise InputError(field, f"{crossings.times.size} crossings", limit)
@@ -369,7 +380,8 @@ class PickupRun:
 def passage(
     field: str, crossings: Crossings, base: float, wheel: TriggerWheel, extra: int
 ) -> PickupRun:
-    """Rising and falling edges of one run, with the tooth positions.
+    """Edges of one run past the pick-up, falling crossings as the first kind, with the positions of
+    their teeth.
 
     The falling crossings, which are steep, are counted. Rising ones in the gap of the wheel are
     left out, and all of them where they jitter more.
@@ -501,7 +513,10 @@ def _runs(crossings: Crossings) -> list[Crossings]:
 
 
 def _common(patterns: Sequence[tuple[str, ToothPattern]]) -> ToothPattern:
-    """The one pattern of all runs; one without a recurring mark agrees with any."""
+    """Tooth pattern that all runs show; InputError if two differ.
+
+    A run without a recurring mark agrees with any.
+    """
     whole = [one for one in patterns if one[1].teeth is not None] or patterns[:1]
     field, shown = whole[0]
     for other, pattern in whole[1:]:

@@ -186,6 +186,9 @@ class _Times:
         inertia: Inertia,
         harmonics: int,
     ) -> _Times:
+        """Passing times of a passage; `lean`: place of its speed in the range, `measured`: of the
+        first record.
+        """
         nodes, weights = np.polynomial.legendre.leggauss(_GAUSS_NODES)
         half = 0.5 * np.diff(passage.angle)[:, None]
         at = passage.angle[:-1, None] + half * (nodes + 1.0)
@@ -209,8 +212,10 @@ class _Times:
         return np.asarray(self.passage.times * (self.passage.mean_speed / self.noise))
 
     def predicted(self, state: _State, k: int) -> tuple[Array, Array, Array] | None:
-        """Times of the edges (n,), in noises, and their derivatives: by what belongs to the passage
-        (n, 3), and by the rest (n, 4 h + e); None where the crank would nearly stand still."""
+        """Times of the edges (n,), and their derivatives by the unknowns of the passage, t_0, E, m
+        (n, 3), and by the common ones, work, change and errors (n, 4 h + e); times in units of
+        their noise. None where the crank would nearly stand still.
+        """
         passage, work = self.passage, state.work + self.lean * state.change
         span = passage.angle - passage.angle[0]
         start, mean_energy, mean_torque = state.own[k]
@@ -276,7 +281,9 @@ class _State:
         )
 
     def change_ratio(self, marks: NDArray[np.bool_]) -> float:
-        """Change over the work itself, rms of the marked waves, noise deducted."""
+        """Change of the work with the speed over the work itself: rms of the waves marked (2 h,),
+        noise deducted; 0 where noise alone explains it.
+        """
         size = self.work.size
         noise = np.diag(self.covariance)[size : 2 * size][marks].sum()
         square, of = (self.change[marks] ** 2).sum() - noise, (self.work[marks] ** 2).sum()
@@ -293,7 +300,9 @@ class _Prior:
 
     @classmethod
     def of(cls, state: _State, tolerance: float, change: Array) -> _Prior:
-        """Prior of a state; `change` (2 h,), J, as in `_solved`."""
+        """Prior of the unknowns: errors by their tolerance, rad; work free; change by its standard
+        deviation (2 h,), J, fixed at 0 where that is.
+        """
         energy = float(np.mean(state.own[:, 1]))
         size, edges = state.work.size, state.errors.size
         changing = change > 0.0
@@ -326,6 +335,9 @@ class _Reduced(NamedTuple):
 
     @classmethod
     def of(cls, part: _Times, state: _State, k: int, prior: _Prior) -> _Reduced | None:
+        """Equations of passage number k, linear at a state; None where the crank would nearly stand
+        still.
+        """
         predicted = part.predicted(state, k)
         if predicted is None:
             return None
@@ -379,7 +391,7 @@ def _solved(parts: Sequence[_Times], state: _State, tolerance: float, change: Ar
             rows = _reduced(parts, state, prior)
             share *= 0.5
         if rows is not None and largest < _TIME_STEP_END:
-            return _judged(state, parts, rows, prior, scipy.linalg.inv(normal))
+            return _with_covariance(state, parts, rows, prior, scipy.linalg.inv(normal))
     raise CamError(
         "engine.reference: the pitch errors of the wheel cannot be estimated; check the inertia of "
         "crankshaft and running gear, and that both records are of this engine"
@@ -393,10 +405,12 @@ def _reduced(parts: Sequence[_Times], state: _State, prior: _Prior) -> list[_Red
     return known if len(known) == len(rows) else None
 
 
-def _judged(
+def _with_covariance(
     state: _State, parts: Sequence[_Times], rows: Sequence[_Reduced], prior: _Prior, inverse: Array
 ) -> _State:
-    """A solved state with what is known of its errors."""
+    """Solved state with the covariance of its unknowns, the misfit over the noise, and the
+    covariance with the noise of each time; `inverse`: of the normal matrix.
+    """
     freedom = sum(part.passage.angle.size - 3 for part in parts) - inverse.shape[0]
     freedom += float(prior.precision @ np.diag(inverse))  # an unknown left at its prior is none
     square = sum(row.square for row in rows)

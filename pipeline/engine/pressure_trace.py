@@ -190,7 +190,7 @@ class PressureTrace:
         )
 
     def turned(self, offset: float) -> PressureTrace:
-        """Trace shifted by a crank angle `offset` (rad)."""
+        """Trace with its angles later by `offset`, rad; by Fourier series."""
         if offset == 0.0:
             return self
         order = np.arange(self.cycles.shape[1] // 2 + 1) * (2.0 * pi / CYCLE_ANGLE)
@@ -199,7 +199,7 @@ class PressureTrace:
         return replace(self, cycles=turned, offset=self.offset + offset)
 
     def guarded(self) -> PressureTrace:
-        """The trace; refused if implausible as a cylinder pressure.
+        """The trace itself; InputError if it is implausible as a cylinder pressure.
 
         Raises
         ------
@@ -223,7 +223,9 @@ class PressureTrace:
         return self
 
     def scale(self, engine: CrankDrive, intake_pressure: float) -> float:
-        """Compression pressure rise over that of a polytropic from intake pressure (Pa)."""
+        """Rise of the pressure in compression over that of a polytropic from intake pressure (Pa),
+        -.
+        """
         low, high = COMPRESSION_WINDOW
         ends = np.interp([low, high], self.theta, self.mean)
         volumes = engine.volume(np.array([pi, low, high]))
@@ -404,6 +406,9 @@ def pressure_from_csv(
 
 
 def _bare_angle(units: tuple[str, str]) -> tuple[int, float]:
+    """Column number, 0, of the angle in a file without a header, and the factor of its
+    unit to rad.
+    """
     factor = ANGLE_UNITS.get(units[0])
     if factor is None:
         raise InputError("engine.angle_unit", units[0], f"one of {', '.join(ANGLE_UNITS)}")
@@ -419,7 +424,11 @@ def _cycles(
     labels: Sequence[str],
     gap_max: float,
 ) -> list[Trace]:
-    """One trace per cycle and column."""
+    """Trace of each cycle and column of a file; cycles may stand one below the other.
+
+    written : angles (n,) in the unit of the file, factor : to rad; values (n, k), Pa; labels :
+    headers of the columns.
+    """
     angle = _unwrapped(written * factor)
     guard_order(name, lines, angle / factor, "crank angle")
     spacing = float(np.median(np.diff(angle)))

@@ -164,7 +164,7 @@ class SpeedTable(WheelTable):
 def edges_from_csv(
     path: str | Path, wheel: TriggerWheel, both_edges: bool = True, column: str = ""
 ) -> EdgeRecord:
-    """Edge times from a file: a column for each run, or a logic level over time.
+    """Edges of each run in a file: a column of their times per run, or a logic level over time.
 
     Columns of levels, 0 and 1, are those named `column`, else ``PriLevel``, the primary trigger in
     the composite log of an engine control, else the only one. Of a wheel with several gaps the
@@ -197,7 +197,9 @@ def _longest(times: Array) -> float:
 def _counted(
     field: str, run: Array, wheel: TriggerWheel, both: bool
 ) -> tuple[tuple[Edges, ...], TriggerWheel]:
-    """Edges of a run, and the wheel with the rows of teeth between several gaps."""
+    """Edges of a run, and the wheel, completed by the rows of teeth between its gaps where it has
+    several.
+    """
     if wheel.missing_teeth and not wheel.rows and (np.diff(run) > 0.0).all():
         kinds = (run[::2], run[1::2]) if both else (run,)
         for kind in kinds:
@@ -219,7 +221,9 @@ def _times(text: TraceText, column: str) -> dict[str, Array]:
 
 
 def _levels(text: TraceText, column: str) -> list[int]:
-    """Columns of levels to read; none in a file of times."""
+    """Numbers of the columns that hold logic levels and are to be read; empty for a
+    file of times.
+    """
     header = text.header
     bare = [at for at, head in enumerate(header) if not has_unit(head)]
     levels = [at for at in bare if set(text.cells(at)) in _LEVELS]
@@ -234,7 +238,9 @@ def _levels(text: TraceText, column: str) -> list[int]:
 
 
 def _changes(text: TraceText, levels: Sequence[int]) -> dict[str, Array]:
-    """Times of the changes of levels (n,), s, by header; the first is a rising one."""
+    """Times (n,), s, at which each logic level changes, by its header; the first change is a rising
+    one.
+    """
     header = text.header
     times = columns_of(header, "time")
     if len(times) > 1:
@@ -359,7 +365,9 @@ def _speed_table(text: TraceText, column: str, unit: str) -> tuple[Array, Array]
 
 
 def _without_unit(name: str, header: Sequence[str], column: str) -> list[int]:
-    """Columns without a unit, of several those named `column` or of one series."""
+    """Numbers of the columns without a unit: those named `column`, else all, which have to be alike
+    but for numbers.
+    """
     bare = [at for at, head in enumerate(header) if not has_unit(head)]
     named = named_columns(header, column, bare)
     if not column and not is_series(header[k] for k in bare):

@@ -72,7 +72,7 @@ class Filter(Part):
 
     @property
     def weights(self) -> Array:
-        """Factor on harmonics 0 to `last`."""
+        """Factor (last + 1,) of the filter on harmonics 0 to `last` of the cycle."""
         share = np.arange(self.last + 1) / self.harmonics
         if self.taper == 0.0:
             return np.ones_like(share)
@@ -184,8 +184,9 @@ class SpeedTrace:
 
     @property
     def half_order_share(self) -> float:
-        """Share of the half orders, unlike in the two turns of a cycle, in the variance of the
-        speed; with r the correlation of the two turns it is (1 - r) / 2."""
+        """Share of the half orders, by which the two turns of a cycle differ, in the variance of
+        the speed: (1 - r) / 2 with the correlation r of the two turns.
+        """
         ripple = self.mean - self.mean.mean()
         unlike = 0.5 * (ripple - np.roll(ripple, ripple.size // 2))
         whole = float(ripple.var())
@@ -334,8 +335,10 @@ def _guard_unknowns(source: str, matrix: Array, band: Filter) -> None:
 def _cycles_of(
     source: str, runs: Sequence[Sequence[Edges]], wheel: TriggerWheel
 ) -> tuple[Array, Array, NDArray[np.intp], Array]:
-    """Intervals of the cycle, rad, (n,) and (n,), numbers of the edges of both turns between which
-    they lie (2, n), and their durations in each cycle, s, (m, n)."""
+    """Start and end of each interval between two edges of one kind in the cycle, rad, (n,) each;
+    numbers of these edges in both turns (2, n); durations in each whole cycle of the runs, s, (m,
+    n).
+    """
     durations: list[Array] = []
     spans: tuple[Array, Array] | None = None
     edges = len(runs[0]) * wheel.present

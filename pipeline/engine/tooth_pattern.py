@@ -81,7 +81,9 @@ def tooth_pattern(times: Array) -> ToothPattern:
 
 
 def _gaps(intervals: Array, missing: int) -> NDArray[np.intp]:
-    """Intervals that are gaps, so that the speed changes least from interval to interval."""
+    """Numbers of the intervals that are gaps of `missing` teeth: those with which the speed changes
+    least from interval to interval, by dynamic programming.
+    """
     slowness = np.log(intervals)[:, None] - np.array([0.0, np.log1p(missing)])
     change = np.abs(slowness[1:, :, None] - slowness[:-1, None, :])  # to either from either
     total, came = np.zeros(2), np.zeros((intervals.size, 2), dtype=np.intp)
@@ -97,7 +99,9 @@ def _gaps(intervals: Array, missing: int) -> NDArray[np.intp]:
 
 
 def _missing(intervals: Array, gaps: NDArray[np.intp], most: int) -> int:
-    """Teeth left out at the gaps, so that the speed changes least from interval to interval."""
+    """Number of teeth left out at each gap, up to `most`, with which the speed changes least from
+    interval to interval.
+    """
     pitches = np.ones((most, intervals.size))
     pitches[:, gaps] += np.arange(1, most + 1)[:, None]
     changes = np.abs(np.diff(np.log(intervals / pitches), axis=1)).sum(axis=1)
@@ -105,7 +109,9 @@ def _missing(intervals: Array, gaps: NDArray[np.intp], most: int) -> int:
 
 
 def _recurring(between: NDArray[np.intp]) -> tuple[int, ...]:
-    """Teeth in the rows between several gaps of a turn, the longest first; empty without such."""
+    """Numbers of teeth in the rows between several gaps of a turn, the longest row first; () where
+    they do not recur or there is one gap.
+    """
     for count in range(1, between.size - 1):
         if (between[count:] == between[:-count]).all():
             rows = tuple(int(teeth) for teeth in between[:count])
@@ -160,7 +166,7 @@ def extra_teeth(times: Array) -> NDArray[np.intp]:
 
 
 def runs_of(times: Array) -> list[slice[int, int, None]]:
-    """Runs of a record, separated by pauses of the crank."""
+    """Slices of the times of a record, s, one per run between pauses of the crank."""
     intervals = np.diff(times)
     ends = np.flatnonzero(intervals > PAUSE * np.median(intervals)) + 1
     bounds = [0, *(int(end) for end in ends), times.size]

@@ -40,7 +40,9 @@ class SlopeNoise:
 
     @classmethod
     def of(cls, slope: Array, freedom: float) -> SlopeNoise:
-        """Propagation by a linear map (n, observations) of independent noise."""
+        """Noise by a linear map (n, observations) of independent unit noise to the slope; freedom :
+        degrees of freedom of the estimated noise.
+        """
         gain = np.sqrt((slope**2).sum(axis=1))
         unit = slope / gain[:, None]
         steps = np.diff(unit, axis=0, append=unit[:1])
@@ -77,7 +79,8 @@ class SlopeNoise:
         return np.asarray(self._factor((count - 1) * self.dimensions) * error * self.gain)
 
     def _factor(self, freedom: float) -> float:
-        """Standard errors in the half-width of a band that holds a whole closed curve.
+        """Half-width over standard error of a band that holds a whole closed curve at 95 %, by the
+        degrees of freedom; infinite: known noise.
 
         References
         ----------
@@ -113,11 +116,12 @@ def cut_off(speeds: Array, weights: Array, inertia: float, noise_floor: float) -
 
 
 def _beyond(spectra: Array, weights: Array, noise: Array) -> float:
-    """Greatest amplitude of what a filter cuts off a curve over the cycle.
+    """Greatest amplitude that the harmonics above a filter would add to a curve over the cycle, in
+    its unit.
 
     Harmonics that stand out of the noise are known. Beyond the last of them, amplitudes are taken
-    to fall by the ratio by which they fall from the greatest one on, at least so fast
-    that the noise hides the next.
+    to fall by the ratio by which they fall from the greatest one on, at least so fast that the
+    noise hides the next.
 
     Parameters
     ----------

@@ -81,7 +81,9 @@ class TriggerWheel(Part):
 
     @property
     def steps(self) -> Array:
-        """Pitches from each tooth to the next (n - m,)."""
+        """Distance from each tooth to the next, in pitches (n - m,), of n teeth of which m are
+        missing.
+        """
         rows = self.rows or (self.present,)
         steps = np.ones(self.present)
         steps[np.cumsum(rows) - 1] += self.missing_teeth
@@ -215,11 +217,12 @@ def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
 
 
 def _is_steady(slowness: Array, cycle: int) -> bool:
-    """Whether no logarithm of the time of a pitch (n,) stands out.
+    """Whether no interval stands out from its neighbours; slowness: logarithm of the time of a
+    pitch (n,).
 
-    It is compared with those beside it. Where the speed changes much within a pitch, it is compared
-    with those at the same place in other cycles, of `cycle` intervals; what then stands out in both
-    turns of a cycle is a fault of the wheel.
+    Where the speed changes much within a pitch, an interval is compared with those at the same
+    place in other cycles, of `cycle` intervals; what then stands out in both turns of a cycle is a
+    fault of the wheel.
     """
     if all(_regular(_off_neighbours(slowness, reach)).all() for reach in (1, 2)):
         return True
@@ -244,8 +247,11 @@ def _off_neighbours(values: Array, reach: int) -> Array:
 
 
 def _fits_gap(slowness: Array, gaps: NDArray[np.intp], cycle: int, missing: int) -> bool:
-    """Whether the gaps are nearer to the stated missing teeth than to one more or less, at the
-    place in the cycle where the speed changes least."""
+    """Whether the gaps have the stated number of missing teeth rather than one more or less, at the
+    place in the cycle where the speed changes least.
+
+    slowness : logarithm of the time of a pitch (n,); gaps : numbers of the intervals that are gaps.
+    """
     off, places = _off_neighbours(slowness, 1)[gaps], np.mod(gaps, cycle)
     usual = [float(np.median(off[places == place])) for place in np.unique(places)]
     low, high = -0.5 * np.log1p(1.0 / missing), 0.5 * np.log1p(1.0 / (missing + 1.0))
@@ -253,7 +259,9 @@ def _fits_gap(slowness: Array, gaps: NDArray[np.intp], cycle: int, missing: int)
 
 
 def _refuse(field: str, times: Array, wheel: TriggerWheel) -> NoReturn:
-    """Refuse times that are not those of a wheel, by the first interval that shows it."""
+    """InputError for times (n,), s, that are not those of the wheel, by the first interval that
+    shows it.
+    """
     intervals = np.diff(times)
     share = intervals / local_median(intervals)
     expected = np.ones_like(share)

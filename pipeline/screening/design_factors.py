@@ -163,7 +163,9 @@ def _numbers(quantity: object, values: Factor, rows: Sequence[int]) -> Array:
 
 
 def _number(quantity: In, value: TomlValue) -> float:
-    """Value of a case file, a number in SI or text with a unit, in SI; NaN where it cannot be read."""
+    """Value of a case file, a number in SI or text with a unit, in SI; NaN where it
+    cannot be read.
+    """
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
         return np.nan
     if not isinstance(value, str):

@@ -256,7 +256,9 @@ def resampled(torque: Array, count: int) -> Array:
 
 
 def _smoothed(case: Case, values: Mapping[str, Array], torque: Array, count: int) -> Array:
-    """Torque (1 or m, N) behind the smoother of each design, crank N m; one row where all share it."""
+    """Torque (1 or m, N) behind the smoother of each design, crank N m; one row where
+    all share it.
+    """
     keys = [key for key in values if key.startswith("smoothing.")]
     if not keys:
         return smoothed(torque, Smoother.from_case(case.smoothing, case.period))

@@ -193,7 +193,9 @@ class _Neighbours:
         return np.asarray(np.exp(0.5 * (low + high) + 0.5 * places * (high - low)))
 
     def at(self, multiples: Array) -> Designs:
-        """Designs whose factors are those of the run times `multiples` (m, d), 1: the run itself."""
+        """Designs whose factors are those of the run times `multiples` (m, d), 1: the
+        run itself.
+        """
         values = self._values(multiples)
         stroke = [k for k, each in enumerate(self.factors) if each.is_stroke]
         scaled = multiples[:, stroke[0], None] if stroke else np.ones((1, 1))

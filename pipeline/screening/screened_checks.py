@@ -111,7 +111,9 @@ def _demand(measure: Measure, how: Measured, designs: Designs, numbers: Numbers)
 
 
 def _known(measure: Measure, how: Measured, designs: Designs, numbers: Numbers) -> Array:
-    """Demand (m, 1) by the worst value of a measure, all needed values being stated; see `_demand`."""
+    """Demand (m, 1) by the worst value of a measure, all needed values being stated;
+    see `_demand`.
+    """
     if how.reduce in ("case", "top"):
         return np.asarray(how.value(measure(designs.top), numbers))
     if how.reduce == "contour":
@@ -128,7 +130,9 @@ def _known(measure: Measure, how: Measured, designs: Designs, numbers: Numbers) 
 
 
 def _of_turn(measure: Measure, how: Measured, cam: ScreenedCam) -> Array:
-    """Mean or worst value of a measure over the turn (m, 1), stored for other checks that share it."""
+    """Mean or worst value of a measure over the turn (m, 1), stored for other checks
+    that share it.
+    """
     key = measure, "mean" if how.reduce in ("mean", *BY_DUTY) else how.worst, how.smooth
     if key not in cam.figures:
         values = measure(cam)
@@ -195,7 +199,9 @@ def torque_after(designs: Designs, cam: ScreenedCam) -> Array:
 
 
 def _between(values: Array, step: int) -> Array:
-    """Periodic values (m, n) interpolated to (m, n step) equal angles, cubic through four of them."""
+    """Periodic values (m, n) interpolated to (m, n step) equal angles, cubic through
+    four of them.
+    """
     at = np.arange(step) / step
     weights = (
         -at * (at - 1.0) * (at - 2.0) / 6.0,

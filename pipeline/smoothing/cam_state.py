@@ -245,7 +245,9 @@ class Mean(NamedTuple):
         return self._slopes(self.means).T
 
     def hessian(self, weights: Array) -> Array:
-        """Second derivatives (m, m), by the means, of the sum of the utilisations weighted by (r,)."""
+        """Second derivatives (m, m), by the means, of the sum of the utilisations
+        weighted by (r,).
+        """
         means = self.means
         steps = np.diag(
             _SECOND_STEP * np.maximum(np.abs(means), np.finfo(float).tiny / _SECOND_STEP)

@@ -136,7 +136,9 @@ class Cones:
         self._linear.append(_Block.of(matrix, bound))
 
     def rows_at_most(self, entries: ArrayLike, columns: NDArray[np.intp], bound: ArrayLike) -> None:
-        """Add the constraints: sum over w of entries (m, w) times x[columns (m, w)] <= bound (m,)."""
+        """Add the constraints: sum over w of entries (m, w) times x[columns (m, w)] <=
+        bound (m,).
+        """
         rows = np.broadcast_to(np.arange(len(columns))[:, None], columns.shape)
         values = np.broadcast_to(np.asarray(entries, dtype=float), columns.shape)
         side = np.broadcast_to(np.asarray(bound, dtype=float), (len(columns),))

@@ -134,7 +134,9 @@ def harmonics(orders: Iterable[int]) -> Residual:
 
 
 def torque_integral(values: Array) -> Array:
-    """Integral of periodic columns (n, ...) over the cam angle, less its mean; by Fourier series."""
+    """Integral of periodic columns (n, ...) over the cam angle, less its mean; by
+    Fourier series.
+    """
     spectrum = np.fft.rfft(values, axis=0)
     order = np.arange(spectrum.shape[0]).reshape(-1, *[1] * (spectrum.ndim - 1))
     spectrum = np.divide(spectrum, 1j * order, out=np.zeros_like(spectrum), where=order > 0)

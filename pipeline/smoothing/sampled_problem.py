@@ -393,7 +393,9 @@ class Search:
         return pointwise, means
 
     def state(self, coefficients: Array, variables: DesignVariables) -> State:
-        """State of the search: ripples, costs and utilisations at coefficients, J, and variables."""
+        """State of the search: ripples, costs and utilisations at coefficients, J, and
+        variables.
+        """
         problem = self.problem
         grid, stack = self._angles(coefficients, variables)
         loads = self._loaded(coefficients, variables, grid, stack)
@@ -435,7 +437,9 @@ class Search:
         )
 
     def residual_torque(self, state: State) -> Array:
-        """Crank torque that is left with the cam (w, n), N m, in each scenario whose ripple counts."""
+        """Crank torque that is left with the cam (w, n), N m, in each scenario whose
+        ripple counts.
+        """
         coefficients, variables = state.coefficients, state.variables
         jet = lift_jet(self.turn.energy(coefficients), variables)
         top, stack = self.highest(coefficients, variables), self._weighted_stack(state)

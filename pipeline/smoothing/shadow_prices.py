@@ -305,7 +305,9 @@ def _load_share(design: Design, problem: Problem, name: str) -> float:
 
 
 def _sentence(known: Bound, price: float, of: str) -> str:
-    """Sentence on what one more, or one less, of a bound takes off the objective `of`; price: N m."""
+    """Sentence on what one more, or one less, of a bound takes off the objective `of`;
+    price: N m.
+    """
     shown = "" if known.unit == "-" else f" {known.unit}"
     if price < 0.0:
         one = f"one{shown} less" if shown else "one less"

@@ -145,7 +145,9 @@ def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, C
 
 
 def _with_margin(check: Check) -> Check:
-    """Check with its demand moved towards, or beyond, its limit by a share `MARGIN` of the limit."""
+    """Check with its demand moved towards, or beyond, its limit by a share `MARGIN` of
+    the limit.
+    """
     if check.demand is None or check.limit is None:
         return check
     side = 1.0 if check.sense == "at_most" else -1.0
@@ -153,7 +155,9 @@ def _with_margin(check: Check) -> Check:
 
 
 def _moved(check: Check, by: float) -> Check:
-    """Check with its demand increased by `by`, SI, and that at its tolerance corner in proportion."""
+    """Check with its demand increased by `by`, SI, and that at its tolerance corner in
+    proportion.
+    """
     demand, corner = float(check.demand or 0.0), check.corner_demand
     if corner is not None:
         corner += by * (abs(corner / demand) if demand else 1.0)

@@ -160,7 +160,9 @@ def _waves(fit: Inspection) -> dict[str, float]:
 
 
 def _figures_of(cycle: Table) -> CycleFigures:
-    """Extremes over all load cases of a cycle."""
+    """Extremes of force, pressure, stress and pressure angle over all load cases of a cycle table;
+    None where not finite.
+    """
 
     def extreme(header: str, measure: Callable[[Array], float]) -> float | None:
         value = float(measure(np.asarray(cycle[header], dtype=float)))

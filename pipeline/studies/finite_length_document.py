@@ -128,7 +128,9 @@ class LengthOptions:
         return replace(straight, crown=self._crown(straight, pair))
 
     def tilt_or_moment(self) -> tuple[float | None, float | None]:
-        """Tilt, rad, or moment, N m; the other is None."""
+        """Stated tilt, rad, and stated moment, N m, one of them None; a tilt of 0 where neither is
+        stated.
+        """
         if self.moment is None:
             if self.tilt is None:
                 return 0.0, None
@@ -138,7 +140,7 @@ class LengthOptions:
         return None, units.parse_or_bare(self.moment, "N mm", "--moment")
 
     def mean(self) -> float:
-        """Length of the mean at an end, m."""
+        """Length at each end over which the pressure is averaged, m."""
         if self.mean_length is None:
             return MEAN_LENGTH
         mean, most = self._positive(self.mean_length, "mm", "--mean-length"), self.contact_length()
@@ -149,6 +151,9 @@ class LengthOptions:
         return mean
 
     def _crown(self, straight: FinitePair, pair: TwoCylinders) -> Crown:
+        """Crown of the option, such as ``johns-gohar:300 N/mm`` or a table file; straight without
+        it.
+        """
         if self.crown is None:
             return Straight()
         kind, _, value = self.crown.partition(":")
@@ -174,6 +179,7 @@ class LengthOptions:
 
     @staticmethod
     def _positive(text: str | None, unit: str, option: str) -> float:
+        """Text of an option as a number > 0 in SI; without a unit it is in `unit`."""
         if not text:
             raise InputError(option, "missing", f"specified, > 0 {unit}")
         value = units.parse_or_bare(text, unit, option)
@@ -183,6 +189,7 @@ class LengthOptions:
 
     @classmethod
     def _end(cls, text: str | None, option: str) -> BodyEnd:
+        """End of a body from text such as ``chamfer:0.5 mm``; sharp without it."""
         kind, _, size = (text or "sharp").partition(":")
         if kind == "sharp" and not size:
             return BodyEnd()
@@ -194,6 +201,7 @@ class LengthOptions:
 
 
 def _tabulated(text: str) -> TabulatedCrown:
+    """Crown from a drop table; errors name the option."""
     path = Path(text)
     if not path.is_file():
         raise InputError("--crown", text, _CROWNS)
@@ -215,6 +223,9 @@ class FiniteLength:
         return [self._record(tier) for tier in self.tiers]
 
     def _record(self, tier: TierResult) -> Document:
+        """Document of one tier: factors over plane-strain p0 with error bars in percent (None:
+        unbounded at a singular end), moment, tilt, place of the greatest.
+        """
         values = factors(tier)
         contact, cells = tier.contact, tier.contact.cells
         is_singular = self.pair.has_singular_end and tier.greatest_is_at_an_end

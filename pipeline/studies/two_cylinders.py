@@ -75,6 +75,7 @@ class TwoCylinders:
         hertz.contact_modulus(*_elastic(self.body_1), *_elastic(self.body_2))
 
     def _refuse_the_concave_body(self) -> None:
+        """InputError that names the concave body, as it is not wider than the other one."""
         radii = {"radius_2": self.radius_2, "radius_1": self.radius_1}
         concave, other = sorted(radii, key=lambda name: 1.0 / radii[name])
         limit = "> 0, as the other body is flat or concave"
@@ -284,6 +285,7 @@ def approach(pair: TwoCylinders, depths: tuple[float | None, float | None]) -> f
 
 
 def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
+    """Contact by finite elements with `elements` per half-width, without error bar."""
     half_width, p0 = (
         float(v)
         for v in hertz.line_contact(pair.line_load, 1 / pair.curvature, pair.contact_modulus)
@@ -333,7 +335,8 @@ def _beyond(field: Array, poisson: float) -> float:
 
 
 def patch_mesh(poisson: float) -> tuple[BodyMesh, Index]:
-    """Contact-patch mesh within the range of its stresses, with the point number of each node.
+    """Mesh of the contact patch as far as its stresses reach, and the number of the stress point at
+    each of its nodes.
 
     Lengths in half-widths; the surface is y = 0, the body below.
     """
@@ -349,6 +352,9 @@ def patch_mesh(poisson: float) -> tuple[BodyMesh, Index]:
 def _pressures(
     pair: TwoCylinders, patches: tuple[ContactPatch, ContactPatch], half_width: float
 ) -> PatchContacts:
+    """Contact pressures of both patches, dimensionless: lengths in half-widths a, gaps in a^2 / (2
+    R).
+    """
     share = pair.contact_modulus / pair.body_1.plane_strain_modulus
     xi, _ = patches[0].shapes.quadrature()
     # In units of a^2 / (2 R); no underflow at small loads.
@@ -364,7 +370,9 @@ def _circle(radius: float, xi: Array) -> Array:
 
 
 def _highest(measure: Callable[[Array], Array], friction: float) -> tuple[float, float]:
-    """Maximum of a stress measure under a sliding Hertz contact over p0, and its depth over a."""
+    """Maximum over the half-plane of a stress measure under a sliding Hertz contact, over p0, and
+    its depth, over the half-width.
+    """
     x, depth = np.meshgrid(np.linspace(-1.5, 1.5, 121), np.linspace(0, 1.5, 61))
     values = measure(hertz.subsurface_stress(x, depth, friction))
     k = int(np.argmax(values))

@@ -119,6 +119,7 @@ class ContactOptions:
         return first, second
 
     def _line_load(self) -> float:
+        """Line load, N/m, stated or as load over width."""
         if self.line_load is not None:
             if self.load is not None:
                 raise InputError("--load", self.load, "left out beside --line-load")
@@ -152,7 +153,10 @@ class ContactOptions:
 def solved(
     options: ContactOptions, *, with_approach: bool = False, field: Path | None = None
 ) -> Document:
-    """Line contact of two cylinders as a document, in mm, MPa and N.
+    """Line contact of two cylinders as a document, in mm, MPa and N: Hertz, finite elements or,
+    where conforming, pin in a hole.
+
+    with_approach : with the approach of the bodies. field : VTU file of the stresses to be written.
 
     Raises
     ------
@@ -235,7 +239,9 @@ def lines(document: Document) -> Iterator[str]:
 
 
 def _as_read(text: str, unit: str) -> str:
-    """A number of an option as typed, in a message; with the unit it is read in."""
+    """Text of an option as typed, with the unit in which it is read where it states none; for
+    messages.
+    """
     try:
         float(text)
     except ValueError:
@@ -261,6 +267,7 @@ def _modulus(text: str, option: str) -> float:
 
 
 def _radius(text: str, option: str) -> float:
+    """Radius, m, not 0; infinite for a flat body, negative for a concave one."""
     if text.strip().lower() in ("inf", "+inf", "infinity", "flat"):
         return float("inf")
     radius = units.parse_or_bare(text, "mm", option)
@@ -270,6 +277,7 @@ def _radius(text: str, option: str) -> float:
 
 
 def _figures(contact: LineContact) -> dict[str, float]:
+    """Results of a contact in MPa and mm by key."""
     record = {
         "p0_MPa": in_unit(contact.p0, "MPa"),
         "half_width_mm": in_unit(contact.half_width, "mm"),
@@ -302,6 +310,10 @@ def _finite_body(pair: TwoCylinders) -> dict[str, float]:
 
 
 def _conforming(contact: ConformingContact, pair: TwoCylinders) -> Document:
+    """Document of the pin in a hole: by Persson's closed form (None for unlike materials) and
+    numerically.
+    """
+
     def record(angle: float, p0: float) -> dict[str, float]:
         return {"p0_MPa": in_unit(p0, "MPa"), "half_angle_deg": in_unit(angle, "deg")}
 
@@ -333,7 +345,9 @@ def _write_field(path: Path, contact: FiniteElementContact, poissons: tuple[floa
 
 
 def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
-    """Patch scaled by the half-width; for body 2 mirrored, with the sense of its triangles."""
+    """Contact patch scaled from half-widths to m; `upward`: mirrored above y = 0 with its triangles
+    still counter-clockwise.
+    """
     if not upward:
         return BodyMesh(mesh.points * size, mesh.triangles, {})
     points = mesh.points * np.array([[size], [-size]])
@@ -341,7 +355,9 @@ def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
 
 
 def _fields(of: Array, poisson: float, side: int) -> dict[str, Array]:
-    """Stresses by name, MPa; `side`: sign of the depth along y."""
+    """Stress measures by name, MPa, from in-plane stresses (3, m): xx, yy, xy, Pa; `side`: sign of
+    the depth along y.
+    """
     xx, yy, xy = of
     in_si = {
         "stress_xx": xx,

@@ -72,7 +72,9 @@ class Trace:
 
     @property
     def _curve(self) -> scipy.interpolate.Akima1DInterpolator:
-        """Interpolant over the period and some samples on either side of it."""
+        """Interpolant over the period, with a few samples of its neighbours at either end; Akima's,
+        modified.
+        """
         pad = min(self.angle.size, 6)
         ahead, behind = self.angle[:pad] + self.period, self.angle[-pad:] - self.period
         angle = np.concatenate([behind, self.angle, ahead])
@@ -177,7 +179,7 @@ def one_period(
     period: float = FOUR_STROKE.angle,
     gap_max: float = GAP_MAX,
 ) -> Trace:
-    """Trace of one column whose angles have been checked for order and span.
+    """Trace of one column over one period, its angles having been checked for order and span.
 
     Parameters
     ----------
@@ -201,7 +203,9 @@ def one_period(
 
 
 def without_end(angle: Array, values: Array, period: float) -> tuple[Array, Array]:
-    """Angles (n,) and values (n, ...) of one period; a repeated end row is averaged into row 0."""
+    """Angles (n,), rad, and values (n, ...) of one period; a row that repeats the start at its end
+    is averaged into the first row.
+    """
     if period - (angle[-1] - angle[0]) > END_TOLERANCE * median(np.diff(angle)):
         return angle, values
     mean = 0.5 * (values[:1] + values[-1:])

@@ -63,7 +63,7 @@ class MotorLine:
             raise InputError("crankshaft.motor_line.torque", shown(last.torque, "N m"), limit)
 
     def torque(self, speed: ArrayLike) -> Array:
-        """Torque at speeds (...), rad/s, N m."""
+        """Torque of the motor, N m, at speeds (...), rad/s."""
         omega = np.asarray(speed, dtype=float)
         place = self._place(omega)
         rest = omega - self._speeds[place]

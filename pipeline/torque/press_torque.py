@@ -165,7 +165,7 @@ class PressTorque:
         return np.asarray((turns + 1.0) * self.work - self._work_below(height))
 
     def _work_below(self, height: Array) -> Array:
-        """Integral of the force from the lowest of its heights to heights (n,), J."""
+        """Work of the force, J, from the lowest height of its table to heights (n,), m."""
         known, force = self.height, self.force
         parts = 0.5 * np.diff(known) * (force[1:] + force[:-1])
         sums = np.append(0.0, np.cumsum(parts))

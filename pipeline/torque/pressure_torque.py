@@ -125,7 +125,9 @@ class PressureTorque:
 
 
 def _lagging(trace: Trace, theta: Array, lag: float) -> Array:
-    """Values of a trace at equal angles, by `lag` (rad) later."""
+    """Values of a trace at equal shaft angles (n,), rad, that come later by the angle
+    `lag`, rad.
+    """
     values = trace.kept_uniform(theta.size)
     if lag == 0.0:
         return values

@@ -120,6 +120,9 @@ def _change_halved(trace: Trace) -> float:
 
 
 def _halved(trace: Trace) -> dict[str, Array]:
+    """Change of the work about its mean with every other row left out, over its swing, as an array
+    by name for the disk cache.
+    """
     count = 4 * trace.angle.size
     whole = _swing(trace, count)
     halves = (
@@ -138,7 +141,8 @@ def _swing(trace: Trace, count: int) -> Array:
 
 
 def tabled_torque(source: TabledTorqueFile, path: str | Path) -> TabledTorque:
-    """Torque of a table, read from its file.
+    """Torque of a table, N m, over the cycle (rad) of `source`, read from a file; as driving or
+    loading torque by its role.
 
     Raises
     ------

@@ -154,7 +154,8 @@ def over_cam_turn(torque: Torque, period: Period) -> Torque:
 
 
 def together(one: Torque, other: Torque) -> Torque:
-    """Torque of two machines on one shaft, over the longer cycle.
+    """Sum of the torques of two machines on one shaft, over the longer cycle; components of equal
+    name are added.
 
     Raises
     ------
@@ -193,7 +194,9 @@ def all_cylinders(
     offsets: tuple[float, ...],
     span: float = FOUR_STROKE.angle,
 ) -> dict[str, Array]:
-    """Torque (n,) of all cylinders from that of one, shifted by their phase offsets."""
+    """Torque components (n,), N m, of all cylinders from those of one, each shifted by the phase
+    offset of a cylinder, rad.
+    """
     if offsets == (0.0,):
         return dict(parts)
     shifted = [theta - offset for offset in offsets]

@@ -131,7 +131,7 @@ class TraceText:
         return [row[column] if column < len(row) else "" for row in rows]
 
     def numbers(self, columns: Sequence[int], *, gaps: bool = False) -> Array:
-        """Cells of some columns as numbers, (rows, columns).
+        """Cells of some columns, by number, as floats (rows, columns), in the units of the file.
 
         Parameters
         ----------
@@ -202,7 +202,7 @@ def trace_text(
 
 
 def _units_below(header: Sequence[str], second: Sequence[str]) -> list[str]:
-    """Units of the columns in a second line of the header; none if the line is no such line."""
+    """Units of the columns from a second line of the header; empty if that line has none."""
     units = [re.sub(r"^[\[({](.*)[\])}]$", r"\1", cell) for cell in second]
     known = ANGLE_UNITS, *QUANTITY_UNITS.values()
     if len(units) != len(header) or any(_is_number(unit) for unit in units):
@@ -232,6 +232,10 @@ def _is_number(cell: str) -> bool:
 def _delimiter(
     name: str, lines: Sequence[tuple[int, str]], *, blanks: bool, one_column: bool
 ) -> str:
+    """Character that separates the columns: the first of semicolon, tab and comma in the header.
+
+    blanks : blanks may separate them; one_column : a file of one column needs none.
+    """
     number, head = lines[0]
     for mark in ";\t,":
         if mark in head:
@@ -245,8 +249,9 @@ def _delimiter(
 
 
 def _text_lines(path: Path) -> list[tuple[int, str]]:
-    """Lines of a text file with their numbers from 1, without empty lines and comments; before
-    them the last comment above the first, empty without one."""
+    """Lines of a text file with their numbers from 1, without empty lines and comments; before them
+    the last comment above the first one, which may be a header ("" without one).
+    """
     raw = _bytes(path)
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raw = raw.decode("utf-16", errors="replace").encode()
@@ -425,7 +430,7 @@ def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, f
 def angle_column(
     name: str, header: Sequence[str], part: Literal["crank", "cam"] = "crank"
 ) -> tuple[int, float]:
-    """Column of the angle of crank or cam, and its factor to rad."""
+    """Number of the column of the angle of crank or cam, and the factor of its unit to rad."""
     factors = _with_unit(header, ANGLE_UNITS)
     columns = list(factors)
     if len(columns) > 1 or part == "cam":
@@ -442,7 +447,9 @@ def angle_column(
 def value_column(
     name: str, header: Sequence[str], quantity: str, column: str | None
 ) -> tuple[int, float]:
-    """Column of a quantity, and its factor to SI."""
+    """Number of the column of a quantity, and the factor of its unit to SI; column : beginning of
+    its header, None where one column has the quantity.
+    """
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
     columns = list(factors)
     if column is not None:

@@ -43,7 +43,7 @@ class _ValvedCylinder(PistonDrive):
         """Pressure of a shut volume, Pa, from that before, by the ratio of the volumes (n,)."""
 
     def _pressure(self, swept: Array, growing: NDArray[np.bool_]) -> Array:
-        """Pressure of one side (n,), Pa.
+        """Pressure of one side of the piston (n,), Pa, within suction and discharge pressure.
 
         Parameters
         ----------
@@ -59,7 +59,7 @@ class _ValvedCylinder(PistonDrive):
         return np.where(growing, expanding, compressed)
 
     def pressures(self, theta: ArrayLike) -> tuple[Array, Array]:
-        """Pressure on the head side and on the crank side at shaft angles (n,), rad, Pa."""
+        """Pressures, Pa, on the head side, then on the crank side, at shaft angles (n,), rad."""
         crank = np.asarray(theta, dtype=float) - self.phase
         swept = np.clip(self.linkage.travel(crank) / self.linkage.stroke, 0.0, 1.0)
         growing = self.linkage.travel_rate(crank) > 0.0
@@ -140,6 +140,9 @@ class PumpCylinder(_ValvedCylinder):
             raise InputError(f"{self.table}.discharge_pressure", pressure, limit)
 
     def _shut(self, pressure: float, ratio: Array) -> Array:
+        """Pressure of a shut volume of liquid, Pa, from that before, by the ratio (n,) of the
+        volume before to that now.
+        """
         with np.errstate(divide="ignore"):  # no clearance: log 0
             strain = np.log(ratio)
         if self.bulk_modulus is None:

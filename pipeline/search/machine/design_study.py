@@ -299,7 +299,9 @@ def _drawing(study: PointStudy, point: Solved) -> DesignDrawing:
 
 
 def _write_points(study: PointStudy, points: Sequence[Solved]) -> list[DesignPointRecord]:
-    """Write a case file per point of the front, in place of earlier ones, and give their records."""
+    """Write a case file per point of the front, in place of earlier ones, and give
+    their records.
+    """
     for old in study.folder.glob("point_*.toml"):
         old.unlink()
     rows: list[DesignPointRecord] = []

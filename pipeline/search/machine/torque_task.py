@@ -277,7 +277,9 @@ def _period(cycle: float, ratio: float | None) -> Period:
 
 
 def _demand(path: Path, cycle: float) -> TorqueDemand:
-    """Torque about its mean at `SAMPLES` equal angles of the cycle, and the mean, N m, of a table."""
+    """Torque about its mean at `SAMPLES` equal angles of the cycle, and the mean, N m,
+    of a table.
+    """
     source = TabledTorqueFile(file=path.name, cycle=cycle)
     values = tabled_torque(source, path).torque(uniform_cycle(SAMPLES, cycle))
     mean = float(values.mean())

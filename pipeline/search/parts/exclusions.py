@@ -122,7 +122,9 @@ def _excess(record: PreviewJudgement) -> tuple[int, float]:
 
 
 def _way(shortfall: Shortfall) -> str:
-    """Change with which a failing check would pass, in words: demand instead of limit, with unit."""
+    """Change with which a failing check would pass, in words: demand instead of limit,
+    with unit.
+    """
     unit = unit_text(shortfall["unit"])
     demand, limit = shortfall["demand"], shortfall["limit"]
     if demand is None or limit is None:

@@ -279,7 +279,9 @@ def _why(record: PreviewJudgement | RefusedJudgement, front: str) -> str:
 
 
 def _written(search: RedesignTask, kept: Sequence[Whole]) -> list[FrontPoint]:
-    """Write a case file per point of the front, in place of earlier ones, and give their records."""
+    """Write a case file per point of the front, in place of earlier ones, and give
+    their records.
+    """
     for old in search.out.glob("point_*.toml"):
         old.unlink()
     records: list[FrontPoint] = []

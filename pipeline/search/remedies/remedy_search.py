@@ -286,7 +286,9 @@ class _RemedySearch:
     hopeless: set[tuple[Lever, str]] = field(default_factory=set)
 
     def remedies(self) -> dict[str, Remedy]:
-        """Remedy of every failed check by id: levers with ever greater changes until one cures it."""
+        """Remedy of every failed check by id: levers with ever greater changes until
+        one cures it.
+        """
         quick = self._used(Change(), self.failures)
         self.scale = {
             name: _ratio(failure.used, quick[name]) for name, failure in self.failures.items()
@@ -337,7 +339,9 @@ class _RemedySearch:
         return crossings
 
     def _levers(self, names: Iterable[str]) -> list[tuple[Lever, list[str]]]:
-        """Levers that can be applied to the case, each with those of the checks that it can cure."""
+        """Levers that can be applied to the case, each with those of the checks that it
+        can cure.
+        """
         table: dict[Lever, list[str]] = {}
         for name in names:
             for lever in DECLARED[name].levers:

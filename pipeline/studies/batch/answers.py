@@ -45,7 +45,8 @@ def states(data: Dataset) -> tuple[NDArray[np.uint8], str]:
 
 
 def answered(data: Dataset, study: Study) -> Answer:
-    """Record of a study's answers, a function of its rows alone.
+    """Answers of a study as a record, by the rows of its dataset alone: yield, failing checks,
+    effects of the factors, front, worst design.
 
     Raises
     ------
@@ -125,7 +126,11 @@ def governing_utilisation(data: Dataset) -> Array:
 def _outputs(
     data: Dataset, study: Study, state: NDArray[np.uint8], utilisation: Array
 ) -> tuple[dict[str, Array], int]:
-    """Outputs by name: headline, demands the study names, judgement; number of those left out."""
+    """Outputs (n,) by name, and the number of those left out beyond `OUTPUTS_MAX`.
+
+    They are: whether a design passes (1, 0; NaN: no result), governing utilisation, the headline
+    figures, and the columns that the study names as outputs.
+    """
     passes = np.where(state == UNKNOWN, np.nan, (state == PASSES).astype(float))
     names = [name for name in data.columns if name.startswith(HEADLINE)]
     names += [
@@ -137,6 +142,10 @@ def _outputs(
 
 
 def _counts(data: Dataset, state: NDArray[np.uint8], by: str) -> Answer:
+    """Numbers of designs by state, depth, screen, verdict and message; `by`: column that decides
+    the state.
+    """
+
     def counted(name: str) -> Answer:
         return {str(value): n for value, n in sorted(Counter(data[name].tolist()).items()) if value}
 
@@ -166,7 +175,9 @@ def _design(data: Dataset, wanted: NDArray[np.bool_]) -> int:
 
 
 def _yield(state: NDArray[np.uint8], by: str, sample: Sample) -> Answer:
-    """Yield over the designs with a result; an interval if they are a sample."""
+    """Share of the designs with a result that pass; with a confidence interval if they are a random
+    sample.
+    """
     passed, failed = (int((state == each).sum()) for each in (PASSES, FAILS))
     share = Yield(passed, passed + failed)
     interval = share.interval() if sample.probabilistic and share.count else None
@@ -210,7 +221,9 @@ def _failures(data: Dataset, state: NDArray[np.uint8]) -> list[Answer]:
 
 
 def _greatest(data: Dataset, check: str, fails: NDArray[np.bool_]) -> Answer:
-    """Greatest utilisation of a check and its design; null with a design: infinite."""
+    """Greatest utilisation of a check, and number of the design; the utilisation is null where it
+    is infinite, the design too where no design has one.
+    """
     name = f"{check}.utilisation"
     values = data[name] if name in data.columns else np.full(len(data), np.nan)
     size = np.where(np.isnan(values), np.where(fails, np.inf, -np.inf), values)
@@ -226,6 +239,7 @@ def _number(value: float) -> float | None:
 
 
 def _factor(data: Dataset, key: str, values: NDArray[Any]) -> Answer:
+    """Record of a factor: key, unit, and its range or, for texts, its values."""
     record: Answer = {"key": key, "unit": data.units.get(FACTOR + key, "")}
     if np.issubdtype(values.dtype, np.number):
         known = values[np.isfinite(values)]
@@ -241,7 +255,9 @@ def _output(
     sample: Sample,
     factors: Mapping[str, NDArray[Any]],
 ) -> Answer:
-    """Spread of an output and the effects of the factors, values (n,) by key, on it."""
+    """Record of an output (n,): mean, spread and extremes, and the effects of the factors (values
+    (n,) by key) on it.
+    """
     known = np.flatnonzero(np.isfinite(values))
     record: Answer = {
         "name": name, "unit": data.units.get(name, ""), "count": int(known.size),
@@ -288,7 +304,9 @@ def _effect(key: str, effect: sensitivity.MainEffect) -> Answer:
 
 
 def _front(data: Dataset, study: Study, state: NDArray[np.uint8]) -> Answer | None:
-    """Front of the first two objectives over the designs that pass; None with fewer."""
+    """Front of the first two objectives over the designs that pass; None with fewer than two
+    objectives.
+    """
     objectives = study.objectives[:2]
     if len(objectives) < 2:
         return None
@@ -311,7 +329,9 @@ def _front(data: Dataset, study: Study, state: NDArray[np.uint8]) -> Answer | No
 
 
 def _points(data: Dataset, rows: NDArray[np.intp]) -> list[Answer]:
-    """Designs of rows (k,): number, id, depth, factors, judgement."""
+    """Record of each of the designs in these rows (k,) of the dataset: number, id, depth, factors,
+    judgement.
+    """
     names = ("design", "id", "depth", "screen", "verdict", "governing")
     columns = {name: data[name][rows].tolist() for name in names}
     columns["verdict"] = [word or None for word in columns["verdict"]]
@@ -324,7 +344,9 @@ def _points(data: Dataset, rows: NDArray[np.intp]) -> list[Answer]:
 
 
 def _worst(data: Dataset, utilisation: Array, state: NDArray[np.uint8]) -> Answer | None:
-    """Design of the greatest governing utilisation; null as utilisation is infinite."""
+    """Record of the design of the greatest governing utilisation, which is null where it is
+    infinite; None without any.
+    """
     size = np.where(np.isnan(utilisation) & (state == FAILS), np.inf, utilisation)
     if np.isnan(size).all():
         return None

@@ -153,7 +153,10 @@ def independent(count: int, factors: int) -> NDArray[np.int64]:
 def _levels(
     values: NDArray[np.generic], most: int
 ) -> tuple[NDArray[np.int64], tuple[str | tuple[float, float], ...]]:
-    """Level (n,) of each value, and the levels: text, or least and greatest value of each."""
+    """Number of the level of each value (n,), and the levels: text, or least and greatest value.
+
+    Numbers with more than `most` distinct values are divided into levels of equally many designs.
+    """
     distinct, codes = np.unique(values, return_inverse=True)
     if not np.issubdtype(values.dtype, np.number):
         return codes, tuple(str(value) for value in distinct)
@@ -170,7 +173,9 @@ def _levels(
 
 
 def _by_level(codes: NDArray[np.int64], output: Array) -> tuple[Array, Array, Array]:
-    """Number, mean, and sum of squares about the mean, of the output by level."""
+    """Count, mean, and sum of squares about the mean, of the output (n,) in each level (k,); codes
+    (n,): level of each design.
+    """
     counts = np.bincount(codes).astype(float)
     means = np.bincount(codes, output) / counts
     spread = np.bincount(codes, (output - means[codes]) ** 2)
@@ -178,7 +183,9 @@ def _by_level(codes: NDArray[np.int64], output: Array) -> tuple[Array, Array, Ar
 
 
 def _variance_share(codes: NDArray[np.int64], output: Array) -> tuple[float, float]:
-    """Share of the variance between levels without its bias, and its standard error."""
+    """Share of the variance of the output that lies between levels, without the bias of small
+    samples, and its standard error.
+    """
     output = (output - output.mean()) / output.std()
     counts, means, spread = _by_level(codes, output)
     n, k = output.size, counts.size

@@ -16,7 +16,8 @@ PASSES, FAILS, UNKNOWN = 0, 1, 2
 
 
 def states_of(verdict: NDArray[np.str_], screen: NDArray[np.str_]) -> tuple[NDArray[np.uint8], str]:
-    """State (n,) of each design with its deciding column, verdict or screen.
+    """State (n,) of each design: `PASSES`, `FAILS` or `UNKNOWN`, and the column that decides it,
+    "verdict" or "screen".
 
     The verdict decides if every design has one or no result; else the screen, of every design. A
     design without a result is neither: yield and stop rule leave it out.

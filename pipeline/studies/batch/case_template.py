@@ -43,7 +43,9 @@ class Template:
         return digest.hexdigest()
 
     def case(self, folder: Path) -> Case:
-        """Case read from its files, which are written under `folder`."""
+        """Case read from its files, which are first written into a folder of its name under
+        `folder`.
+        """
         from camwright.pipeline.case.case_file import parse_case
 
         home = folder / self.name
@@ -85,6 +87,7 @@ def read_templates(folder: Path, names: Sequence[str]) -> tuple[Template, ...]:
 
 
 def _files(case: Case, tables: Tables) -> list[str]:
+    """Names of the files that a case includes, its own spring catalogue among them."""
     from camwright.pipeline.case.cards.spring_selection import SHIPPED
     from camwright.pipeline.case.case import includes
 

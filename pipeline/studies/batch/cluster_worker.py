@@ -38,7 +38,10 @@ class StudyPlugin(WorkerPlugin):
 
 
 def solve_shard(task: Task, plugin: str, wanted: Wanted | None) -> Shard:
-    """Rows of a task, solved in the worker's process; `wanted`: see `SolverProcess.rows`."""
+    """Rows, clock figures and run files of a task, solved in the process of the worker.
+
+    `plugin`: name of the worker's plugin; `wanted`: see `SolverProcess.rows`.
+    """
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
         return study.process.rows(task, wanted)
@@ -47,7 +50,7 @@ def solve_shard(task: Task, plugin: str, wanted: Wanted | None) -> Shard:
 
 
 def solve_run(task: Task, plugin: str) -> Files:
-    """Run-folder files of a task with one design."""
+    """Files of the run folder, by name, of a task with one design."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
         return study.process.run_folder(task, 0)
@@ -56,7 +59,7 @@ def solve_run(task: Task, plugin: str) -> Files:
 
 
 def make_page(run: Bare, plugin: str) -> Files:
-    """Run-folder files with the page added."""
+    """Files of a run folder with the page added; `run`: design id and files without it."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
         return study.process.presented(run[1])

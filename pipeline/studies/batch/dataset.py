@@ -179,7 +179,7 @@ def whole_numbers(values: NDArray[np.integer[Any]]) -> pa.Array:
 
 
 def _numbers(values: NDArray[np.float64]) -> pa.Array:
-    """Arrow array of numbers (n,); NaN and infinity become null."""
+    """Arrow array (n,) of floats; NaN and infinity become null."""
     import pyarrow as pa
 
     numbers = np.ascontiguousarray(values, dtype=float)
@@ -188,7 +188,7 @@ def _numbers(values: NDArray[np.float64]) -> pa.Array:
 
 
 def _texts(values: Sequence[str]) -> pa.Array:
-    """Arrow array of texts (n,); empty ones become null."""
+    """Arrow array (n,) of texts; empty ones become null."""
     import pyarrow as pa
 
     parts = [each.encode() for each in values]
@@ -393,7 +393,7 @@ def read_dataset(folder: Path) -> Dataset:
 
 
 def values_of(column: pa.ChunkedArray) -> NDArray[Any]:
-    """Numbers with NaN for null, texts with "" for null."""
+    """Values (n,) of an Arrow column: numbers with NaN for null, texts with "" for null."""
     import pyarrow as pa
 
     if pa.types.is_string(column.type):

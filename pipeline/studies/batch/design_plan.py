@@ -50,7 +50,9 @@ class Plan:
 
     @classmethod
     def of(cls, cases: Sequence[str], designs: SampledDesigns | None, settings: Settings) -> Plan:
-        """Plan of cases with their designs."""
+        """Plan of the designs of each case; equal designs, by a hash of case, values and settings,
+        are solved once.
+        """
         count = 1 if designs is None else designs.count
         columns = {} if designs is None else designs.si()
         keys = sorted(columns)
@@ -83,7 +85,9 @@ class Plan:
         return len(self.place) if unique >= len(self.ids) else int(self._first[unique])
 
     def tasks(self, tier: Tier, chosen: Sequence[int] | None = None) -> Iterator[Task]:
-        """Tasks in order at a depth, of all unique designs or of chosen ones."""
+        """Tasks of a few designs each, in order, at a depth: of all different designs or of those
+        `chosen` by number.
+        """
         places = range(len(self.ids)) if chosen is None else chosen
         count = 1 if self.designs is None else self.designs.count
         blocks: dict[int, list[int]] = {}
@@ -98,6 +102,9 @@ class Plan:
                 start, left = start + len(part), left - len(part)
 
     def _task(self, tier: Tier, block: int, members: Sequence[int]) -> Task:
+        """Task of the different designs with the numbers `members`, all of the case with number
+        `block`; its name is a hash of its content.
+        """
         case, units = self.cases[block], self.units
         ids = tuple(self.ids[unique] for unique in members)
         values: dict[str, Array | Levels] = {}

@@ -60,7 +60,8 @@ def columns_of(rows: Sequence[Row]) -> dict[str, list[Any]]:
 def completed(
     task: Task, columns: Mapping[str, Sequence[Any]], outputs: Sequence[str]
 ) -> dict[str, Any]:
-    """Columns of a shard with id, depth and factors, restricted to `outputs` if any.
+    """Columns of a shard completed by id, depth and factors, and reduced to those that match
+    `outputs`, patterns of names; () keeps all.
 
     Raises
     ------

@@ -51,7 +51,7 @@ _SCREENED_AT_ONCE = 125  # screened designs: their arrays bound the memory of a 
 
 
 def row_of(trial: Trial) -> Row:
-    """Cells of a solved design in the units of the records."""
+    """Values of a solved design by name of the dataset column, in the units of the records."""
     from camwright.pipeline.results.run_records import headline
 
     row: Row = {
@@ -124,7 +124,9 @@ class DesignSolver:
         return self.settings.positions or case.solver.positions
 
     def solved(self, task: Task, row: int) -> Row:
-        """Cells of one design; a refusal gives a row with its message."""
+        """Values of one design of a task by name of the column; a refusal gives a row with its
+        message.
+        """
         try:
             return self._solved(task, row)
         except CamError as error:
@@ -136,6 +138,7 @@ class DesignSolver:
             return lost(UNEXPECTED.format(kind=type(error).__name__, text=text))
 
     def _solved(self, task: Task, row: int) -> Row:
+        """As `solved`; a refusal is raised as CamError."""
         if task.tier is Tier.SCREENING:
             columns = self.screened(task.alone(row))
             return {name: _cell(values[0]) for name, values in columns.items()}
@@ -143,7 +146,8 @@ class DesignSolver:
         return row_of(trial_at(case, task.tier, lift, corners=self.settings.corners))
 
     def design(self, task: Task, row: int) -> tuple[Case, Lift | None]:
-        """Case of one design, and the lift common to all, if the study has one.
+        """Case of the design in a row of a task, and the lift of the base case, if all designs have
+        its cam; else None.
 
         Raises
         ------
@@ -253,7 +257,9 @@ class DesignSolver:
 
 
 def _finished(run: CaseRun) -> Files:
-    """Files of a run that has begun, without its page."""
+    """Files by relative name of a run that is solved, without its page; clock figures apart, as
+    `CLOCK`.
+    """
     from camwright.pipeline.results import signoff
 
     if run.depth < Tier.CERTIFIED:

@@ -60,7 +60,9 @@ class Wanted:
     bars: tuple[tuple[float, ...], ...] = ()
 
     def takes(self, screen: str, cells: Mapping[str, object]) -> bool:
-        """Whether the run of a design with given cells may be kept."""
+        """Whether the run folder of a design, with this screen and these values by column, may be
+        kept by the rule.
+        """
         if screen != self.screen or any(name not in cells for name, _ in self.objectives):
             return screen == self.screen  # a factor is no cell of a solution
         values = [(sign, cells[name]) for name, sign in self.objectives]

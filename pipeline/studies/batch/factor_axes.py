@@ -71,7 +71,9 @@ class Axis:
         return self.levels
 
     def at(self, share: Array) -> Array:
-        """Values in `unit` at cumulative probabilities (n,) of a continuous factor."""
+        """Values (n,), in `unit`, at cumulative probabilities `share` (n,) of a
+        continuous factor.
+        """
         if self.law == "normal":
             from scipy.special import ndtri
 
@@ -85,7 +87,9 @@ class Axis:
         return self.low + width * share
 
     def si(self, values: Array) -> Array:
-        """Numbers in `unit` (n,) in SI; levels as a case file reads them."""
+        """Values (n,), given in `unit`, in SI; a level is converted as a case file would read it,
+        to the last digit.
+        """
         if not self.unit:
             return values
         if self.levels:
@@ -135,7 +139,11 @@ def axis_of(factor: Factor, case: Case) -> Axis:
 
 
 def _require_value_at(case: Case, key: str) -> None:
-    """Refuse a key that is none of one value of the design."""
+    """Refuse a key that does not name a single value of the design: one of a section that no factor
+    may vary or of the study itself, an included file, a table, an entry beyond the end of a list.
+
+    A key that the case leaves out is accepted, as its value may be optional.
+    """
     if key.partition(".")[0] in _NO_FACTORS or key in _OF_THE_STUDY:
         limit = f"none of {', '.join((*_NO_FACTORS, *_OF_THE_STUDY))}"
         raise InputError("factor.key", key, limit)
@@ -154,6 +162,9 @@ def _require_value_at(case: Case, key: str) -> None:
 
 
 def _of_levels(key: str, quantity: object, values: Sequence[Value]) -> Axis:
+    """Axis of a factor with a list of values: numbers in the unit of the first one, pure numbers,
+    or texts.
+    """
     if isinstance(quantity, In):
         reading = _Reading(key, quantity, values[0])
         return Axis(key, reading.unit, tuple(reading.number(each) for each in values))
@@ -163,6 +174,7 @@ def _of_levels(key: str, quantity: object, values: Sequence[Value]) -> Axis:
 
 
 def _mean(key: str, quantity: In, case: Case) -> Value:
+    """Value of the case at a key, as mean of a distribution that states none."""
     value = value_of(case, key)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise InputError(f"factor {key}.mean", "missing", "given, as the case has no such number")
@@ -185,7 +197,10 @@ class _Reading:
             self.affine = zero, one - zero
 
     def number(self, value: Value | None) -> float:
-        """A value in the unit; not against the bounds, which refuse a design, not a study."""
+        """A value as number in the unit of the factor.
+
+        It is not compared with the bounds of the key, which refuse a design, not the study.
+        """
         if not self._quantity.unit:
             if isinstance(value, bool) or not isinstance(value, (int, float)):
                 raise InputError(self._field, str(value), "a number without a unit")
@@ -198,7 +213,9 @@ class _Reading:
         return (si - offset) / scale
 
     def width(self, value: Value | None, mean: float) -> float:
-        """A tolerance or standard deviation in the unit; ``"5 %"`` is a share of the mean."""
+        """A tolerance or standard deviation in the unit of the factor; ``"5 %"`` is a share of the
+        mean.
+        """
         match = _WITH_UNIT.fullmatch(value) if isinstance(value, str) else None
         if match is not None and match[2] == "%":
             width = abs(mean) * float(match[1]) / 100.0
@@ -209,7 +226,9 @@ class _Reading:
         return width
 
     def _difference(self, value: Value | None) -> float:
-        """A difference in the unit: 5 degC and 5 K are the same."""
+        """A difference in the unit of the factor, without the offset of a temperature scale: 5 degC
+        is 5 K.
+        """
         match = _WITH_UNIT.fullmatch(str(value))
         if match is None or not self._quantity.unit:
             return self.number(value)

@@ -46,7 +46,7 @@ class RowFigures:
     )
 
     def add(self, table: pa.Table) -> None:
-        """Take in the rows of a shard."""
+        """Add the figures of the rows of a shard; those of a design known already are replaced."""
         names = set(table.column_names)
         texts = {
             each.name: [text or "" for text in table[each.name].to_pylist()]
@@ -121,10 +121,11 @@ class RowFigures:
         }
 
     def wanted(self, kind: str, count: int) -> Wanted:
-        """Designs that `Study.keep` may still select, whatever rows follow.
+        """Rule for the designs whose run folder the study may still keep, whatever rows follow;
+        kind and count as in `Study.kept`.
 
-        A design that one on the front dominates, or that is worse than the last of the best, is
-        not kept in the end either.
+        A design that one on the front dominates, or that is worse than the last of the best, is not
+        kept in the end either.
         """
         if kind == "failed":
             return Wanted(FAILED)
@@ -136,7 +137,9 @@ class RowFigures:
         return Wanted("open", tuple((each.column, _sign(each)) for each in goals), bars)
 
     def record(self) -> DesignCounts:
-        """Counts of the unique designs for ``study.json``."""
+        """Numbers of different designs by depth, screen, verdict and message, for
+        ``study.json``.
+        """
         rows = list(self._rows.values())
         words = Counter(row[3] for row in rows if row[3])
         ranked = sorted(words.items(), key=lambda each: (-each[1], each[0]))

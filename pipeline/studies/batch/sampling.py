@@ -48,6 +48,7 @@ class SampledDesigns:
 
 
 def _plain(axis: Axis, values: Array | Levels) -> Array | Levels:
+    """Values of an axis in SI as they enter a case: integers stay integers, names texts."""
     if not isinstance(values, np.ndarray):
         return values
     if axis.levels and all(isinstance(each, int) for each in axis.levels):
@@ -87,7 +88,7 @@ def designs_of(
 
 
 def unit_cube(dimensions: int, sampling: Sampling) -> Array:
-    """Points of the unit cube (n, dimensions).
+    """Points in the unit cube (n, dimensions), by the method and seed of the sampling.
 
     References
     ----------
@@ -135,7 +136,9 @@ def _require_size(words: str, designs: int, factors: int) -> None:
 
 
 def _picked(levels: Sequence[Levels], method: str) -> list[NDArray[np.intp]]:
-    """Places of the levels of each factor; the last factor of a grid varies fastest."""
+    """Number of the level of each factor in every design (n,), a list of arrays: all combinations
+    of a grid, whose last factor varies fastest, or the k-th level of each list in design k.
+    """
     counts = [len(each) for each in levels]
     if method == "list":
         if len(set(counts)) != 1:
@@ -152,7 +155,10 @@ def _column(axis: Axis, values: Sequence[str | bool | int | float]) -> Array | L
 
 
 def _correlated(shares: Array, axes: Sequence[Axis], correlations: Sequence[Correlation]) -> Array:
-    """Shares (n, d) with the correlations of a Gaussian copula.
+    """Uniform samples (n, d), 0 to 1, correlated by a Gaussian copula: a correlation is that of the
+    normal scores.
+
+    InputError if the correlations contradict one another.
 
     References
     ----------

@@ -71,7 +71,9 @@ class SolverProcess:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def begin(self) -> tuple[Connection, subprocess.Popen[bytes]]:
-        """Start the process unless it runs; it imports while others work."""
+        """Pipe to the solver process, and the process, which is started unless it runs; its imports
+        go on while the caller works.
+        """
         if self._process is not None and self._pipe is not None and self._process.poll() is None:
             return self._pipe, self._process
         self.close()
@@ -95,7 +97,8 @@ class SolverProcess:
     def rows(
         self, task: Task, wanted: Wanted | None = None
     ) -> tuple[bytes, bytes, dict[str, Files]]:
-        """Rows and clock figures of a task as Parquet files, and files of runs by id.
+        """Rows of a task and their clock figures, each as a Parquet file, and the files of runs by
+        design id.
 
         Parameters
         ----------
@@ -123,7 +126,9 @@ class SolverProcess:
     def _encoded(
         self, task: Task, columns: Mapping[str, Any], walls: Sequence[float]
     ) -> tuple[bytes, bytes]:
-        """Parquet files of a task, by the process, or here where it does not live long enough."""
+        """Rows and clock figures as Parquet files, written by the solver process, or here where it
+        dies.
+        """
         with contextlib.suppress(_OutOfTimeError, _OutOfMemoryError, _DiedError):
             files: tuple[bytes, bytes] | None = self._asked("encoded", task, columns, walls)
             if files is not None:
@@ -141,7 +146,7 @@ class SolverProcess:
             return self._files(lambda: self._asked("presented", files))
 
     def _files(self, reply: Callable[[], Any]) -> Files:
-        """Files of a reply; none where there is none."""
+        """Run files of a reply of the process; {} where it exceeds time or memory or dies."""
         with contextlib.suppress(_OutOfTimeError, _OutOfMemoryError, _DiedError):
             files: Files = reply()
             return files
@@ -164,7 +169,11 @@ class SolverProcess:
         self._ready = False
 
     def _row(self, task: Task, row: int, wanted: Wanted | None) -> Row:
-        """Cells of a design; the files of its run follow where `wanted` is not None."""
+        """Values of a design by column; after `DEATHS_MAX` deaths of the process a row that says
+        so.
+
+        With `wanted` the process sends the files of its run next, see `_reply`.
+        """
         for _ in range(DEATHS_MAX):
             try:
                 solved: Row = (
@@ -182,7 +191,9 @@ class SolverProcess:
         return design_rows.died(DEATHS_MAX)
 
     def _asked(self, method: str, *arguments: Any) -> Any:
-        """Reply of the process, within time and memory."""
+        """Reply of the solver process to a call of one of its methods, within the limits of time
+        and memory.
+        """
         pipe, _ = self._started()
         try:
             pipe.send((method, arguments))
@@ -192,7 +203,9 @@ class SolverProcess:
         return self._reply()
 
     def _reply(self) -> Any:
-        """The next reply of the process, within time and memory."""
+        """Next reply of the solver process; beyond the limit of time or memory it is ended and an
+        error raised.
+        """
         pipe, process = self._pipe, self._process
         if pipe is None or process is None:
             raise _DiedError
@@ -212,7 +225,9 @@ class SolverProcess:
             raise
 
     def _started(self) -> tuple[Connection, subprocess.Popen[bytes]]:
-        """The process, with templates and settings, and its pipe."""
+        """Pipe to the solver process, and the process, once it has templates and settings and its
+        versions are those of the study.
+        """
         pipe, process = self.begin()
         if self._ready:
             return pipe, process
@@ -245,7 +260,9 @@ def resident(pid: int) -> int:
 
 
 def serve(pipe: Connection) -> None:
-    """Request loop of the solver process, until its pipe is closed."""
+    """Loop of the solver process: calls the method that a request names and sends the result, until
+    the pipe is closed.
+    """
     from camwright.pipeline.studies.batch.design_plan import study_versions
     from camwright.pipeline.studies.batch.design_solver import DesignSolver
 

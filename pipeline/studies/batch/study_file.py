@@ -28,6 +28,9 @@ _KEPT = re.compile(r"(|failed|pareto|best:([1-9][0-9]{0,6}))")
 
 
 def _plain_value(value: object) -> str | bool | int | float:
+    """The value, if it is a text of bounded length, a finite number, true or false;
+    else a refusal.
+    """
     if isinstance(value, str):
         try:
             Characters(1, 200).require("", value)
@@ -230,6 +233,9 @@ class Study(Section):
 
     @model_validator(mode="after")
     def _agrees(self) -> Self:
+        """The study itself; InputError where factors, sampling, correlations, objectives or stages
+        contradict one another.
+        """
         keys = [each.key for each in self.factors]
         for key in keys:
             if keys.count(key) > 1:
@@ -261,6 +267,9 @@ class Study(Section):
         return self
 
     def _check_stop(self) -> None:
+        """InputError for a stop by the width of the interval without independent samples of one
+        case.
+        """
         if self.stop is None or self.stop.interval is None:
             return
         method = self.sampling.method if self.sampling else "missing"
@@ -271,6 +280,9 @@ class Study(Section):
             raise InputError("stop.interval", self.stop.interval, "left out with several cases")
 
     def _check_keep(self) -> None:
+        """InputError for an unknown word in `keep`, or one without the objectives or cams that it
+        needs.
+        """
         if not _KEPT.fullmatch(self.keep):
             raise InputError("keep", self.keep, 'failed, pareto, or best:N such as "best:10"')
         if self.keep and self.cam == "base":
@@ -386,6 +398,9 @@ def chosen_study(files: Sequence[Path], depth: str | None) -> tuple[Study, str, 
 
 
 def _of_cases(files: Sequence[Path], depth: str) -> tuple[Study, str, Path]:
+    """Study of case files without factors: the study, its text, and the folder common
+    to the cases.
+    """
     paths = [path.resolve() for path in files]
     folder = Path(os.path.commonpath([path.parent for path in paths]))
     names = [path.relative_to(folder).as_posix() for path in paths]

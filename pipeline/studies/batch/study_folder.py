@@ -70,7 +70,9 @@ class Shard:
     ids: tuple[str, ...]
 
     def fits(self, rows: pa.Table) -> bool:
-        """Whether a table is of a study and holds the rows of the shard."""
+        """Whether a table has the columns of a study and the rows of exactly this shard, in its
+        order.
+        """
         try:
             require_columns(rows, [each for each in FIXED if each is not DESIGN], Path(self.name))
         except ResultError:
@@ -98,7 +100,7 @@ class StudyFolder:
         self._home = OwnedFolder(out, _OURS, "study")
 
     def require_free(self) -> None:
-        """Refuse a foreign folder, and a study without `resume`; ResultError."""
+        """ResultError if the folder has other content, or a study while none is to be resumed."""
         if self.path.is_symlink():
             raise ResultError(f"{self.path}: is a link; choose a folder")
         entries = self._home.entries()
@@ -113,7 +115,7 @@ class StudyFolder:
             raise ResultError(f"{self.path}: {told}")
 
     def _of_the_user(self) -> list[str]:
-        """Files among shards and runs that a resumed study would delete and did not write."""
+        """Files among shards and runs that no study wrote and that resuming would delete."""
         odd = [
             f"{folder}/{each.name}"
             for folder in (SHARDS, TIMINGS)
@@ -152,7 +154,9 @@ class StudyFolder:
                 write_atomic(self.path / CASES / each.name / name, content)
 
     def read_whole(self, shard: Shard) -> pa.Table | None:
-        """Rows of a shard; None if missing, or damaged and then deleted."""
+        """Rows of a shard; None if its file is missing or does not fit, in which case it is
+        deleted.
+        """
         shards = self._store(SHARDS)
         table = shards.get(shard.name, shard.fits)
         if table is None:
@@ -172,7 +176,7 @@ class StudyFolder:
         return Store(self.path / folder, TABLE)
 
     def forget_others(self, shards: Sequence[Shard], runs: Sequence[str]) -> None:
-        """Delete shards and runs of an earlier study."""
+        """Delete all shards and runs but these, left by an earlier study."""
         kept = {f"{shard.name}.parquet" for shard in shards} | {f"{each}.json" for each in runs}
         for folder in (SHARDS, TIMINGS):
             for each in sorted((self.path / folder).glob("*")):
@@ -194,7 +198,9 @@ class StudyFolder:
         return all(versions.get(each) == version for each, version in made.items())
 
     def write_run(self, name: str, files: Files) -> None:
-        """Write the run folder of a design, empty without a result."""
+        """Write the run folder of a design from its files by name, in one step; it is empty for a
+        design without a result.
+        """
         final = self.path / RUNS / name
         aside = final.with_name(f".{name}.tmp")
         shutil.rmtree(aside, ignore_errors=True)
@@ -240,7 +246,8 @@ class StudyFolder:
         deeper: Sequence[Shard],
         ids: Sequence[str],
     ) -> None:
-        """Write the rows of all designs in their order, block by block.
+        """Write the rows of all designs in their order, a design drawn several times as often;
+        block by block.
 
         Parameters
         ----------
@@ -286,7 +293,7 @@ class StudyFolder:
                 aside.unlink(missing_ok=True)
 
     def _schema(self, shards: Sequence[Shard]) -> pa.Schema:
-        """Columns of all shards, in order."""
+        """Arrow schema of the dataset: the columns of all shards, in dataset order."""
         import pyarrow as pa
         import pyarrow.parquet as pq
 
@@ -301,7 +308,9 @@ class StudyFolder:
 def _block(
     schema: pa.Schema, parts: Sequence[pa.Table], rows: NDArray[np.intp], start: int
 ) -> pa.Table:
-    """Rows of the parts, numbered from `start`, with all columns of the schema."""
+    """Part of the dataset: these rows of the concatenated parts, numbered from `start`, a column
+    without values filled with nulls.
+    """
     import pyarrow as pa
 
     if not parts:

@@ -109,7 +109,9 @@ def planned(study: Study, templates: Sequence[Template]) -> Plan:
 
 
 def _axes(study: Study, templates: Sequence[Template]) -> list[Axis]:
-    """Axes of the factors; InputError as `planned` where no sample is needed to see it."""
+    """Axis of each factor; InputError for what `planned` would refuse and no sample is needed to
+    see.
+    """
     axes: list[Axis] = []
     if study.sampling is not None:
         cases = UnpackedTemplates(templates)
@@ -137,6 +139,7 @@ def _settings(study: Study, templates: Sequence[Template]) -> Settings:
 def _plan(
     study: Study, templates: Sequence[Template], axes: Sequence[Axis], settings: Settings
 ) -> Plan:
+    """Plan of the study: its sampled designs for every case, equal ones merged."""
     designs: SampledDesigns | None = None
     if study.sampling is not None:
         designs = designs_of(axes, study.sampling, study.correlations)
@@ -144,7 +147,7 @@ def _plan(
 
 
 def _require_numbers(name: str, units: Mapping[str, str | None]) -> None:
-    """Refuse an objective that is no column of numbers of a dataset."""
+    """InputError for an objective that is no column of numbers of the dataset."""
     limit = "a column of numbers of the dataset, such as headline.p0_hertz_max_MPa"
     try:
         column_of(name, units)
@@ -174,7 +177,10 @@ class _Run:
         self.figures = RowFigures(self.study.objectives)
 
     def finish(self) -> StudyDocument:
-        """Solve both stages, write all files; the contents of ``study.json``."""
+        """Solve all designs, up to the stop rule, then those chosen for the second stage, if there
+        is one; write dataset, run folders of the designs kept, and summary. Gives the contents of
+        ``study.json``.
+        """
         study, plan, home = self.study, self.plan, self.home
         first = self._stage(study.tier, plan.tasks(study.tier), len(plan.ids), stop=True)
         deeper: list[Shard] = []
@@ -204,7 +210,11 @@ class _Run:
         return self.plan.tasks(tier, sorted(order[name] for name in ids))
 
     def _stage(self, tier: Tier, tasks: Iterable[Task], count: int, *, stop: bool) -> list[Shard]:
-        """Solve the tasks of a depth that no shard holds; all their shards in order."""
+        """Solve the tasks of a depth that have no shard in the folder yet; gives the shards of all,
+        in order.
+
+        stop : whether the stop rule of the study ends the stage.
+        """
         self.progress.stage(f"{tier.word}: {count} designs")
         watch = _Watch(self, count, self.study.stop if stop else None)
 
@@ -242,7 +252,7 @@ class _Run:
         return shards
 
     def _wanted(self, tier: Tier, watch: _Watch) -> Wanted | None:
-        """Designs of a depth whose run is made with their row, by those that are solved.
+        """Rule for the designs of a depth whose run folder is made together with their row.
 
         Before a stop rule by those of the dataset wherever it stops. None where no run is kept, or
         arrays are solved, which hold no curves.
@@ -253,7 +263,9 @@ class _Run:
         return self.figures.of(tier, watch.certain).wanted(kind, most)
 
     def _still_wanted(self, made: set[str], tier: Tier, watch: _Watch) -> set[str]:
-        """Runs made so far that may be kept; the others are deleted."""
+        """Ids of those of the run folders made so far that may be kept in the end; the others are
+        deleted.
+        """
         wanted = self._wanted(tier, watch)
         still = made if wanted is None else self.figures.taken(made, wanted)
         for name in made - still:
@@ -261,7 +273,9 @@ class _Run:
         return still
 
     def _keep(self, kept: Sequence[str], deeper: set[str]) -> None:
-        """Write the run folders of the designs kept, at the depth of their rows."""
+        """Write the run folders of the designs `kept` that are not there yet; of those in `deeper`
+        at the depth of the second stage.
+        """
         tasks: list[Task] = []
         for tier, ids in (
             (self.study.tier, [name for name in kept if name not in deeper]),
@@ -340,7 +354,7 @@ class _Watch:
         self._order.append(shard)
 
     def take(self, shard: Shard, table: pa.Table) -> None:
-        """A shard is complete, of these rows."""
+        """Enter a complete shard with its rows, report progress, and apply the stop rule."""
         self._run.figures.add(table)
         states = self._ready[shard.name] = states_in(table)
         self._solved += len(shard.ids)
@@ -356,7 +370,9 @@ class _Watch:
         self._judge(now - self._began)
 
     def _judge(self, seconds: float) -> None:
-        """Apply the stop rule."""
+        """Apply the stop rule to the shards complete without a gap from the first; `seconds` since
+        the start.
+        """
         rule = self._rule
         while not self.stopped and self._whole < len(self._order):
             shard = self._order[self._whole]
@@ -373,7 +389,11 @@ class _Watch:
             self.stopped = self.stopped or "time"
 
     def _count_in(self, states: NDArray[np.uint8]) -> None:
-        """Count the designs that are whole with the next shard; equal ones as often as drawn."""
+        """Count the designs, as drawn, whose results are complete with the next shard, and those
+        that pass.
+
+        states : of the different designs of the shard; one drawn several times counts as often.
+        """
         plan, start = self._run.plan, self._unique
         self._unique += len(states)
         self._states[start : self._unique] = states

@@ -121,7 +121,7 @@ class TaskScheduler:
         self._stack.close()
 
     def begin(self) -> None:
-        """Reach the cluster, or start the local processes and do not wait for them."""
+        """Connect to the cluster, or start the local processes without waiting for them."""
         if self._local is not None or self._connected is not None:
             return
         import dask
@@ -161,7 +161,7 @@ class TaskScheduler:
 
     @functools.cached_property
     def _client(self) -> Client:
-        """Client whose workers know the templates; waits for the local processes."""
+        """Dask client whose workers have the templates; waits until the local processes run."""
         from distributed import Client
 
         from camwright.pipeline.studies.batch.cluster_worker import StudyPlugin
@@ -206,7 +206,13 @@ class TaskScheduler:
         killed: Callable[[Work], Result],
         *arguments: Callable[[], object],
     ) -> Iterator[tuple[Work, Result]]:
-        """Results as they complete; a few tasks a worker are known to the scheduler at once."""
+        """Tasks with their results, in the order in which they complete; at most `_AHEAD` tasks per
+        worker are submitted at a time.
+
+        method : function of task, plugin name and arguments, called on a worker. killed : result of
+        a task that ended its worker too often. arguments : called as each task is submitted. A lost
+        cluster raises ResultError.
+        """
         from distributed import as_completed
         from distributed.scheduler import KilledWorker
 
@@ -251,7 +257,9 @@ class TaskScheduler:
                 self._client.cancel(list(running), force=True)
 
     def _apart(self, task: Task, wanted: Callable[[], Wanted | None]) -> Shard:
-        """Shard of a task that ended its worker too often: each design on its own."""
+        """Shard of a task that ended its worker too often: each design is solved as a task of its
+        own.
+        """
         import pyarrow as pa
 
         if len(task.ids) == 1:
