@@ -28,7 +28,9 @@ def data_frame(columns: Mapping[str, object]) -> pd.DataFrame:
 
 
 def curves(columns: Mapping[str, NDArray[Any]], headers: Sequence[str]) -> DrawnAxes:
-    """Curves of columns over the first column of numbers; see `Table.plot`."""
+    """Curves of the columns `headers` over the first column of numbers, a panel each and a curve
+    per load case; see `Table.plot`.
+    """
     numbers = [header for header, cells in columns.items() if cells.dtype.kind == "f"]
     angles = [header for header in numbers if header.endswith("angle_deg")]
     others = [header for header in numbers if header not in (numbers[0], *angles)]

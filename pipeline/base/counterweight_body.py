@@ -22,7 +22,8 @@ def moment_per_width(radius: Value, inner: Value, density: Value) -> Array:
 
 
 def width_beside(width: Value, apart: Value, cam_width: Value) -> Array:
-    """Part (...) of a width beside the cam, which the cam does not fill.
+    """Part (...), m, of the width of a counterweight that lies beside the cam, not in the plane of
+    it.
 
     apart: distance of the middles of counterweight and cam, >= 0
     """
@@ -33,7 +34,9 @@ def width_beside(width: Value, apart: Value, cam_width: Value) -> Array:
 
 
 def width_for(beside: Value, apart: Value, cam_width: Value) -> Array:
-    """Width (...) of which a part lies beside the cam: inverse of `width_beside`."""
+    """Width (...), m, of a counterweight of which a part `beside` lies beside the cam: inverse of
+    `width_beside`.
+    """
     near, far = apart - 0.5 * cam_width, apart + 0.5 * cam_width
     to_the_cam = np.asarray(beside - near)  # its half, with one face within the cam
     around = 0.5 * (beside + cam_width)
@@ -90,7 +93,8 @@ class CounterweightBody:
         return gap
 
     def under(self, half_depth: Value, lowest: Value) -> Array:
-        """Distance (...) from a follower about the plane of the cam, over the turn.
+        """Least distance (...), m, of the counterweight from a follower that moves in the plane of
+        the cam.
 
         half_depth: half of its length along the shaft; lowest: its least distance from the axis.
         """

@@ -39,6 +39,7 @@ def _texts_in(module: str) -> Mapping[str, Mapping[str, str]]:
 
 
 def _texts_of(node: ast.ClassDef) -> Iterator[tuple[str, str]]:
+    """Names of the fields of a class, each with the first paragraph of the docstring below it."""
     for field, below in pairwise(node.body):
         if not isinstance(field, ast.AnnAssign) or not isinstance(field.target, ast.Name):
             continue

@@ -195,7 +195,8 @@ _RULES = (
 
 
 def _slip(text: str, message: str) -> tuple[str, str]:
-    """Place, and what TOML wants there, of a message of the parser.
+    """Place of a syntax error in a TOML text, and what is accepted there, from the message of the
+    parser.
 
     Nothing of the text is repeated: a link may make any file of the machine an input.
     """
@@ -229,6 +230,7 @@ def _blank(literal: re.Match[str]) -> str:
 
 
 def _is_deeper(tables: dict[str, Any], depth: int) -> bool:
+    """Whether tables and arrays are nested more than `depth` levels deep."""
     level: list[Any] = [tables]
     for _ in range(depth):
         level = [
@@ -365,6 +367,9 @@ def json_text(value: Json, indent: int | None = 2) -> str:
 
 
 def _plain(value: np.generic | np.ndarray | Mapping[str, Json]) -> Json:
+    """Value that JSON can hold of a numpy number or array, or of a mapping; TypeError
+    for another.
+    """
     if isinstance(value, (np.generic, np.ndarray)):
         plain: Json = value.tolist()
         return plain
@@ -452,7 +457,7 @@ def _member(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> np.ndarray:
 
 
 def files_in(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Files under a folder by relative name, sorted, without hidden ones."""
+    """Files under a folder: relative name, then path, sorted, without hidden ones."""
     for file in sorted(folder.rglob("*")):
         parts = file.relative_to(folder).parts
         if file.is_file() and not any(part.startswith(".") for part in parts):

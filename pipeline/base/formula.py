@@ -138,6 +138,7 @@ def names(node: Node) -> Iterator[str]:
 
 
 def _names(node: Node) -> Iterator[str]:
+    """Names in an expression tree in their order, repeated as often as they occur."""
     if node.kind == "name":
         yield node.text
     for part in node.parts:
@@ -188,6 +189,7 @@ class _Reader:
         self.bars = 0  # open |
 
     def _split(self) -> Iterator[tuple[str, str]]:
+        """Tokens of the text: kind ("number", "name", "sign" or "end") and text."""
         at = 0
         while at < len(self.text.rstrip()):
             rest = self.text[at:].lstrip()
@@ -221,12 +223,14 @@ class _Reader:
             )
 
     def whole(self) -> Node:
+        """Tree of the whole text; InputError if anything follows the expression."""
         node = self._sum()
         if self._next()[0] != "end":
             raise InputError("formula", self.text, "one expression")
         return node
 
     def _sum(self) -> Node:
+        """Tree of a sum from here on: products joined by + and -."""
         node = self._product()
         while True:
             sign = self._next()[1]
@@ -236,6 +240,7 @@ class _Reader:
             node = Node(sign, sign, (node, self._product()))
 
     def _product(self) -> Node:
+        """Tree of a product from here on: factors joined by *, / or a blank."""
         node = self._signed()
         while True:
             if self._take("/"):
@@ -251,12 +256,14 @@ class _Reader:
         return kind in ("number", "name") or text == "(" or (text == "|" and not self.bars)
 
     def _signed(self) -> Node:
+        """Tree of a factor from here on, with its sign and power."""
         if self._take("-"):
             return Node("minus", "-", (self._signed(),))
         base = self._atom()
         return Node("^", "^", (base, self._signed())) if self._take("^") else base
 
     def _atom(self) -> Node:
+        """Tree of a number, name, function, or expression in parentheses or bars from here on."""
         kind, text = self._next()
         self.place += 1
         if kind == "number":
@@ -278,6 +285,7 @@ class _Reader:
         raise InputError("formula", self.text, f"an expression, not {text!r}")
 
     def _number(self, text: str) -> Node:
+        """Number, converted to SI where a unit follows it."""
         unit = self._next()[1]
         if self._next()[0] == "name" and unit in _UNITS:
             self.place += 1
@@ -285,6 +293,9 @@ class _Reader:
         return Node("number", text, (), float(text))
 
     def _call(self, text: str) -> Node:
+        """Function with its arguments in parentheses; without these the product that follows is its
+        argument.
+        """
         if not self._take("("):  # of the product that follows
             return Node("call", text, (self._product(),))
         parts = [self._sum()]
@@ -332,8 +343,8 @@ class Style(Generic[Text]):
 def written(node: Node, style: Style[Text], known: Mapping[str, str] | None = None) -> Text:
     """Expression tree in a style; `known`: text in place of a name, such as its value with unit."""
 
-    def of(each: Node, least: int) -> Text:
-        """Text of a part that has to bind at least so strongly."""
+    def bracketed(each: Node, least: int) -> Text:
+        """Text of a part, in parentheses where it binds less than `least`; see `_binds`."""
         text = written(each, style, known)
         value = "" if known is None or each.kind != "name" else known.get(each.text, "")
         binds = _SUM if value.startswith("-") else _binds(each, style.divides)
@@ -348,27 +359,31 @@ def written(node: Node, style: Style[Text], known: Mapping[str, str] | None = No
         return style.name(node.text) if shown is None else style.number(shown)
     one = node.parts[0]
     if node.kind == "abs":
-        return style.bars(of(one, _SUM))
+        return style.bars(bracketed(one, _SUM))
     if node.kind == "minus":
-        return style.sign("minus") + of(one, _PRODUCT)
+        return style.sign("minus") + bracketed(one, _PRODUCT)
     if node.kind == "call":
-        inner = of(one, _SUM)
+        inner = bracketed(one, _SUM)
         for part in node.parts[1:]:
-            inner = inner + style.sign(",") + of(part, _SUM)
+            inner = inner + style.sign(",") + bracketed(part, _SUM)
         return style.root(inner) if node.text == "sqrt" else style.call(node.text, inner)
     other = node.parts[1]
     if node.kind == "/":
         least = (_SUM, _SUM) if style.divides else (_PRODUCT, _POWER)
-        return style.fraction(of(one, least[0]), of(other, least[1]))
+        return style.fraction(bracketed(one, least[0]), bracketed(other, least[1]))
     if node.kind == "^":
-        return style.power(of(one, _ATOM), of(other, _SUM if style.divides else _ATOM))
+        return style.power(
+            bracketed(one, _ATOM), bracketed(other, _SUM if style.divides else _ATOM)
+        )
     if node.kind == "*":
-        return of(one, _PRODUCT) + style.sign("*") + of(other, _POWER)
-    return of(one, _SUM) + style.sign(node.kind) + of(other, _PRODUCT)
+        return bracketed(one, _PRODUCT) + style.sign("*") + bracketed(other, _POWER)
+    return bracketed(one, _SUM) + style.sign(node.kind) + bracketed(other, _PRODUCT)
 
 
 def _binds(node: Node, divides: bool) -> int:
-    """How strongly a node binds; divides: see `Style`."""
+    """How strongly a node binds, as rank from `_SUM` to `_ATOM`: the greater, the fewer parentheses
+    it needs; divides: see `Style`.
+    """
     if node.kind in ("+", "-", "minus"):
         return _SUM
     if node.kind == "*" or (node.kind == "/" and not divides):

@@ -76,7 +76,9 @@ class Lines:
 
 
 def share(task: Task) -> float | None:
-    """Complete share of a stage, by its steps or its usual duration; None: unknown."""
+    """Share of a stage that is complete, 0 to 1, by its steps or its usual duration;
+    None: unknown.
+    """
     if task.total:
         return task.completed / task.total
     usual: float | None = task.fields.get("usual")

@@ -123,6 +123,9 @@ class In:
         return f"{' and '.join(shown) or 'finite'} {self.unit}".rstrip()
 
     def _number(self, value: object) -> float:
+        """Number in SI from text with a unit, or from a pure number where the field has no unit;
+        InputError otherwise.
+        """
         if self.unit:
             return units.parse(value, self.unit, "")
         if isinstance(value, bool) or not isinstance(value, (int, float)):
@@ -159,6 +162,8 @@ _RATIO = re.compile(r"([1-9][0-9]{0,5}):([1-9][0-9]{0,5})", re.ASCII)
 
 @cache
 def _bounds_in_si(quantity: In) -> tuple[float, float, float, float]:
+    """Bounds of a quantity in SI: above, below, least, greatest; infinite where there is none."""
+
     def si(bound: float) -> float:
         if not isfinite(bound) or bound == 0.0 or not quantity.unit:
             return bound
@@ -184,7 +189,9 @@ class Count:
         return _nullable(source, number)
 
     def read(self, value: object) -> int:
-        """Whole number of a case file, checked against the bounds; see `In.read`."""
+        """Whole number of a case file within the bounds, as `In.read`; InputError, without the name
+        of the field, for any other value.
+        """
         if isinstance(value, bool) or not isinstance(value, int):
             raise InputError("", str(value), "a whole number")
         self.require("", value)
@@ -397,6 +404,7 @@ def hints_of(part: type[Part]) -> Mapping[str, Any]:
 
 
 def _rules_of(part: type[Part]) -> Mapping[str, _Rule]:
+    """Rules on the values of the fields of a part by name; fields without a rule are left out."""
     if part not in _RULES:
         hints = hints_of(part)
         rules = {
@@ -409,7 +417,9 @@ def _rules_of(part: type[Part]) -> Mapping[str, _Rule]:
 
 
 def _rule_of(hint: object) -> _Rule | None:
-    """The rule of a type hint; looks through ``X | None``, not into tuples."""
+    """Rule on the values of a type hint: the mark within ``Annotated``, or the words of a
+    ``Literal``; optional with ``| None``. None without a rule; tuples are not looked into.
+    """
     if get_origin(hint) is Annotated:
         inner, *marks = get_args(hint)
         for mark in marks:

@@ -49,7 +49,9 @@ NO_SOURCE = Source("", confirmed=False)
 
 
 def source_in(entry: object) -> Source:
-    """Source from an entry of a table; empty if the entry has another form."""
+    """Source from its entry in a table of a case: text, or a table of text and `confirmed`; empty
+    if it is neither.
+    """
     if isinstance(entry, str):
         return Source(entry, confirmed=bool(entry.strip()) and not _of_0_1(entry))
     if not isinstance(entry, Mapping) or set(entry) != _STATED:
@@ -68,7 +70,11 @@ def entry_of(source: Source) -> Any:
 
 
 def reworded(entry: Any, words: Callable[[str], str]) -> Any:
-    """Entry with its text changed by a function; form and confirmation are kept."""
+    """Entry of a source (see `source_in`) with its text changed by `words`; whether it confirms the
+    value stays.
+
+    Plain text stays plain, unless the new one would be read as unconfirmed or confirmed otherwise.
+    """
     source = source_in(entry)
     new = replace(source, text=words(source.text))
     plain = isinstance(entry, str) and source_in(new.text) == new
@@ -85,7 +91,7 @@ def old_words(tables: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _plain(table: object, key: str = "") -> Iterator[str]:
-    """Plain texts of the sources within a table of that key."""
+    """Sources within a table that are plain texts, not tables; `key`: that of the table."""
     if isinstance(table, str) and key in _KEYS:
         yield table
     elif isinstance(table, Mapping) and set(table) != _STATED:

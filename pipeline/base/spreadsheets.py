@@ -71,7 +71,9 @@ def spreadsheet(file: Path, excerpt: Excerpt | None = None) -> bytes:
 
 
 def _add_sheet(book: Workbook, name: str, whole: Table, rows: NDArray[np.intp], pages: int) -> None:
-    """Add a sheet with the rows of a table, on `pages` pages; 0: as many as it takes."""
+    """Add a sheet to a workbook with some rows of a table, printed on `pages` pages; 0: as many as
+    it takes.
+    """
     sheet = book.add_worksheet(name[:31])
     head = book.add_format({"bold": True, "text_wrap": True, "valign": "top", "bottom": 1})
     to_fill = book.add_format({"border": 1})

@@ -110,6 +110,9 @@ class StemLayout:
         )
 
     def _by_rule(self, thickness: Value, clearance: Value) -> SeatPlace:
+        """Default place of the moving seat: between the guides if the spring has room there, else
+        above guide B; see `seated`.
+        """
         between = self.guide_b[0] - self.spring_length + self.lift
         gap = _least(between - self.lift - thickness - self.guide_a[1], self.beside_stem)
         least = self.guide_b[1] + self.lift + thickness
@@ -119,7 +122,8 @@ class StemLayout:
         return SeatPlace(np.where(stays, between, above), np.where(stays, gap, free))
 
     def _at(self, height: Value, thickness: Value) -> SeatPlace:
-        """At a height: below guide A, between the guides, or above guide B.
+        """The moving seat at a stated height at maximum lift: below guide A, between the guides, or
+        above guide B.
 
         Coils that reach a guide pass around it.
         """

@@ -61,6 +61,7 @@ def _json_bytes(record: dict[str, Any]) -> bytes:
 
 
 def _read_record(path: Path) -> dict[str, Any]:
+    """Record of a JSON file; ResultError if it is no object."""
     record = read_json(path)
     if not isinstance(record, dict):
         raise ResultError(f"{path}: is no record")
@@ -220,6 +221,7 @@ _sizes: dict[Path, int] = {}
 
 @lru_cache(maxsize=1)
 def _versions() -> tuple[str, ...]:
+    """Names of the libraries on which stored values depend, with their versions."""
     versions = []
     for name in _LIBRARIES:
         try:

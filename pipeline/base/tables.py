@@ -249,6 +249,9 @@ def read_table(path: Path) -> Table:
 
 
 def _in_unit(column: Column, values: Array) -> Array:
+    """Values of a column from SI in its unit, read-only; ResultError for a NaN that it may not
+    hold.
+    """
     if values.ndim != 1 or (np.isnan(values).any() and not column.unknown):
         what = "NaN" if values.ndim == 1 else f"{values.ndim} dimensions"
         raise ResultError(f"column {column.header} holds {what}")
@@ -260,6 +263,9 @@ def _in_unit(column: Column, values: Array) -> Array:
 
 
 def _parsed(path: Path, header: str, cells: Sequence[str]) -> Array:
+    """Numbers of the cells of a column, NaN for an empty one; ResultError with file and line for
+    any other text.
+    """
     try:
         _require_digits("".join(cells))
         values = np.array([float(cell) if cell else math.nan for cell in cells])
@@ -279,6 +285,7 @@ def _require_digits(text: str) -> None:
 
 
 def _number(cell: str) -> float:
+    """Number of a cell; NaN if it is none."""
     try:
         _require_digits(cell)
         return float(cell)
@@ -303,7 +310,9 @@ def _texts(values: Array) -> list[str]:
 
 
 def _range(cells: Cells) -> tuple[str, str]:
-    """Least and greatest value of a column, first and last text; "" where none is known."""
+    """Least and greatest value of a column as text, or its first and last text; "" where none is
+    known.
+    """
     if cells.dtype.kind != "f":
         names = cells.tolist()
         return (str(names[0]), str(names[-1])) if names else ("", "")

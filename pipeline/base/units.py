@@ -120,7 +120,7 @@ _ACCEPTED = {
 
 @lru_cache(maxsize=512)
 def _unit(text: str) -> _Unit:
-    """The unit of a text; ValueError if it is none."""
+    """Unit of a text such as ``kN/m`` or ``mm^2``; ValueError if it is none."""
     if text in _ALONE:
         return _ALONE[text]
     text = _POWER.sub("^", text)
@@ -160,7 +160,9 @@ def _closest(stated: str) -> str:
 
 
 def _spelled(stated: str, unit: str) -> str:
-    """A unit as this module reads it: a speed in turns where one is wanted, ``Nm`` as ``N m``."""
+    """The spelling of a stated unit that `_unit` reads: ``Nm`` as ``N m``; where a speed is wanted,
+    turns such as ``1/min`` as ``rpm``.
+    """
     if same_dimension(unit, "rpm"):
         return _SPEEDS.get(stated, stated)
     torque = _TORQUE.match(stated)
@@ -174,7 +176,9 @@ def _accepted(unit: str) -> str:
 
 
 def _number_and_unit(text: str) -> tuple[Decimal, str] | None:
-    """Number and unit of a text; a fraction, ``1 3/8 in``, counts as one number. None: neither."""
+    """Number and unit text of a quantity such as ``12.5 mm``; a fraction, ``1 3/8 in``, counts as
+    one number. None if the text is no quantity.
+    """
     if len(text) > _LONGEST_TEXT:
         return None
     if fraction := _FRACTION.fullmatch(text):
@@ -275,7 +279,7 @@ def rounded(text: str, digits: int = 4) -> str:
 
 
 def _plain(number: Decimal) -> str:
-    """Without an exponent where that stays readable: 24200, 0.0055, 2.1e-07."""
+    """Number as text, without an exponent where that stays readable: 24200, 0.0055, 2.1e-07."""
     if number == 0:
         return "0"
     exponent = number.adjusted()

@@ -192,6 +192,9 @@ def _upper(one: Judged) -> float:
 
 
 def _use_of(one: Judged, demand: float) -> float:
+    """Utilisation of the limit by a demand: demand over limit, the inverse for a least value; 0 or
+    infinite where the divisor is not positive.
+    """
     limit = one.limit or 0.0
     part, whole = (limit, demand) if one.sense == "at_least" else (demand, limit)
     if whole > 0:
@@ -238,6 +241,9 @@ def in_order(checks: Iterable[AnyRanked]) -> tuple[AnyRanked, ...]:
 
 
 def _place(one: Ranked) -> tuple[int, float, str]:
+    """Sort key of a check: not evaluated ones first, required before optional, then by falling
+    utilisation.
+    """
     used = one.utilisation
     if used is None:
         return 0, 0.0 if one.must_have else 1.0, one.id
@@ -287,6 +293,7 @@ def failing(checks: Iterable[AnyRanked], fail_on: str) -> tuple[AnyRanked, ...]:
 
 
 def _counts(one: Ranked, fail_on: str) -> bool:
+    """Whether a check that does not pass decides the exit code at a level of `FAIL_ON`."""
     if fail_on == "never" or one.status in ("pass", "waived"):
         return False
     if one.must_have or fail_on == "any":

@@ -85,7 +85,7 @@ class Argument:
 
     @property
     def usage(self) -> str:
-        """As in a usage line: ``--out DIR``, ``CASE...``."""
+        """The argument as in a usage line: ``--out DIR``, ``CASE...``."""
         if not self.is_option:
             return f"{self.typed}..." if self.many else self.typed
         if self.kind is bool:
@@ -93,7 +93,7 @@ class Argument:
         return f"{self.typed} {self.words.metavar or _METAVARS.get(self.kind, 'VALUE')}"
 
     def value(self, text: str) -> Any:
-        """Value of a text.
+        """Value of a text of the command line in the type of the argument.
 
         Raises
         ------
@@ -133,6 +133,9 @@ def _is_group(hint: Any) -> bool:
 
 
 def _of_group(name: str, kind: type) -> Iterator[Argument]:
+    """Arguments of the fields of a dataclass or ``TypedDict``, which the command takes as one
+    parameter `name`.
+    """
     from camwright.pipeline.base.field_texts import texts_below
 
     texts, needed = texts_below(kind), set[str]()
@@ -148,7 +151,13 @@ def _argument(
     name: str, group: str, hint: Any, *, required: bool, by_place: bool = False,
     words: Words | None = None,
 ) -> Argument:  # fmt: skip
-    """An argument of an annotation: ``Annotated`` with `Words`, perhaps of a list, or None."""
+    """Argument of a parameter or field `name` by its type hint: ``Annotated[..., Words]``, a list
+    for one that may be repeated, with or without None.
+
+    group : parameter that takes the group it belongs to, "" without one. by_place : whether it is
+    stated by its place, not as option. words : what is printed on it, where the hint has no
+    `Words`.
+    """
     if get_origin(hint) is NotRequired:
         (hint,) = get_args(hint)
     if get_origin(hint) is Annotated:
@@ -197,7 +206,9 @@ def read_arguments(command: Command, texts: Sequence[str]) -> dict[str, Any]:
 
 
 def _stated(texts: Sequence[str], accepted: Sequence[Argument]) -> dict[str, list[str]]:
-    """Texts of each argument and option that is stated; "" for a value of a flag."""
+    """Texts of each argument and option that the command line has, by its name as typed; "" for a
+    flag.
+    """
     options = {each.typed: each for each in accepted if each.is_option}
     stated: dict[str, list[str]] = {}
     loose: list[str] = []
@@ -278,7 +289,7 @@ def help_of(path: str, command: Command) -> str:
 
 
 def _described(one: Argument) -> str:
-    """Lines of an argument or option in a help."""
+    """Lines on an argument or option for the help, in two columns."""
     text = one.words.help
     if one.words.choices:
         text += f" One of: {', '.join(one.words.choices)}."

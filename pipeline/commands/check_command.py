@@ -218,7 +218,9 @@ def _case_of(target: Path) -> Path:
 
 
 def _unreadable_without(target: Path) -> str:
-    """TOML of the keys without which a case file cannot be read; "" where it can."""
+    """TOML text of the keys without which a case file cannot be read, to be pasted; "" where it can
+    be read.
+    """
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.case.error_text import MissingKeysError
 
@@ -312,7 +314,9 @@ def _judged(
 def _of_several(
     target: Path, only: Sequence[str], fail_on: str, keys: Mapping[str, TrustedKey] | None
 ) -> _Judged:
-    """One of several runs and cases; one that cannot be judged does not hide the others."""
+    """Checks of one of several runs and cases; an error becomes its row, so that the others are
+    still judged.
+    """
     from camwright.pipeline.results.junit_report import unread_suite
 
     name = str(target)
@@ -355,7 +359,9 @@ class _Record(NamedTuple):
 
 
 def _recorded(target: Path, keys: Mapping[str, TrustedKey] | None) -> _Record:
-    """Record of a run folder, compared with its files; prints each fault. Nothing of a case file.
+    """What the record of a run folder says of its files and signatures; each difference is printed.
+
+    Empty for a case file.
 
     Parameters
     ----------
@@ -387,7 +393,9 @@ def _recorded(target: Path, keys: Mapping[str, TrustedKey] | None) -> _Record:
 
 
 def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
-    """Whether a run is what its case gives; prints seed, drawn angles and each difference."""
+    """Whether a recomputation of the run gives what its folder holds; prints seed, drawn angles and
+    each difference.
+    """
     import secrets
 
     from camwright.pipeline.recomputation import ANGLES

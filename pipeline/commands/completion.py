@@ -42,7 +42,9 @@ def bash_script() -> str:
 
 
 def _words_of(options: Sequence[Argument]) -> str:
-    """Words after a command: those of the option before, else the options once a - is typed."""
+    """Shell text that sets the words after a command: the choices of the option before, else the
+    options once a - is typed.
+    """
     cases = [
         f'{each.typed}) words="{" ".join(each.words.choices)}" ;;'
         for each in options

@@ -53,7 +53,7 @@ def explain(
 
 
 def _open_sources() -> str:
-    """Values of the program that are to be confirmed, by their sources."""
+    """Text that lists the values of the program that are to be confirmed, by their sources."""
     from camwright.pipeline.results.check_text import open_sources
 
     by_text = open_sources()
@@ -63,6 +63,9 @@ def _open_sources() -> str:
 
 
 def _explained(word: str) -> str:
+    """Text on the keys, table or check of a word; InputError with the closest ones if there is
+    none.
+    """
     from camwright.pipeline.base.missing_kinds import missing_kinds
     from camwright.pipeline.case.keys import keys_at
     from camwright.pipeline.checks.registry import DECLARED
@@ -78,7 +81,7 @@ def _explained(word: str) -> str:
 
 
 def _of_keys(word: str, keys: Sequence[Key]) -> list[str]:
-    """Texts of the keys at a path: one where all kinds of its table agree."""
+    """Texts on the keys at a path: one where they agree in all tables that may stand there."""
     kinds: dict[tuple[str, str], list[Key]] = {}
     for key in keys:
         kinds.setdefault((key.accepted, key.default), []).append(key)
@@ -89,6 +92,7 @@ def _of_keys(word: str, keys: Sequence[Key]) -> list[str]:
 
 
 def _of_key(word: str, keys: Sequence[Key]) -> str:
+    """Text on a key: meaning, unit, default, example, source, use."""
     from camwright.pipeline.case.added_tables import line_of
     from camwright.pipeline.case.keys import REQUIRED
     from camwright.pipeline.results.check_text import checks_with
@@ -110,6 +114,7 @@ def _of_key(word: str, keys: Sequence[Key]) -> str:
 
 
 def _of_table(word: str, keys: Sequence[Key]) -> str:
+    """Text on a table of the case file with its keys and tables."""
     from camwright.pipeline.case.keys import case_keys, keys_in
 
     table = keys[0].path
@@ -129,6 +134,7 @@ def _of_table(word: str, keys: Sequence[Key]) -> str:
 
 
 def _of_check(name: str) -> str:
+    """Text on a check: formula, limit, load cases, values on which it rests."""
     from camwright.pipeline.checks.registry import DECLARED
     from camwright.pipeline.results.check_text import check_text
 
@@ -168,7 +174,7 @@ def _listed(rows: Iterable[tuple[str, str]], width: int) -> str:
 
 
 def _closest(word: str) -> str:
-    """The closest keys and checks, for a message."""
+    """End of a message that suggests the closest keys and checks; "" without any."""
     from camwright.pipeline.case.keys import case_keys
     from camwright.pipeline.checks.registry import DECLARED
 

@@ -36,8 +36,8 @@ def machine(
     Spring, preload, base circle, roller, guides, shaft and key from the catalogues, the lift by
     the constrained synthesis. Writes the smallest of the solved cases that pass by closed forms,
     its parts exchanged for the next smaller of their catalogues until none passes, the front of
-    ripple against size in CASE_design, and a picture of the choice. Where the search finds none,
-    the limits in conflict and relaxations that pass. What is not given is assumed, and marked so.
+    ripple against size in CASE_design, and a picture of the choice. Where none passes, prints the
+    limits in conflict and relaxations that pass. What is not given is assumed, and marked so.
 
     With --run the exit code is that of the verdict. Solved points are cached in CASE_design/solved;
     run the same command again to resume. The table, and cards.toml and springs.toml beside it, are
@@ -68,6 +68,9 @@ def _whole(point: ChosenDesign) -> str:
 
 
 def _show(document: DesignDocument, out: Path) -> None:
+    """Print the torque, the front, the chosen design or the limits in conflict, and what was
+    assumed.
+    """
     demand = document["torque"]
     stdout.print(
         f"torque: {demand['ripple_Nm']:.4g} N m of ripple (std), {demand['energy_swing_J']:.4g} J "
@@ -122,7 +125,7 @@ def _show(document: DesignDocument, out: Path) -> None:
 
 
 def _exchanges(record: ExchangesRecord) -> str:
-    """What the exchange of the parts has shown."""
+    """Lines on which parts were exchanged for smaller ones and why no further one passes."""
     lines = [
         f"  exchanged: {each['part']} {each['from']} for {each['to']}" for each in record["kept"]
     ]
@@ -132,6 +135,7 @@ def _exchanges(record: ExchangesRecord) -> str:
 
 
 def _run(case: Path) -> int:
+    """Run the case into runs/NAME beside it; gives the exit code of its verdict."""
     from camwright.pipeline.commands.run_command import run
     from camwright.pipeline.results.run_reader import read_verdict
 

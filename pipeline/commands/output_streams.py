@@ -20,7 +20,9 @@ class _Unread(io.FileIO):
     """Any other error of writing, such as a full disk, drops the rest as well."""
 
     def write(self, data: Any, /) -> int:
-        """Number of bytes taken; OSError once, such as on a full disk, then none."""
+        """Write data and give the number of bytes taken; after an error, such as a full disk, which
+        is raised once as OSError, all is dropped.
+        """
         try:
             return super().write(data)
         except OSError as error:

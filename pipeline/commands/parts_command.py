@@ -66,6 +66,7 @@ def parts(
 
 
 def _show(document: RedesignDocument, folder: Path) -> None:
+    """Print the front as a table, what was tried and, without a front, why."""
     from rich.table import Table
 
     from camwright.reports.comparisons.redesign_page import COLUMNS

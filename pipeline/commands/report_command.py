@@ -54,7 +54,7 @@ def report(
 
 
 def _sheets(folder: Path, names: Sequence[str]) -> int:
-    """Print the hand-check sheets of checks."""
+    """Print the hand-check sheets of these checks; exit code 1 if one disagrees with its check."""
     from camwright.pipeline.hand_check.hand_sheet import SheetRun
     from camwright.pipeline.hand_check.sheet_lines import sheet_lines
     from camwright.pipeline.results.signoff import require_recorded
@@ -76,6 +76,7 @@ def _listed(files: Sequence[Path]) -> str:
 
 
 def _open(page: Path) -> None:
+    """Open a page in the browser; ResultError without one."""
     import webbrowser
 
     if not page.is_file():

@@ -136,7 +136,7 @@ def write_study_report(folder: Path) -> Path:
 
 
 def _facts(study: Study) -> list[tuple[str, str]]:
-    """What the study file states, for the head of the page."""
+    """Title and text of what the study file states, for the head of the page."""
     cases = study.cases[0] if len(study.cases) == 1 else f"{len(study.cases)} cases"
     depth: str = study.depth
     if study.deeper is not None:

@@ -147,7 +147,9 @@ def show(document: dict[str, Any], places: Places) -> None:
 
 
 def show_failures(document: dict[str, Any], places: Places) -> None:
-    """Print the failed checks, missing data, verdict, scope and path of the report."""
+    """Print failed checks, missing data, changes against a baseline, verdict, scope and path of the
+    report.
+    """
     from camwright.pipeline.base.verdict import within_depth
     from camwright.pipeline.results import verdict_summary
     from camwright.pipeline.results.check_records import of_records, records_of

@@ -84,7 +84,8 @@ def bore_stress(
 def _under_unit_load(
     cam: LoadedBody, contacts: Array, normals: Array, excluded: float | None
 ) -> dict[str, Array]:
-    """Values of `BoreStress` per unit line load, with the places (2, p) and which are at an edge.
+    """Fields of `BoreStress` under a unit line load at each contact, with the places (2, p), m, and
+    which of them are within a zone about an edge.
 
     Places are the nodes of bore and keyway and the rims of the excluded zones: towards an edge the
     stress rises, so that its maximum outside would follow the distance of the next node.
@@ -137,10 +138,11 @@ def _held(cam: LoadedBody) -> tuple[NDArray[np.int64], StressRecovery]:
 
 
 def _zones(mesh: BodyMesh, nodes: NDArray[np.int64], excluded: float | None) -> _Zones:
-    """Zones about the keyway edges within the nodes (m,) of bore and keyway; none without one.
+    """Zones about the edges of the keyway, of radius `excluded`, m (None: by the element size), in
+    which the stress is singular; none without a keyway. nodes (m,): of bore and keyway.
 
-    A rim lies on the boundary where its distance from the edge is the radius; the weights are
-    those of the quadratic shapes of its facet.
+    A rim lies on the boundary where its distance from the edge is the radius; the weights are those
+    of the quadratic shapes of its facet.
     """
     if "keyway" not in mesh.boundaries:
         return _Zones(0.0, np.zeros(nodes.size, dtype=bool), np.zeros((0, nodes.size)))

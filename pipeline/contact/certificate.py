@@ -50,7 +50,9 @@ class SolvedPair:
 def contact_meshes(
     pair: ContactPair, theta: float, half_width: float, edges: float
 ) -> tuple[BodyMesh, BodyMesh]:
-    """Meshes of cam and follower in the cam frame with `edges` element edges per half-width."""
+    """Meshes of cam, then follower, in the cam frame, with `edges` element edges per half-width, m,
+    at the contact.
+    """
     contact = pair.contour.points(theta)
 
     def sizing(far_size: float) -> ElementSize:
@@ -137,7 +139,8 @@ def certificate_point(
     meshes: Sequence[MeshFigures],
     worst: Sequence[CertificatePoint] = (),
 ) -> CertificatePoint:
-    """Certificate of position `index` of a history, at cam angle theta (rad).
+    """Certificate of position `index` of a history, at cam angle theta (rad): convergence of each
+    figure over the meshes, beside its value in the cycle.
 
     Parameters
     ----------

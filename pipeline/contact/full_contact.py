@@ -248,7 +248,8 @@ def _pressed(
 def _with_elliptic_edges(
     linear: _Pressed, gap: Callable[[Array], Array], line_load: float
 ) -> tuple[_Pressed, float, str]:
-    """Contact with elliptic edges and its overlap; the linear one and the reason without them.
+    """Contact with elliptic shapes, its overlap beside the contact over the greatest gap, and "";
+    else the linear contact, 0, and the reason in words.
 
     On every second knot, the resolution of the displacements.
     """
@@ -288,7 +289,9 @@ def _overlap(linear: _Pressed, elliptic: _Pressed, gap: Callable[[Array], Array]
 def _peak_stress(
     body: ElasticBody, displacement: Array, frame: ContactFrame, half_width: float
 ) -> tuple[float, float, float, float]:
-    """Maximum in-plane shear, its depth, maximum von Mises stress, its depth; Pa, m."""
+    """Maximum in-plane shear, Pa, its depth, m, maximum von Mises stress, Pa, its depth, m, below
+    the contact; displacement (2, nodes), m.
+    """
     recovery = StressRecovery(body, elements_near(body, frame.origin, _STRESS_REACH * half_width))
     nodal = recovery(displacement[:, :, None])
     nodes = body.mesh.points[:, recovery.nodes]

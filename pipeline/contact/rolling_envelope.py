@@ -126,7 +126,7 @@ def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
 
 
 def _pass(poisson: float, friction: float) -> dict[str, Array]:
-    """The arrays of a pass by their names in `RollingPass`."""
+    """Fields of `RollingPass` by name, of a Hertz pressure with sliding traction."""
     depth = np.linspace(0.0, _DEPTH_MAX, _DEPTHS)
     near = np.linspace(-2.0, 2.0, 321)
     far = np.geomspace(2.0, 200.0, 60)[1:]
@@ -289,7 +289,9 @@ def governing_stations(p0: Array, half_width: Array) -> NDArray[np.intp]:
 
 
 def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array) -> Array:
-    """Finite elements over closed form at `at`; 1 at cam angles without contact."""
+    """Ratio of finite elements to closed form at cam angles `at`, rad, interpolated between those
+    of the contact; 1 where it carries no load.
+    """
     if finite_elements is closed_form:
         return np.ones(at.size)
     loaded = closed_form > 0
@@ -298,7 +300,9 @@ def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array
 
 
 def _with_body(unit: RollingPass, p0: Array, along: Array, poisson: float) -> tuple[Array, Array]:
-    """Maximum von Mises stress and in-plane shear (n, k) of the pass plus stress along (n,), Pa."""
+    """Maximum von Mises stress and in-plane shear (n, k), Pa, of a pass under p0 (n,), with the
+    stress `along` (n,) of the real body added along the surface.
+    """
     if not along.any():
         return p0[:, None] * unit.von_mises, p0[:, None] * unit.tau_max
     close = np.abs(np.arange(unit.stress.shape[2]) - unit.stress.shape[2] // 2) <= 160

@@ -61,7 +61,9 @@ def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Arr
 
 @lru_cache(maxsize=16)
 def _increase(poisson: float, friction: float) -> tuple[Array, Array, Array]:
-    """Shares of the friction, and the increases of the maxima at them."""
+    """Shares of the friction (m,), and at each the maximum in-plane shear and the maximum von Mises
+    stress over those without traction.
+    """
     shares = np.linspace(0.0, 1.0, _TABLE_SHARES)
     stick = np.maximum(stick_half_width(shares), _LEAST_STICK)[:, None]
 
@@ -260,7 +262,12 @@ def _steps(
     radius: float,
     step: float,
 ) -> tuple[Array, Array]:
-    """Tangential force (n,) N and spin (n,) rad/s of the periodic turn."""
+    """Tangential force (n,), N, and spin of the roller (n,), rad/s, over the periodic turn; see
+    `rolling_contact`.
+
+    rolling : spin without slip, rad/s; demand : force of rolling, N; limit : friction times normal
+    force, N; resisting : drag torque, N m; step : s.
+    """
     count = rolling.size
     tangential, turning = np.zeros(count), np.array(rolling)
     omega = float(rolling[-1])
@@ -293,6 +300,7 @@ def _braked(omega: float, loss: float) -> float:
 
 
 def _ratio(ratio: ArrayLike) -> Array:
+    """Tangential force over friction limit as array (...); InputError outside [0, 1]."""
     values = finite("ratio", ratio)
     if ((values < 0) | (values > 1)).any():
         worst = float(values.flat[np.argmax(np.abs(values - 0.5))])

@@ -50,7 +50,7 @@ class CycleBodies:
 
 
 def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
-    """Cam on a coarse mesh, its element sizes divided by a refinement."""
+    """Cam on the coarse mesh of a cycle, factorised; its element sizes divided by `refinement`."""
     outline = float(pair.contour.perimeter())
     depth = 0.0 if pair.keyway is None else pair.keyway.depth
     least = pair.contour.radius_min()
@@ -155,6 +155,9 @@ def _loaded_positions(
     half_width: Array,
     p0: Array,
 ) -> dict[str, Array]:
+    """Quantities of `ContactHistory` by name, each (n,), at the cam angles with a loaded, locally
+    flat contact; line load, N/m, relative radius and half-width, m, p0, Pa, all (n,).
+    """
     materials = (pair.cam, pair.follower.material)
     patches = (contact_patch(materials[0].poisson), contact_patch(materials[1].poisson))
     shares = tuple(pair.contact_modulus / each.plane_strain_modulus for each in materials)

@@ -121,7 +121,7 @@ def greatest_fitted(
 
 
 def _maximum(fit: FittedStress, measure: Callable[[Array], Array]) -> tuple[float, Array]:
-    """Maximum within half the reach of a fit, and its place."""
+    """Maximum of a stress measure within half the reach of a fit, and its place (2,), m."""
     line = np.linspace(-1.0, 1.0, _SIDE)
     square = np.stack(np.meshgrid(line, line)).reshape(2, -1)
     place, value = fit.place, 0.0

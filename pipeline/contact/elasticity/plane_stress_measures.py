@@ -142,7 +142,9 @@ class PeakFinder:
         return self._inverse[node]
 
     def _fitted(self, fields: Array, nodes: Index, tops: Index) -> tuple[Array, Array]:
-        """Maxima (k,) and places (2, k) of fields (p, k) at points (p,), largest at `tops` (k,)."""
+        """Maxima (k,) and their places (2, k) of fields (p, k) at the points numbered `nodes` (p,);
+        of the polynomial about the point of the greatest value, `tops` (k,).
+        """
         columns = np.arange(tops.size)
         top, place = fields[np.searchsorted(nodes, tops), columns], self._points[:, tops]
         fits, fitted = np.empty((len(_POWERS), tops.size)), np.zeros(tops.size, dtype=bool)
@@ -182,7 +184,9 @@ def _derivatives() -> Array:
 
 
 def _summit(fit: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Value (k,), place (2, k) and existence (k,) of the maxima of polynomials (15, k)."""
+    """Maxima of polynomials with coefficients (15, k): value (k,), place (2, k), and whether there
+    is one near the origin (k,); by Newton's method.
+    """
     slopes = _derivatives() @ fit
     at = np.zeros((2, fit.shape[1]))
     trusted = np.ones(fit.shape[1], dtype=bool)

@@ -115,7 +115,9 @@ def normal_loads(
 
 
 def _local_coordinate(xi_nodes: Array, xi: Array) -> Array:
-    """Facet coordinate s in [0, 1] at xi, of quadratic facets, by Newton's method."""
+    """Coordinate s in [0, 1] on quadratic facets at xi along the tangent, m, by Newton's method;
+    xi_nodes: of both ends and the middle, m.
+    """
     first, last, middle = xi_nodes
     s = (xi - first) / (last - first)
     for _ in range(20):

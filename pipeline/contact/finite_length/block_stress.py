@@ -76,7 +76,9 @@ def block_field(body: FiniteBody, contact: LengthContact) -> BlockField:
 
 
 def _displacement(grid: BrickGrid, poisson: float, pressure: Array) -> Array:
-    """See `brick_body.displacement`; kept on disk."""
+    """Displacement times Young's modulus (2, i, j, k, 3), m Pa, of the symmetric and antisymmetric
+    part, read from the disk cache or computed; see `brick_body.displacement`.
+    """
     inputs = (tuple(grid.x), tuple(grid.y), tuple(grid.z), grid.cells, poisson, pressure.tobytes())
 
     def compute() -> dict[str, Array]:

@@ -149,7 +149,10 @@ class FactorTable:
         return interpolated[:, :ends], np.maximum(interpolated[:, ends:], 0.0)
 
     def of_one(self, curvature: float, force: float) -> tuple[Array, Array]:
-        """Axial pressure of one contact without a moment; solved directly where it has 16 nodes."""
+        """Cell edges, m, along y and pressures over plane-strain p0 of one contact without a
+        moment, as `axial_pressure`; solved directly where results depend on the load, as the table
+        would need 16 nodes.
+        """
         if not self._depends_on_load:
             return self.axial_pressure(curvature, force)
         pair = replace(self.pair, curvature=curvature)
@@ -220,7 +223,9 @@ class FactorTable:
         )
 
     def _place(self, curvature: Array, force: Array, count: Index) -> _Place:
-        """Nodes, their columns and weights of contacts that need `count` (count,) moments."""
+        """Nodes of the table about contacts (count,), and the numbers of their nodes and
+        interpolation weights (count, k); a node gets as many moments as the contacts need, `count`.
+        """
         if self._depends_on_load:
             line_load = force / self.pair.contact_length
             first, first_weights = _uniform_stencil(curvature, _CURVATURE, self._curvature_ratio)
@@ -248,7 +253,9 @@ class FactorTable:
         return _Place(nodes, columns, weights)
 
     def _node(self, key: tuple[int, int], count: int) -> _Node:
-        """Node with `count` moments from zero at least."""
+        """Node of a key, see `_computed`, with at least `count` moments, counted from zero; missing
+        ones are computed.
+        """
         for before, after in pairwise((0, *self._ladder.batches)):
             if self._count(key) == before < count:
                 moments = self._ladder.moments[before:after]
@@ -312,7 +319,9 @@ class FactorTable:
 
 
 def _solved(pair: FinitePair, force: float, couples: Array) -> tuple[Array, Array, Array]:
-    """Edges (count, m + 1), m, pressures (count, m), Pa, tilts (count,), rad, at moments, N m."""
+    """Cell edges along y (count, m + 1), m, pressures on the centre line (count, m), Pa, and tilts
+    (count,), rad, at moments `couples` (count,), N m; on wider cells where the contact leaves them.
+    """
     sizes = cycle_sizes(pair)
     for _ in range(_WIDENINGS):
         try:
@@ -325,6 +334,9 @@ def _solved(pair: FinitePair, force: float, couples: Array) -> tuple[Array, Arra
 def _solved_on(
     pair: FinitePair, force: float, couples: Array, sizes: CellSizes
 ) -> tuple[Array, Array, Array]:
+    """As `_solved`, on cells of these sizes alone; WideContactError where the contact
+    leaves them.
+    """
     line, turn, ends, begin = [], [], [], None
     # Each contact begins with the cells that touch under the moment before.
     order = np.argsort(np.abs(couples), kind="stable")
@@ -488,7 +500,9 @@ def _weighted(columns: Index, weights: Array, table: Array) -> Array:
 
 
 def _inverse(signed: Array, turns: Array, target: Array) -> Array:
-    """Moments (count,) over force and length at turns `target` of ascending rows (count, k)."""
+    """Moments over force and length (count,) at which the scaled tilts `turns` (count, k), which
+    rise with the moments `signed` (k,), are `target` (count,); cubic, clipped to the computed rows.
+    """
     known = np.where(np.isfinite(turns), turns, np.where(signed < 0, -np.inf, np.inf))
     after = (known <= target[:, None]).sum(axis=1)
     low = np.argmax(np.isfinite(turns), axis=1)

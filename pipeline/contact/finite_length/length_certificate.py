@@ -100,7 +100,9 @@ class LengthCertificate:
 
     @property
     def correction(self) -> EndCorrection | None:
-        """Correction of the half-spaces; None without points."""
+        """Greatest ratios of finite elements to half-spaces over the points, with their error bars;
+        None without points.
+        """
         if not self.points:
             return None
         blocks = [point.finite_elements for point in self.points]
@@ -137,7 +139,8 @@ class BegunEnds:
     def certificate(
         self, advance: Callable[[int, int], None] = lambda *_: None
     ) -> LengthCertificate:
-        """The loads by both tiers.
+        """Certificate once its blocks are condensed: each load by half-spaces and by finite
+        elements.
 
         advance : callable   receives the number of condensed blocks and solved loads, and of all
 
@@ -214,7 +217,9 @@ def _key(grid: BrickGrid, poisson: float) -> object:
 
 
 def _meshes(loads: Sequence[LengthLoad], ratio: float) -> tuple[_Mesh, ...]:
-    """Mesh of each load, coarser by a ratio: of the widest within the ratio of one mesh."""
+    """Mesh of each load; loads whose half-widths differ by less than a ratio share that of the
+    widest. ratio : of the cell sizes to those of `SIZES`, 1 or more.
+    """
     half_widths = [plane_strain(load.pair, load.force)[0] for load in loads]
     groups: list[float] = []
     for value in sorted(half_widths, reverse=True):
@@ -239,7 +244,9 @@ def _sizes(loads: Sequence[LengthLoad], half_width: float, ratio: float) -> Cell
 
 
 def _is_covered(load: LengthLoad, half_width: float, sizes: CellSizes) -> bool:
-    """Whether the contact by half-spaces leaves the last two cells across it without pressure."""
+    """Whether the contact of a load, by half-spaces, leaves the last two cells across it without
+    pressure; False where it cannot be solved.
+    """
     cells: PressureCells = meshes_of(load.pair, half_width, sizes)[1]
     try:
         contact = length_contact.solve(

@@ -132,6 +132,9 @@ def _corner_stress(x: Array, y: Array, z: Array, poisson: float) -> dict[tuple[i
 
 
 def _peak(stress: Array, depths: Array) -> StressPeak:
+    """Greatest von Mises and maximum shear stress of stresses (n, d, 3, 3), Pa, at n places and
+    depths (d,), m, with their depths.
+    """
     principal = np.linalg.eigvalsh(stress)
     low, middle, high = np.moveaxis(principal, -1, 0)
     mises = np.sqrt(0.5 * ((high - middle) ** 2 + (middle - low) ** 2 + (high - low) ** 2))
