@@ -174,6 +174,9 @@ class Sheet:
 
     @property
     def _gives_the_demand(self) -> bool:
+        """Whether the formula gives the demand of the record, to rounding; one of the forces
+        between two angles less closely.
+        """
         demand = self.record["demand"]
         if self.result is None or demand is None:
             return self.result is None
@@ -290,7 +293,9 @@ class _Evaluation:
         return any(self._numbers.get(key) is None for key in keys)
 
     def sheet(self) -> Sheet:
-        """The sheet with as many digits as its numbers need."""
+        """Sheet of the check with as many digits of the numbers as a calculation by hand needs to
+        give the demand.
+        """
         for digits in DIGITS:
             evaluation = _Evaluation(self.run, self.record, self.declared, digits=digits)
             made, shown = evaluation._with_digits(), evaluation._as_shown("")
@@ -300,7 +305,9 @@ class _Evaluation:
         return made
 
     def _as_shown(self, name: str) -> Value:
-        """Value of a definition, or of the demand, by the numbers as shown."""
+        """Value of a definition, or with "" of the demand, calculated from the numbers rounded as
+        shown.
+        """
 
         def rounded(symbol: str) -> Value:
             if symbol in self.trees:
@@ -310,6 +317,7 @@ class _Evaluation:
         return formula.value(self.trees[name], rounded)
 
     def _with_digits(self) -> Sheet:
+        """Sheet with the numbers shown to `digits`."""
         unit = self.record["unit"]
         demand = float(np.asarray(self._defined("")).item())
         last = self.steps.pop("")._replace(shown=units.shown(demand, unit, DIGITS[0]))
@@ -320,7 +328,9 @@ class _Evaluation:
         )  # fmt: skip
 
     def _bound(self) -> SheetBound | None:
-        """Limit by the formula; None: words, or a symbol without a number in the case."""
+        """Limit evaluated from its formula; None where it is in words, or a symbol has no number in
+        the case.
+        """
         try:
             tree = formula.parsed(self.said.limit, {**self.declared.symbols, **self.said.keys})
         except InputError:  # words
@@ -345,7 +355,7 @@ class _Evaluation:
         return bool(key := self._key(name)) and self._numbers.get(key) is not None
 
     def _of_limit(self, name: str) -> Value:
-        """Value of a symbol of the limit."""
+        """Value, SI, of a symbol of the limit, which is added to the symbols of the sheet."""
         if name in self.trees or name in self.declared.symbols:
             return self._symbol(name)
         key = self._key(name)
@@ -374,7 +384,9 @@ class _Evaluation:
         }
 
     def _defined(self, name: str) -> Value:
-        """Value of a definition, made once."""
+        """Value, SI, of a definition of the formula, calculated once and added to the steps of the
+        sheet.
+        """
         if name not in self.values:
             tree = self.trees[name]
             value = formula.value(tree, self._symbol)
@@ -384,7 +396,9 @@ class _Evaluation:
         return self.values[name]
 
     def _symbol(self, name: str) -> Value:
-        """Value of a symbol of the formula."""
+        """Value, SI, of a symbol of the formula, which is added to the symbols of the sheet with
+        its source.
+        """
         if name in self.trees:
             return self._defined(name)
         text, _, unit = self.declared.symbols.get(name, name).partition(" [")
@@ -407,7 +421,9 @@ class _Evaluation:
         return value
 
     def _as_stated(self, name: str, unit: str) -> Value:
-        """Value of a number that the check states."""
+        """Value, SI, of a number that the check states itself, such as a result of a solver;
+        `unit`: that of the record.
+        """
         value = units.from_unit(self._stated[name], unit)
         at = place(self.record)
         source = f"{_CHECKS}, {at}" if at else _CHECKS
@@ -422,7 +438,9 @@ class _Evaluation:
         return self.record.get("stated", {})
 
     def _number(self, name: str, *, turn: bool = False) -> Value:
-        """Value of a key, column or figure, SI; turn: of a column at all angles."""
+        """Value, SI, of a key of the case, a column of the cycle or a figure of the cam; turn :
+        column at all cam angles (n,), not at that of the demand alone.
+        """
         if "." in name:
             value = self._numbers.get(name)
             if value is None:
@@ -459,6 +477,9 @@ class _Evaluation:
 
     @cached_property
     def _numbers(self) -> Numbers:
+        """Numbers of the case in the load case of the demand by key, SI, with those that a formula
+        needs besides.
+        """
         shared = numbers_of(self.run.case, tuple(self.run.machines.values()))
         ring, interference = fitted_ring(shared), greatest_interference(shared)
         fitted = None if ring is None or interference is None else ring.pressure(interference)
@@ -490,6 +511,7 @@ class _Evaluation:
 
     @property
     def _row(self) -> int:
+        """Row of the cycle at the cam angle of the demand; 0 where it has none."""
         angle, solved = self.record["cam_angle_deg"], self._rows["cam_angle_deg"]
         row = 0 if angle is None else int(np.argmin(np.abs(solved - angle)))
         if angle is None or abs(solved[row] - angle) > SAME_ANGLE:
@@ -497,7 +519,7 @@ class _Evaluation:
         return row
 
     def _column(self, name: str) -> tuple[str, Array]:
-        """Unit and values of a column, named without its unit."""
+        """Unit and values (n,) of a column of the cycle, named without its unit."""
         for unit in ("", *_UNITS):
             header = units.column(name, unit)
             if header not in self._rows:

@@ -76,7 +76,7 @@ def printed(sheet: Sheet, *, governing: bool) -> PrintedSheet:
 
 
 def _step(sheet: Sheet, k: int) -> Math:
-    """Definition or demand: symbols = numbers = result."""
+    """Step number k of a sheet, typeset: name = symbols = numbers = result."""
     step = sheet.steps[k]
     symbols, numbers = (formula.written(step.expression, PRINT, of) for of in (None, sheet.known))
     begins = (*PRINT.name(step.name), *_EQUAL) if step.name else ()

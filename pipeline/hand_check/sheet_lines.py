@@ -50,7 +50,7 @@ def outcome_words(sheet: Sheet) -> str:
 
 
 def use_words(sheet: Sheet) -> str:
-    """Utilisation as a quotient, in percent."""
+    """Utilisation as a quotient of demand and limit, and in percent."""
     used_words = used(RecordedCheck(sheet.record).utilisation)
     if sheet.use is None:
         return f"{used_words} used"

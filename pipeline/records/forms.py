@@ -68,7 +68,9 @@ class Condition:
 
     @property
     def schema(self) -> Schema:
-        """The condition as JSON Schema."""
+        """JSON Schema of the condition: where `key` holds one of `words`, other keys have the types
+        `then`, else those of `other`.
+        """
 
         def of_types(types: Mapping[str, str]) -> Schema:
             return {"properties": {key: {"type": kind} for key, kind in types.items()}}

@@ -80,6 +80,9 @@ def _is_error(record: CheckRecord) -> bool:
 
 
 def _error(record: CheckRecord) -> float:
+    """Half of the error bar of a demand, in its unit; by `UNKNOWN_ERROR` of the demand where the
+    record states none.
+    """
     if record["demand"] is None:
         return 0.0
     known = record["error"]

@@ -225,6 +225,7 @@ class WithChecks(Displayed):
         return CheckList(self.checks).plot(most)
 
     def _repr_html_(self) -> str:
+        """HTML of the facts with a table of the failing checks, for notebooks."""
         worst = [each for each in CheckList(self.checks).records if each["status"] == "fail"]
         facts = super()._repr_html_()
         failing = html_table("failing checks", _SHOWN[:8], map(_row_in_words, worst))

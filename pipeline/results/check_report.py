@@ -51,7 +51,9 @@ def _patterns(only: Iterable[str]) -> list[str]:
 
 
 def not_proven(record: AnyCheck) -> str:
-    """Judged demand with its error bar against a limit inside the bar, in words."""
+    """Text such as ``not proven: 1490 ± 20 against 1500`` of a demand whose error bar includes the
+    limit; "" for any other.
+    """
     one = RecordedCheck(record)
     if not record["not_proven"] or one.worst is None or one.limit is None:
         return ""
@@ -61,7 +63,7 @@ def not_proven(record: AnyCheck) -> str:
 
 
 def waiver_words(record: CheckRecord) -> str:
-    """Demand accepted by a waiver, with name, date and reason."""
+    """Demand accepted by a waiver, with name, date and reason, in words; "" without a waiver."""
     if not record["waiver"]:
         return ""
     unit = unit_text(record["unit"])

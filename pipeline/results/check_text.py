@@ -89,6 +89,7 @@ def default_of(row: AnyLimit) -> str:
 
 
 def _limit(one: Declaration) -> str:
+    """Limit of a check with its default and source, in words."""
     if one.limit is None:
         return str(one.source)
     value = default_of(one.limit)

@@ -100,6 +100,9 @@ def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> Non
 def _deck_body(
     body: ElasticBody, held: str, forces: Array, displacement: Array, width: float
 ) -> DeckBody:
+    """Body of the deck on its support `held`, under nodal forces (2, nodes), N; one on springs with
+    their forces and three displacements that fix its place.
+    """
     if body.springs is None:
         return DeckBody(body.mesh, body.modulus, body.poisson, held, forces)
     whole = forces + width * body.springs.forces(displacement[:, :, None])[:, :, 0]
@@ -166,6 +169,9 @@ def force_of(pair: ContactPair, solved: SolvedPair) -> float:
 def _touching(
     side: ContactSide, frame: ContactFrame, held: str, half_width: float, width: float
 ) -> TouchingBody:
+    """Body of a deck with a contact pair: its mesh, support, springs and the facets near the
+    contact.
+    """
     body, mesh = side.body, side.body.mesh
     middles = mesh.points[:, mesh.facet_triples(side.surface)[2]]
     near = np.hypot(frame.along(middles), frame.above(middles)) <= _CONTACT_REACH * half_width

@@ -36,7 +36,9 @@ _BELOW = 0.04
 
 @lru_cache(maxsize=1)
 def zone_triangles() -> Index:
-    """Triangles (3, t) of the zone; node 0 is the contact, then rings of equal node numbers."""
+    """Triangles (3, t) of node numbers of the zone, which all zones share; node 0 is the contact,
+    then rings of equal node numbers.
+    """
     ring = _SECTORS + 1
     first = 1 + np.arange(_SECTORS)
     core = np.stack([np.zeros_like(first), first + 1, first])
@@ -116,7 +118,7 @@ class ZoneSite:
 
 
 def zone_places(half_width: Array, radius: Array) -> Array:
-    """Node positions (2, m, k), m: along the surface, and depth.
+    """Node positions (2, m, k), m, of k zones: along the surface, then depth.
 
     half_width (k,), m, zero without contact; radius (k,) of the zone, m.
     """
@@ -138,7 +140,8 @@ def zone_places(half_width: Array, radius: Array) -> Array:
 
 @lru_cache(maxsize=8)
 def patch_weights(poisson: float) -> tuple[Index, Array, Array]:
-    """Interpolation weights from the contact patch to the inner nodes of the zone.
+    """Interpolation weights from the contact patch to the inner nodes of the zone, and how far the
+    patch counts there.
 
     Returns
     -------

@@ -96,7 +96,9 @@ class FieldFile:
         self._note(root, notes)
 
     def _open(self, group: h5py.Group, block: MeshBlock, fields: Mapping[str, int]) -> None:
-        """Mesh, steps and room for the data of a block."""
+        """Create the datasets of a block: its mesh, its steps, and room for the data of
+        each step.
+        """
         count, cells, steps = block.nodes, block.triangles.shape[1], self._times.size
         group["NumberOfPoints"] = np.array([count])
         group["NumberOfCells"] = np.array([cells])
@@ -141,7 +143,9 @@ class FieldFile:
         return time
 
     def _note(self, root: h5py.Group, notes: Notes) -> None:
-        """Numbers and words of each step; VTK 9.7 reads those of the file, not those of a block."""
+        """Write numbers and words of each step as field data of the file; VTK 9.7 reads those of
+        the file, not those of a block.
+        """
         time, steps = self._steps(root), self._times.size
         constant: Notes = {UNITS: np.ones(steps)}
         for name, values in (*constant.items(), *notes.items()):
@@ -268,6 +272,9 @@ def read_end_field(path: Path) -> EndField:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[h5py.Group]:
+    """Context manager: root group of a VTKHDF file for reading; ResultError where it is no field
+    file of a run.
+    """
     import h5py
 
     if not path.is_file():
@@ -309,6 +316,7 @@ def _names(root: h5py.Group) -> list[str]:
 
 
 def _step(group: h5py.Group, number: int) -> FieldStep:
+    """Points, triangles, hidden triangles and data of a block at one step."""
     count, cells = int(group["NumberOfPoints"][0]), int(group["NumberOfCells"][0])
     start = int(group["Steps/PointOffsets"][number])
     rows = slice(number * count, (number + 1) * count)
@@ -322,6 +330,7 @@ def _step(group: h5py.Group, number: int) -> FieldStep:
 
 
 def _group(parent: h5py.Group, name: str, kind: str) -> h5py.Group:
+    """New group of a VTKHDF file with version and kind of data set."""
     group = parent.create_group(name, track_order=True)
     group.attrs["Version"] = np.array(_VERSION)
     group.attrs["Type"] = np.bytes_(kind)

@@ -138,7 +138,9 @@ def hardest(cycles: Sequence[Cycle]) -> int:
 
 
 def shown_positions(cycle: Cycle, shown: Shown, certified: Sequence[int]) -> IntArray:
-    """Sorted positions of a cycle to show: by default every `STEP`, certified ones, worst."""
+    """Sorted numbers of the positions of a cycle to show: by default every `STEP`, those
+    `certified`, and the one of the greatest contact pressure.
+    """
     count = cycle.theta.size
     worst = first_greatest(cycle.contact.p0_hertz)
     if shown is Shown.WORST:
@@ -181,7 +183,9 @@ def write_stress(
 
 
 def _notes(fields: TurnFields, positions: IntArray, times: Array) -> Notes:
-    """Data of each position."""
+    """Field data of each step by name: load case, cam angle, and contact figures at these positions
+    of the cycle.
+    """
     cycle, contour = fields.cycle, fields.pair.contour
     contact, theta = cycle.contact, cycle.theta[positions]
     point, normal = contour.points(theta) / _MILLIMETRE, contour.normal(theta)
@@ -204,7 +208,7 @@ def _notes(fields: TurnFields, positions: IntArray, times: Array) -> Notes:
 def _write(
     file: FieldFile, name: str, first: int, field: BodyField, poisson: float, block: MeshBlock
 ) -> None:
-    """One block at consecutive positions."""
+    """Write the fields of one body at consecutive positions, from number `first`, in mm and MPa."""
     points = None
     if block.points is None:
         points = field.points.transpose(2, 1, 0) / _MILLIMETRE
@@ -238,7 +242,7 @@ TURN_ARRAYS = (
 
 
 def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[str, ArrayLike]:
-    """Arrays of ``fields/turn.npz``.
+    """Arrays of ``fields/turn.npz``, with which a viewer turns cam and follower.
 
     Returns
     -------

@@ -135,7 +135,7 @@ def classes_of(name: str, final_trial: int) -> tuple[FileClass, ...]:
 def file_differences(
     stored: Path, again: Path, names: Iterable[tuple[str, Kind]]
 ) -> Iterator[tuple[str, str]]:
-    """Files that differ, and how, in words.
+    """Name of each file that differs, and how, in words; only those of `names` are compared.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def _compared(file: Path, other: Path, kind: Kind) -> str:
 
 
 def _tables(file: Path, other: Path) -> str:
-    """The first difference of two tables."""
+    """The first difference of two CSV tables in words; "" without one."""
     one, two = read_table(file), read_table(other)
     if one.keys() != two.keys() or len(one) != len(two):
         return f"has {len(one)} rows of {len(one.keys())} columns, not the {len(two)} of the case"
@@ -188,6 +188,7 @@ def _place(table: Table, row: int) -> str:
 
 
 def _arrays(file: Path, other: Path) -> str:
+    """The first difference of two numpy archives in words; "" without one."""
     one, two = read_npz(file), read_npz(other)
     if sorted(one) != sorted(two):
         return f"holds {', '.join(sorted(one))}, not {', '.join(sorted(two))}"
@@ -199,7 +200,7 @@ def _arrays(file: Path, other: Path) -> str:
 
 
 def _array(name: str, one: np.ndarray, two: np.ndarray) -> str:
-    """The first difference of two arrays of a name."""
+    """The first difference of two arrays named `name`, in words; "" without one."""
     texts = one.dtype.kind == two.dtype.kind == "U"
     if one.shape != two.shape or (one.dtype != two.dtype and not texts):
         return f"{name} is of another shape or type"
@@ -215,7 +216,8 @@ def _array(name: str, one: np.ndarray, two: np.ndarray) -> str:
 
 
 def _worst(one: np.ndarray, two: np.ndarray, name: str, digits: float = 0.0) -> int | None:
-    """Place of the greatest difference that is one; None without any.
+    """Flat index of the value that is furthest beyond the difference allowed for numbers of this
+    name; None where none is.
 
     digits : float   relative difference that the digits of the values make
     """
@@ -235,6 +237,7 @@ def _worst(one: np.ndarray, two: np.ndarray, name: str, digits: float = 0.0) -> 
 
 
 def _fields(file: Path, other: Path) -> str:
+    """The first difference of two VTU or VTKHDF files in words; "" without one."""
     read = _grid if file.suffix == ".vtu" else _members
     one, two = read(file), read(other)
     if one.keys() != two.keys():
@@ -315,7 +318,9 @@ def text_difference(one: str, two: str, absolute: float = _REPRODUCED) -> str:
 
 
 def _equal(one: str, two: str, absolute: float) -> bool:
-    """Whether two numbers of a text are the same."""
+    """Whether two numbers as text are equal but for round-off; whole numbers only if they are
+    written alike.
+    """
     if not (_REAL.search(one) or _REAL.search(two)):
         return False
     a, b = float(one), float(two)
@@ -327,7 +332,8 @@ def _texts(file: Path, other: Path) -> str:
 
 
 def _solids(file: Path, other: Path) -> str:
-    """The first difference of two STEP files, whatever the numbers of their entities.
+    """The first difference of two STEP files in words, whatever the numbers of their entities; ""
+    without one.
 
     Equal entities are written once, so that round-off can change how many there are.
     """
@@ -375,6 +381,9 @@ def _roots(entities: Mapping[str, str]) -> list[str]:
 
 
 def _pages(file: Path, other: Path) -> str:
+    """The first difference of two HTML pages in words, their pictures compared by pixels; ""
+    without one.
+    """
     one, two = read_text(file), read_text(other)
     words = text_difference(_PICTURE.sub("", one), _PICTURE.sub("", two))
     if words:
@@ -387,6 +396,7 @@ def _pages(file: Path, other: Path) -> str:
 
 
 def _books(file: Path, other: Path) -> str:
+    """The first difference of two spreadsheets in words; "" without one."""
     with zipfile.ZipFile(file) as one, zipfile.ZipFile(other) as two:
         if sorted(one.namelist()) != sorted(two.namelist()):
             return "has other sheets"
@@ -403,7 +413,9 @@ def _pictures(file: Path, other: Path) -> str:
 
 
 def _pixels(one: bytes, two: bytes) -> str:
-    """Difference of two PNG pictures; the edges of a field differ by a shade in some pixels."""
+    """Difference of two PNG pictures in words, "" without one; the edges of a field may differ by a
+    shade in some pixels.
+    """
     from PIL import Image
 
     pictures = []
@@ -445,7 +457,7 @@ _BY_KIND: Mapping[Kind, Callable[[Path, Path], str]] = {
 def record_differences(
     one: object, two: object, share: float = SAME, place: str = "", left_out: Sequence[str] = ()
 ) -> Iterator[str]:
-    """Differences of two JSON values in words.
+    """Differences of two JSON values in words; `place`: dotted key of the values.
 
     Parameters
     ----------
@@ -491,6 +503,7 @@ def _allowed(name: str, greatest: float, share: float = SAME) -> float:
 
 
 def _shown(value: object) -> str:
+    """Value as text of at most 60 characters."""
     if isinstance(value, float | np.floating):
         return f"{value:.6g}"
     text = " ".join(str(value).split())

@@ -176,7 +176,9 @@ def _names_in(out: Path) -> list[str]:
 
 
 def _hashes_of(out: Path) -> dict[str, str]:
-    """Hashes by file of the record of a run of any schema; none of what is no record."""
+    """Hash by file name as the record of a run of any schema has it; {} without a
+    readable record.
+    """
     try:
         files = read_json(out / signoff.NAME)["files"]
     except (ResultError, LookupError, TypeError):

@@ -134,7 +134,7 @@ def _case(suite: ET.Element, name: str, test: str) -> ET.Element:
 
 
 def _counted(suite: ET.Element) -> ET.Element:
-    """The suite with the counts of its test cases."""
+    """The suite with the numbers of its tests, failures, errors and skipped tests set."""
     cases = suite.findall("testcase")
     suite.set("tests", str(len(cases)))
     for count, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
@@ -143,7 +143,7 @@ def _counted(suite: ET.Element) -> ET.Element:
 
 
 def _reason(record: CheckRecord) -> str:
-    """Reason why a check is not evaluated."""
+    """Reason why a check is not evaluated, with its title and the missing keys, in one line."""
     said = [reason_without_data(record)]
     judged_at = record["judged_at"]
     if judged_at and judged_at not in record["note"]:

@@ -248,7 +248,9 @@ class RunFolder:
             self._home.release()
 
     def _clear(self, kept: str = "") -> None:
-        """Delete the files but `kept` and the state, which marks the folder as that of a run."""
+        """Delete the files of the folder, except `kept` and the state file, which marks the folder
+        as that of a run.
+        """
         for entry in list(self.path.iterdir()):
             if entry.name not in (STATE, kept):
                 is_folder = entry.is_dir() and not entry.is_symlink()
@@ -263,6 +265,9 @@ class RunFolder:
     # --- opening
 
     def _open(self, resume: bool) -> None:
+        """Lock the final path, refuse it if it holds anything but a run that may be replaced, and
+        begin or continue the temporary folder.
+        """
         opened = False
         self._home.take()
         try:
@@ -283,7 +288,9 @@ class RunFolder:
             raise refused from None
 
     def _take_over(self, resume: bool) -> None:
-        """Make the folder; continue an interrupted run, or delete it."""
+        """Make the temporary folder; with `resume` continue an interrupted run in it, else delete
+        its files.
+        """
         state = self.path / STATE
         if self.path.is_symlink() or (self.path.exists() and not self.path.is_dir()):
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
@@ -303,6 +310,7 @@ class RunFolder:
         self._clear(kept=CHUNKS if self.resumed else "")
 
     def _begin(self) -> None:
+        """Write state file, case and the files that it includes."""
         write_atomic(self.path / STATE, json.dumps(self._identity(), indent=2) + "\n")
         write_atomic(self.path / "case.toml", self.case.to_toml())
         for name, content in self.case.included.items():
@@ -316,6 +324,7 @@ class RunFolder:
         }
 
     def _file(self, name: str) -> Path:
+        """Path of a file in the temporary folder, its parent folders made."""
         path = self.path / name
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -325,7 +334,9 @@ class RunFolder:
 
 
 def _differing(state: Json, now: Mapping[str, Json]) -> str:
-    """Input, depth or versions of an interrupted run that differ, in words; empty if none does."""
+    """First difference between the state of an interrupted run and that of this one (input, depth
+    or versions), in words; "" without one.
+    """
     known = state if isinstance(state, Mapping) else {}
     for name in ("input", "depth"):
         if known.get(name) != now[name]:
@@ -387,7 +398,7 @@ def _version(name: str) -> str:
 
 
 def _source_sha256() -> str:
-    """SHA-256 of the modules and tables of the project, shortened."""
+    """First 16 hexadecimal digits of the SHA-256 over modules and data tables of the project."""
     digest = hashlib.sha256()
     for package in _PACKAGES:
         folder = Path(import_module(f"camwright.{package}").__path__[0])

@@ -299,7 +299,9 @@ def _case_text(path: Path, summary: Summary) -> str:
 def _require_judgement(
     path: Path, summary: Summary, checks: Iterable[AnyCheck], depth: Depth
 ) -> None:
-    """Refuse a summary whose depth, verdict or screen is not that of the final trial."""
+    """ResultError if depth, verdict or screen of the summary are not those of the checks of the
+    final trial.
+    """
     judged = judgement(checks, depth)
     for said, known, whose in (
         (summary["depth"], judged["depth"], "the final trial"),
@@ -363,7 +365,9 @@ def read_records(file: Path) -> tuple[CheckRecord, ...]:
 
 
 def _require(file: Path, record: Mapping[str, object], kind: type, what: str = "") -> None:
-    """Refuse a record without the keys of a form, or with a value of another type."""
+    """ResultError if a record lacks a key of the form `kind`, or has a value of another type; what
+    : the part of the file in the message.
+    """
     known = _known(kind)
     missing = [key for key in known if not isinstance(record, dict) or key not in record]
     if missing:
@@ -386,7 +390,7 @@ def _required(kind: type) -> frozenset[str]:
 
 
 def _types(hint: object) -> Iterator[type]:
-    """Types of JSON of an annotation."""
+    """Python types of the JSON values that an annotation allows; dict for a form."""
     origin = get_origin(hint)
     if origin in (Union, UnionType):
         for each in get_args(hint):

@@ -79,7 +79,9 @@ _DRAWN = 720  # least number of angles at which lift and contour are listed
 
 
 def torque_columns(torque: Torque) -> dict[Column, Array]:
-    """Columns of ``1_torque.csv``: engine torque, components, error bar if measured."""
+    """Columns of ``1_torque.csv``: shaft angle, torque of the machine, its components, error bar if
+    measured.
+    """
     total = Column("total", "N m", "Torque on the machine's shaft")
     parts = {
         Column(name, "N m", f"Torque on the machine's shaft, {name.replace('_', ' ')}"): values
@@ -410,7 +412,8 @@ def fatigue_record(solution: Solution) -> dict[str, FatigueRecord]:
 
 
 def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, list[float]] | None:
-    """Least and greatest change of p0 by finite elements over the loaded angles, percent.
+    """Least and greatest change of p0 by finite elements against Hertz over the loaded angles,
+    percent, by its cause.
 
     p0; bending of the cam and of the part of the follower, to first order; rest: mesh and change of
     curvature along the contact. None for closed forms, and without a loaded angle.

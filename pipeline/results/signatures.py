@@ -122,7 +122,9 @@ def _role(text: str, roles: Iterable[Role]) -> Role | None:
 def _signed(
     folder: Path, place: Path, private: Ed25519PrivateKey, role: Role, name: str, date: str
 ) -> Signature:
-    """Signature of a role, written with those of the folder into the folder `place`."""
+    """Add the signature of a role: file of all signatures written into the folder `place`; refused
+    where one is of another record or the role is signed.
+    """
     file, digest = folder / signoff.SIGNATURES, sha256_of(folder / signoff.NAME)
     before = read_text(file) if file.is_file() else ""
     for number, line in enumerate(before.splitlines(), start=1):
@@ -178,7 +180,7 @@ def verified(
     faults: list[str] = []
     for number, line in enumerate(lines, start=1):
         try:
-            one = _valid(line, digest, trusted)
+            one = _verified(line, digest, trusted)
             if one.role in {each.role for each in valid}:
                 raise _RefusedError(f"{one.role} is signed twice")
         except _RefusedError as error:
@@ -188,8 +190,13 @@ def verified(
     return tuple(valid), faults
 
 
-def _valid(line: str, digest: str, trusted: Mapping[str, TrustedKey]) -> Signature:
-    """Signature of an envelope. The payload of an untrusted key is read for its words alone."""
+def _verified(line: str, digest: str, trusted: Mapping[str, TrustedKey]) -> Signature:
+    """Signature of one envelope, a line of JSON, on the record of hash `digest`, verified with the
+    trusted keys by fingerprint.
+
+    _RefusedError if the key is not trusted or may not sign the role, or signature or hash are
+    wrong. The payload of an untrusted key is only quoted in that message.
+    """
     from cryptography.exceptions import InvalidSignature
 
     key, payload, signature = _opened(line)
@@ -209,6 +216,9 @@ def _valid(line: str, digest: str, trusted: Mapping[str, TrustedKey]) -> Signatu
 
 
 def _claim(payload: bytes, digest: str) -> str:
+    """What the payload of an unverified envelope states, for a message; "" where it is no statement
+    on the record of this hash.
+    """
     try:
         predicate = _statement(payload, digest)
     except _RefusedError:
@@ -217,7 +227,7 @@ def _claim(payload: bytes, digest: str) -> str:
 
 
 def _opened(line: str) -> tuple[str, bytes, bytes]:
-    """Fingerprint of the key, payload and signature of an envelope; nothing is verified."""
+    """Fingerprint of the key, payload, and signature of an envelope; nothing is verified yet."""
     envelope = _parsed(line, "envelope", ("payloadType", "payload", "signatures"))
     if envelope["payloadType"] != PAYLOAD:
         raise _RefusedError(f"payloadType is not {PAYLOAD}")
@@ -232,7 +242,9 @@ def _opened(line: str) -> tuple[str, bytes, bytes]:
 
 
 def _statement(payload: bytes, digest: str) -> dict[str, str]:
-    """Predicate of a payload; refused unless it is a statement on the record of this hash."""
+    """Role, name, date and hash that a payload states; refused unless it is a statement on the
+    record of hash `digest`.
+    """
     keys = ("_type", "subject", "predicateType", "predicate")
     statement = _parsed(payload, "statement", keys)
     if statement["_type"] != STATEMENT or statement["predicateType"] != PREDICATE:
@@ -277,6 +289,7 @@ def _closed(value: Any, what: str, keys: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _decoded(text: Any, what: str) -> bytes:
+    """Bytes of a base64 text; refused in the words `what` if it is none."""
     try:
         if not isinstance(text, str):
             raise ValueError

@@ -190,6 +190,9 @@ def _lines_alone(block: re.Match[str]) -> str:
 
 
 def _trusted_line(line: str, path: Path, number: int) -> TrustedKey:
+    """Trusted key of a line of a file: roles, if not all, key in OpenSSH form, owner; InputError
+    for any other line.
+    """
     before, algorithm, after = line.partition(_OPENSSH)
     named = [part for part in before.strip().split(",") if part]
     roles = tuple(role for part in named for role in ROLES if role == part)
@@ -202,6 +205,9 @@ def _trusted_line(line: str, path: Path, number: int) -> TrustedKey:
 
 
 def _public(text: str, path: Path, place: str) -> Ed25519PublicKey:
+    """Public Ed25519 key of a text in OpenSSH or PEM form; InputError with file and place for any
+    other.
+    """
     from cryptography.exceptions import UnsupportedAlgorithm
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
     from cryptography.hazmat.primitives.serialization import (

@@ -56,7 +56,7 @@ def record(path: Path) -> SignoffRecord:
 
 
 def _record(path: Path, files: dict[str, str]) -> SignoffRecord:
-    """The record with these hashes of files."""
+    """Sign-off record of the run in a folder, with these hashes by file name."""
     summary = run_reader.read_summary(path)
     trial = path / f"trial_{summary['final_trial']}"
     made, checks = run_reader.read_trial_record(trial), run_reader.read_checks(trial)
@@ -234,7 +234,7 @@ def read_run(path: str | Path) -> run_reader.Run:
 
 
 def _recorded_hashes(path: Path, recorded: Json) -> dict[str, str]:
-    """Hashes by file of a record; ResultError if it is none of this form."""
+    """Hash by file name of a record; ResultError if it is no record of this schema."""
     run_reader.require_schema(path / NAME, recorded)
     known = recorded.get("files") if isinstance(recorded, dict) else None
     if not isinstance(known, dict) or not all(_is_sha256(each) for each in known.values()):
@@ -248,7 +248,9 @@ def hashes(path: Path) -> dict[str, str]:
 
 
 def _of_every_run(path: Path) -> tuple[str, ...]:
-    """Case, summary and the results that the summary lists."""
+    """Names of the files that every run has: case, summary, and the results that the
+    summary lists.
+    """
     try:
         results = run_reader.read_summary(path)["files"]
     except ResultError:
@@ -257,7 +259,9 @@ def _of_every_run(path: Path) -> tuple[str, ...]:
 
 
 def _unhashed(path: Path) -> Iterator[str]:
-    """Hidden files, which no run writes. Files on their way into the run are left out."""
+    """Names of the hidden files in a run folder, which no run writes; files on their way into the
+    run are left out.
+    """
     for entry in sorted(path.rglob("*")):
         parts = entry.relative_to(path).parts
         if parts[0] == AMENDMENT and len(parts) > 1:

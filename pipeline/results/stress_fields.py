@@ -74,7 +74,9 @@ class Poses:
 
 
 def follower_places(pair: ContactPair, theta: Array) -> Poses:
-    """Poses of the follower body in the cam frame at cam angles (k,)."""
+    """Poses of the follower's body in the cam frame at cam angles (k,), rad, by which its contact
+    point and normal meet those of the cam.
+    """
     contacts, normals = pair.contour.points(theta), -pair.contour.normal(theta)
     at, up = pair.follower.contacts(pair.contour, theta)
     cosine, sine = (up * normals).sum(axis=0), up[0] * normals[1] - up[1] * normals[0]
@@ -146,7 +148,9 @@ class TurnFields:
         return fields
 
     def _with_patch(self, cam: Loaded, part: IntArray) -> BodyField:
-        """Field below the contact, its stress that whose maxima the cycle lists."""
+        """Field of the cam below its contact, near the contact with the stress of the
+        finite-element patch, from which the maxima of the cycle are.
+        """
         field, contact = cam.fine, self.cycle.contact
         pressure = contact.pressure[part]
         solved = np.isfinite(pressure).all(axis=1) & (cam.line_load > 0)
@@ -235,7 +239,7 @@ class Loaded:
 
     @property
     def fine(self) -> BodyField:
-        """Field on the fine mesh below the contact."""
+        """Field at the nodes of the fine mesh below the contact."""
         along, depth = zone_places(self.half_width, self.radius)
         depth = depth + self.height(along)
         normals = self.normals[:, None]

@@ -73,7 +73,7 @@ class TrialPoint:
 
     @classmethod
     def of(cls, trial: Trial) -> TrialPoint:
-        """Point of a solved trial."""
+        """Ripple of a solved trial and the worst of its checks that depend on the lift."""
         judged = [
             one
             for one in within_depth(trial.checks)

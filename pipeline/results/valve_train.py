@@ -82,6 +82,7 @@ def _shape(cam: ValveCam) -> list[ValveTrainRow]:
 
 
 def _motion(cam: ValveCam, turn: Turn) -> list[ValveTrainRow]:
+    """Rows on shaft speed, acceleration and efficiency of the rise in the load case of a turn."""
     mean, name = turn.machine.cam_speed, turn.machine.load_case
     phi, motion = turn.theta, cam.motion
     speed, turning = cam.speed(phi, mean), cam.angular_acceleration(phi, mean)
@@ -104,7 +105,9 @@ def _motion(cam: ValveCam, turn: Turn) -> list[ValveTrainRow]:
 
 
 def _elastic(machine: Machine, cam: ValveCam, phi: Array, speed: Array) -> list[ValveTrainRow]:
-    """Deflections of the valve train at full lift."""
+    """Rows on the deflection of the valve train at full lift; speed (n,), rad/s, of the cam at its
+    angles phi (n,), rad.
+    """
     follower, spring, name = elastic_follower(machine), machine.spring, machine.load_case
     train = ElasticValve(
         follower.mass, follower.stiffness, spring.rate, spring.preload / spring.rate

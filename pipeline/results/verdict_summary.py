@@ -183,6 +183,7 @@ def advisory_lines(checks: Iterable[CheckRecord]) -> list[str]:
 
 
 def _failed_lines(word: str, failed: Iterable[CheckRecord]) -> list[str]:
+    """Lines on failed checks, each begun by `word`: demand and limit, id with remarks, remedy."""
     lines = []
     for check in failed:
         lines.append(f"{word}: {failure_words(check)}")
@@ -194,7 +195,9 @@ def _failed_lines(word: str, failed: Iterable[CheckRecord]) -> list[str]:
 
 
 def missing_lines(checks: Sequence[CheckRecord], case: str) -> list[str]:
-    """Lines on missing keys, the required checks that need them, and other data."""
+    """Lines on missing keys with the required checks that need them, on checks that lack other
+    data, and on the number of keys.
+    """
     keys = missing_keys(checks)
     by_ids: dict[str, list[str]] = {}
     for key, ids in keys.items():
@@ -251,7 +254,9 @@ _OF_A_LOAD_CASE = (
 
 
 def _listed(row: Mapping[str, Any], titles: Iterable[tuple[str, tuple[str, ...], str]]) -> str:
-    """Figures of a row in words, to five digits; those that are not known left out."""
+    """Figures of a row in words, to five digits, unknown ones left out; titles : title,
+    keys, unit.
+    """
     parts = []
     for title, keys, unit in titles:
         known = [f"{row[key]:.5g}" for key in keys if row[key] is not None]
@@ -260,7 +265,9 @@ def _listed(row: Mapping[str, Any], titles: Iterable[tuple[str, tuple[str, ...],
 
 
 def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
-    """Next step: remedies of a failure that has none, the missing data, the deeper solution."""
+    """Lines on the next step: command for the remedies of failures, for the missing data, or for
+    the deeper solution.
+    """
     checks = records_of(within_depth(of_records(document["checks"])))
     failed = failures(checks)
     if failed and not any(check.get("remedy") for check in failed):
@@ -283,7 +290,9 @@ def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
 
 
 def headline_line(document: Mapping[str, Any]) -> list[str]:
-    """Line: ripple without and with the cam, greatest contact pressure and body stresses."""
+    """Line on ripple without and with the cam, greatest contact pressure and body stresses; empty
+    where none is known.
+    """
     figures = document.get("headline") or {}
     before, after = (figures.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
     parts = []
@@ -320,7 +329,9 @@ def governing_line(checks: Iterable[CheckRecord]) -> list[str]:
 
 
 def measured_line(document: Mapping[str, Any]) -> list[str]:
-    """Line on a measured crank speed: runs, wheel, sampling rate, error bar."""
+    """Line on the record of a measured crank speed: runs, cycles, wheel, sampling rate, error bar;
+    empty without one.
+    """
     record: Mapping[str, Any] = document.get("measurement") or {}
     if "torque_error_bar_max_Nm" not in record:
         return []

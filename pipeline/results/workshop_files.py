@@ -73,7 +73,7 @@ class CamDimensions:
 
 
 def dimensions_of(case: Case) -> CamDimensions:
-    """Dimensions of the cam of a case."""
+    """Dimensions of the cam of a case, with their tolerances, for drawing and record."""
     cam, shop = case.cam, case.workshop
     bore, keyway = 2.0 * cam.bore_radius, cam.keyway
     width = depth = None
@@ -134,7 +134,11 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
 
 
 def track_record(case: Case, word: str) -> dict[str, Json]:
-    """Axial section of a contact surface: flat, ends, crown; null if not stated."""
+    """JSON record of the axial profile of a running surface: width of its flat, ends, crown with
+    drops over y from the middle of the body; null where not stated.
+
+    word : "cam", else the follower.
+    """
     part = case.cam if word == "cam" else case.facing
     end, crown = part.end, part.crown
     drops = None if crown is None else crown_drops(case, word)
@@ -150,7 +154,8 @@ def track_record(case: Case, word: str) -> dict[str, Json]:
 
 
 def crown_drops(case: Case, word: str) -> tuple[Array, Array]:
-    """Axial coordinates and drops, m, of the crown of a body, about its middle.
+    """Axial coordinates, m, from the middle of a body, and drops of its crown there, m, (k,) each;
+    word : "cam", roller or face.
 
     Both sides of the flat, as far as the drop is stated and bounded.
     """
@@ -188,7 +193,7 @@ def notes_of(case: Case) -> Iterator[str]:
 
 
 def _hardness(material: Material) -> str:
-    """Treatment, hardness and case depth of a card; "" without any."""
+    """Treatment, hardness and case depth of a material card in words; "" without any."""
     words = []
     if material.treatment is not None:
         words.append(material.treatment.replace("_", "-").replace("not-", "not "))
