@@ -7,13 +7,12 @@ from math import pi
 from camwright.geometry.arm_path import Arm
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
-from camwright.pipeline.case.scope_section import is_stand_in
+from camwright.pipeline.case.scope_section import OF_ARM, is_stand_in
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 from camwright.pipeline.follower.arm import FollowerArm
 
 OSCILLATING = "oscillating"
-ARM = "arm"
-"""Word of the scope for the arm and its pivot."""
+_PIVOT = "pivot"
 _NOT_THERE: tuple[TomlValue, ...] = ("guides", "stem")
 _START, _INERTIA = "follower.arm.start_angle", "follower.arm.inertia"
 
@@ -24,29 +23,32 @@ def with_arm(tables: Tables) -> Tables:
 
     A start angle is replaced by the prime radius that follows from it, a moment of inertia by the
     mass, angles of swing in the lift by arcs of the roller centre. The parts that only a
-    translating follower has, stem and guides, enter `scope.not_covered`, which has to name the arm.
+    translating follower has, stem and guides, enter `scope.not_covered`, which has to name the
+    pivot, or the arm and so the pivot.
 
     Raises
     ------
     InputError
-        If the case has guides, its scope does not leave out the arm, or start angle or inertia are
-        wrong, or stated beside prime radius or mass; if another case leaves out an arm.
+        If the case has guides, its scope does not leave out the pivot, or start angle or inertia
+        are wrong, or stated beside prime radius or mass; if another case leaves out an arm or its
+        pivot.
     """
     follower, scope = tables.get("follower"), tables.get("scope")
     left_out = scope.get("not_covered") if isinstance(scope, dict) else None
     if not isinstance(follower, dict) or follower.get("kind") != OSCILLATING:
-        if isinstance(left_out, list) and ARM in left_out:
-            limit = f'without "{ARM}", which follower.kind = "{OSCILLATING}" alone has'
+        if isinstance(left_out, list) and (named := [each for each in OF_ARM if each in left_out]):
+            limit = f'without "{named[0]}", which follower.kind = "{OSCILLATING}" alone has'
             raise InputError("scope.not_covered", _shown(left_out), limit)
         return tables
     if "guides" in tables and not is_stand_in(tables, "guides.a"):
         limit = f'left out with follower.kind = "{OSCILLATING}", which has [follower.arm]'
         raise InputError("guides", "a table", limit)
     arm, cam = follower.get("arm"), tables.get("cam")
-    if not isinstance(left_out, list) or ARM not in left_out:
-        limit = f'with "{ARM}": neither the arm nor its pivot is judged'
+    if not isinstance(left_out, list) or not any(each in left_out for each in OF_ARM):
+        limit = f'with "{_PIVOT}": the pivot of the arm is not judged'
         raise InputError("scope.not_covered", _shown(left_out), limit)
-    names = [*left_out, *(each for each in _NOT_THERE if each not in left_out)]
+    absent = _NOT_THERE if _PIVOT in follower else (*_NOT_THERE, _PIVOT)
+    names = [*left_out, *(each for each in absent if each not in left_out)]
     tables = tables | {"scope": scope | {"not_covered": names}}  # type: ignore[operator]
     if not isinstance(arm, dict):
         return tables

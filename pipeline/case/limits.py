@@ -410,8 +410,20 @@ SHAFT_SAFETY = Limit(
         confirmed=False,
     ), "at_least",
 )  # fmt: skip
+ARM_SAFETY = Limit(
+    "arm_safety", "fatigue safety of the arm", _SAFETY, 1.5,
+    Source(
+        "1.5, recalled, as of the camshaft; Goodman and Marin, Shigley's Mechanical Engineering"
+        " Design, 9th ed., ch. 6; notches by Peterson's Stress Concentration Factors",
+        confirmed=False,
+    ), "at_least",
+)  # fmt: skip
+ARM_YIELD_SAFETY = Limit(
+    "arm_yield_safety", "safety of the arm against yield", _SAFETY, 1.2,
+    Source("1.2, as of a shaft by DIN 743-1", confirmed=False),
+)  # fmt: skip
 SHAFT_RELIABILITY = Limit(
-    "shaft_reliability", "reliability of the fatigue strength of the camshaft",
+    "shaft_reliability", "reliability of the fatigue strength of camshaft and arm",
     In(at_least=0.5, below=1), 0.99,
     Source(
         "k_e = 0.814 at 99 %, Shigley's Mechanical Engineering Design, 9th ed., p. 293, table"

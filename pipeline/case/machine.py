@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Literal
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from camwright.pipeline.case.limits import (
     Limits,
 )
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, LoadCase
-from camwright.pipeline.case.scope_section import PartName, Scope
+from camwright.pipeline.case.scope_section import OF_ARM, OF_STEM, PartName, Scope, ScopeName
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
@@ -43,6 +44,7 @@ from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.arm import FollowerArm
+from camwright.pipeline.follower.arm_beam import ArmBar
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
@@ -205,6 +207,7 @@ class Machine(Displayed):
         described: Mapping[str, object] = {
             **self.follower.parts,
             **self.spring.parts,
+            "arm": self.arm if self.arm is not None and self.arm.is_described else None,
             "guides": self.guides,
             "camshaft": shaft,
             "camshaft_bearings": shaft and (shaft.bearing_rating or shaft.bearing_static_rating),
@@ -212,6 +215,21 @@ class Machine(Displayed):
             "gear": shaft and shaft.gear,
         }
         return described.get(part) is not None
+
+    @property
+    def carrier(self) -> Literal["stem", "arm"]:
+        """What carries the roller or face."""
+        return "stem" if self.arm is None else "arm"
+
+    @property
+    def absent(self) -> tuple[ScopeName, ...]:
+        """What a follower on a stem, or on an arm, does not have."""
+        return OF_ARM if self.arm is None else OF_STEM
+
+    @property
+    def arm_bar(self) -> ArmBar | None:
+        """Arm as a beam; None of a stem, and of an arm that is not described."""
+        return ArmBar.of(self.arm, self.follower, self.mass)
 
     @property
     def contact_width(self) -> float:
@@ -338,12 +356,14 @@ class Machine(Displayed):
     def compliances(self) -> dict[str, float]:
         """Compliances by name of the described members from cam to follower mass, m/N.
 
-        The stem counts to its far guide; the line contact, the cam and an arm are taken as rigid.
+        The stem counts to its far guide; an arm bends with its fork. The line contact and the cam,
+        and an arm that is not described, are taken as rigid.
         """
         parts, held = self.follower.elastic(self.contact_width, self.spring.preload)
-        reach = self.overhang_at_max_lift + self.guides.spacing - held
+        reach, bar = self.overhang_at_max_lift + self.guides.spacing - held, self.arm_bar
         members = {
             **parts,
+            **({} if bar is None else {"fork": None, "arm": bar.compliance}),
             "stem": stem_compliance_along(self.stem, reach) if self.arm is None else None,
             "camshaft": None if self.camshaft is None else shaft_compliance(self.camshaft),
         }

@@ -39,7 +39,7 @@ class Follower(Section):
         "face": "the follower has a roller",
         "arm": "the follower translates",
         "stem_length": "the stem is long",
-        "stiffness": "bearing, pin, fork, stem and camshaft in series",
+        "stiffness": "bearing, pin, fork, stem or arm, and camshaft in series",
         "external_force": "0 N, without a file",
         "external_force_file": "the external force is constant",
         "gravity_angle": "the weight is left out",

@@ -20,16 +20,17 @@ from camwright.pipeline.follower.spring_kinds import SHAPES, SpringPart
 from camwright.pipeline.records.run_summary import ScopeRecord
 
 PartName = Literal[
-    "roller_bearing", "pin", "fork", "spring", SpringPart, "guides",
+    "roller_bearing", "pin", "fork", "arm", "spring", SpringPart, "guides",
     "camshaft", "camshaft_bearings", "key", "gear",
 ]  # fmt: skip
-Subject = Literal["stem", "bore", "line_ends", "friction", "requirements", "arm"]
+Subject = Literal["stem", "bore", "line_ends", "friction", "requirements", "pivot"]
 """What is left out besides parts: data that a part which is judged would need as well."""
 ScopeName = PartName | Subject
 PART_WORDS: dict[PartName, str] = {
     "roller_bearing": "bearing of the roller",
     "pin": "pin of the roller",
     "fork": "fork of the roller",
+    "arm": "arm of the follower",
     "spring": "spring design",
     **{each.part: each.part.replace("_", " ") for each in SHAPES.values()},
     "guides": "guides",
@@ -45,19 +46,22 @@ SUBJECT_WORDS: dict[Subject, str] = {
     "line_ends": "ends of the line of contact",
     "friction": "friction, film and finish of the contact",
     "requirements": "life, over-speed and room",
-    "arm": "arm of the follower and its pivot",
+    "pivot": "pivot of the arm",
 }
 SCOPE_WORDS: Mapping[ScopeName, str] = MappingProxyType(
     dict((*PART_WORDS.items(), *SUBJECT_WORDS.items()))
 )
-_OF_STEM: tuple[ScopeName, ...] = ("guides", "stem")
+OF_STEM: tuple[ScopeName, ...] = ("guides", "stem")
 """What an arm does not have."""
+OF_ARM: tuple[ScopeName, ...] = ("arm", "pivot")
+"""What a stem does not have."""
 EVERY = "all"
 """Word of a case file for all that a sign-off may leave out."""
 _KEYS: dict[ScopeName, tuple[str, ...]] = {
     "roller_bearing": ("roller.bearing", "roller.hub_radius"),
     "pin": ("roller.pin",),
     "fork": ("roller.fork",),
+    "arm": tuple(f"follower.arm.{key}" for key in ("width", "depth", "material", "*_notch")),
     "spring": ("spring.design", "spring.travel_max"),
     **{each.part: (each.table,) for each in SHAPES.values()},
     "guides": ("guides", "follower.overhang_at_max_lift", "follower.anti_rotation"),
@@ -95,7 +99,7 @@ class Scope(Section):
     @property
     def statement(self) -> str:
         """Excluded parts with the reason, in one line; "" without any."""
-        missing = [] if self.covers("arm") else _OF_STEM
+        missing = [] if self.covers("pivot") else OF_STEM
         parts = ", ".join(
             words
             for part, words in SCOPE_WORDS.items()
@@ -153,7 +157,7 @@ def with_every_name(tables: Tables) -> Tables:
         return tables
     follower = tables.get("follower")
     has_arm = isinstance(follower, dict) and "arm" in follower
-    names: list[TomlValue] = [name for name in SCOPE_WORDS if name != "arm" or has_arm]
+    names: list[TomlValue] = [name for name in SCOPE_WORDS if name not in OF_ARM or has_arm]
     return tables | {"scope": scope | {"not_covered": names}}
 
 

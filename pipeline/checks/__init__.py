@@ -19,6 +19,7 @@ In the order of the calculation:
 | `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
 | `spring_strength`       | strength, gaps, buckling, surge, set       | tau, Pa; f, Hz           |
 | `part_strength`         | pin, fork, ring, mass, bore, balance       | sigma, Pa; kg; e w, m/s  |
+| `arm_strength`          | fatigue and yield of an arm                | sigma, Pa; safety, -     |
 | `key_strength`          | key of the cam, keyway root, slip of seat  | p, tau, Pa; safety, -    |
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s; rad   |
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |

@@ -300,7 +300,7 @@ class Declaration:
                                fails by it or is not evaluated
     moved_by_tolerance : bool  its demand differs at a tolerance corner
     error : str                origin of the error bar of the demand
-    needs : str                kind of follower, or stem for one in guides; "": any
+    needs : str                kind of follower, or what carries it, stem or arm; "": any
     part : str                 part of the scope that it judges; "": cam or follower
     if_limited : bool          it is made only where the case sets its limit
     within : tuple             parts and subjects of the scope, without all of which it is not
@@ -345,7 +345,7 @@ class Declaration:
     fails_from: Tier
     moved_by_tolerance: bool
     error: Error
-    needs: Literal["", "roller", "face", "stem"]
+    needs: Literal["", "roller", "face", "stem", "arm"]
     part: PartName | Literal[""]
     within: tuple[ScopeName, ...]
     if_limited: bool
@@ -404,12 +404,12 @@ class Declaration:
 
     def concerns(self, machine: Machine) -> bool:
         """Whether a machine has the kind of follower and describes the part of the check."""
-        carried = "stem" if machine.arm is None else "arm"
-        if self.needs not in ("", machine.follower.word, carried):
+        if self.needs not in ("", machine.follower.word, machine.carrier):
             return False
         if self.if_limited and self.limit is not None and machine.limits[self.limit] is None:
             return False
-        if self.within and not any(map(machine.scope.covers, self.within)):
+        within = (each for each in self.within if each not in machine.absent)
+        if self.within and not any(map(machine.scope.covers, within)):
             return False
         return not self.part or (machine.scope.covers(self.part) and machine.describes(self.part))
 
@@ -467,7 +467,7 @@ def check(
     fails_from: Tier | None = None,
     moved_by_tolerance: bool = True,
     error: Error = "sampling",
-    needs: Literal["", "roller", "face", "stem"] = "",
+    needs: Literal["", "roller", "face", "stem", "arm"] = "",
     part: PartName | Literal[""] = "",
     within: tuple[ScopeName, ...] = (),
     if_limited: bool = False,

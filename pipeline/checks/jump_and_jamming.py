@@ -380,7 +380,7 @@ def contact_over_speed(solution: Solution) -> Demand:
     method="one mass on the stiffness of the stem, without friction",
     lift_can_help=True,
     tier=Tier.PREVIEW,
-    within=("stem",),
+    within=("stem", "arm"),
     formula="N / F_0 >= limits.contact_force_margin over all speeds from standstill to over-speed"
     " and over the load cases at their varying speed; N: least contact force of one mass on the"
     " stiffness between cam and mass, on the spring with its surge, F_0: spring force at minimum"
@@ -412,6 +412,7 @@ def elastic_contact(solution: Solution) -> Demand:
     )
     histories = [cycle.elastic for cycle in solution.cycles]
     methods = "; ".join(dict.fromkeys(history.method for history in histories))
+    carrier = solution.machine.carrier
     note, (cycle, k) = "", row_of(solution.cycles, worst)
     stated = {
         "N": float(cycle.elastic.response.contact_force[k]),
@@ -426,8 +427,8 @@ def elastic_contact(solution: Solution) -> Demand:
         solution.machine.limits[CONTACT_FORCE_MARGIN],
         worst,
         note="; ".join(each for each in (note, _flights(histories)) if each),
-        method="one mass on the stiffness of the stem, without friction: harmonic response with the"
-        f" surge of a coil spring over the speed range; load cases by {methods}",
+        method=f"one mass on the stiffness of the {carrier}, without friction: harmonic response"
+        f" with the surge of a coil spring over the speed range; load cases by {methods}",
         stated=stated,
     )
 
@@ -448,7 +449,7 @@ _RIGID_RATIO = 10.0  # least natural over rotational frequency of a rigid follow
     must_have=False,
     lift_can_help=False,
     tier=Tier.PREVIEW,
-    within=("stem",),
+    within=("stem", "arm"),
     formula="sqrt((k_s + k)/m)/w >= 10; k_s: follower.stiffness, else that of the parts between cam"
     " and mass in series, k: spring.rate, m: mass of the follower without its share of the spring,"
     " w: greatest cam speed of all load cases",
@@ -476,11 +477,11 @@ def rigid_follower(solution: Solution) -> Demand:
     """Natural frequency of the follower over the greatest rotational speed of the cam."""
     machine, fastest = solution.machine, float(solution.numbers["cam.fastest"])
     frequency = shown(machine.follower_frequency / FULL_TURN, "Hz")
-    stem = shown(machine.axial_stiffness, "kN/m")
+    stiffness = shown(machine.axial_stiffness, "kN/m")
     return Demand(
         machine.follower_frequency / fastest if fastest > 0.0 else np.inf,
         _RIGID_RATIO,
-        note=f"{frequency} at {stem} of the stem",
+        note=f"{frequency} at {stiffness} of the {machine.carrier}",
         stated={"k_s": machine.axial_stiffness, "m": machine.mass_without_spring},
     )
 

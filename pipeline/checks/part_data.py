@@ -21,7 +21,7 @@ Tables = Mapping[str, Part | Follower | None]
 def _data(
     name: PartName | Literal["cam", "follower", "roller", "face"],
     tables: Callable[[Case], Tables],
-    needs: Literal["", "roller", "face"] = "",
+    needs: Literal["", "roller", "face", "arm"] = "",
     described_by: tuple[str, ...] = (),
     spring: str = "",
     *,
@@ -114,6 +114,13 @@ data_fork = _data(
     "roller",
     described_by=("roller.fork",),
     page="Roller",
+)
+data_arm = _data(
+    "arm",
+    lambda case: {"follower.arm": case.follower.arm},
+    "arm",
+    described_by=("follower.arm.width", "follower.arm.depth"),
+    page="Follower",
 )
 data_spring = _data(
     "spring",

@@ -14,6 +14,7 @@ from camwright.pipeline.base.verdict import in_order
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
+    arm_strength,
     assembly,
     cam_shape,
     camshaft_strength,
@@ -58,6 +59,7 @@ MODULES: tuple[ModuleType, ...] = (
     guide_strength,
     spring_strength,
     part_strength,
+    arm_strength,
     key_strength,
     camshaft_strength,
     flat_face_sliding,

@@ -30,6 +30,7 @@ In the order of the calculation:
 | `flat_face`             | flat face: geometry, contact body, sliding | m                     |
 | `camshaft_loads`        | key, bearings, unbalance, counter-hole     | N; Pa; kg m           |
 | `shaft_strength`        | camshaft sections, bending; gear teeth     | Pa; safety, -; rad    |
+| `arm_beam`              | arm as a beam: sections, stress, bending   | M, N m; Pa; m/N       |
 | `follower_stiffness`    | bearing, pin, fork, stem, shaft in series  | m/N; N/m              |
 
 A further kind of follower is a class with the attributes of `follower_kind.FollowerKind`, a contour

@@ -11,9 +11,13 @@ import numpy as np
 from camwright.geometry.arm_path import Arm, ArmContour, ArmPath
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
-from camwright.pipeline.base.quantities import Known, Length, Part, Resolved, TableSource
+from camwright.pipeline.base.material import MadeOf
+from camwright.pipeline.base.quantities import In, Known, Length, Part, Resolved, TableSource
 from camwright.pipeline.base.source import NO_SOURCE
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.follower.camshaft_loads import Notch, Surface
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +26,13 @@ class FollowerArm(Part):
 
     The lift is the arc of its roller centre, and forces, masses and springs are those reduced to
     it: a moment about the pivot over the length, an inertia and an angular rate over its square.
+    The section of a straight arm is a rectangle; a fatigue notch factor holds for all stresses of
+    its place. The fatigue_bending of the material is that of a polished specimen.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds, or a bore leaves no hub.
     """
 
     table: ClassVar[str] = "follower.arm"
@@ -40,13 +51,62 @@ class FollowerArm(Part):
         ),
     }
 
+    defaults: ClassVar[Mapping[str, str]] = {
+        "bore": "the arm is solid at its pivot",
+        "hub": "depth",
+        "roller_hub": "depth",
+    }
+
     centre_distance: Annotated[Length, Known("drawing", "90 mm")]
     """distance of the pivot from the cam axis"""
     length: Annotated[Length, Known("drawing", "80 mm")]
     """distance of the roller centre from the pivot"""
     swing: Annotated[Literal["with", "against"], Known("drawing", "with")]
     """sense of the outward swing: with the rotation of the cam, or against it"""
+    width: Annotated[Length | None, Known("drawing", "25 mm")] = None
+    """width of the arm along the cam axis"""
+    depth: Annotated[Length | None, Known("drawing", "25 mm")] = None
+    """depth of the arm across its length in the plane of the cam"""
+    bore: Annotated[Length | None, Known("drawing; seat of the bush", "20 mm")] = None
+    """diameter of the bore at the pivot"""
+    hub: Annotated[Length | None, Known("drawing", "35 mm")] = None
+    """outer diameter of the hub around the pivot"""
+    roller_hub: Annotated[Length | None, Known("drawing", "25 mm")] = None
+    """outer diameter of the hub around the roller's pin; of a fork that is described its height"""
+    plane_offset: Annotated[float, In("mm", at_least=0, at_most=1000), Known("drawing", "0 mm")] = (
+        0.0
+    )
+    """distance of the middle of the arm from that of the roller along the cam axis"""
+    spring_distance: Annotated[
+        float, In("mm", at_least=0, at_most=10_000), Known("drawing", "60 mm")
+    ] = 0.0
+    """distance from the pivot at which the spring acts on the arm; at the pivot it bends the arm
+    most"""
+    material: Annotated[MadeOf | None, Known("drawing", "c45")] = None
+    surface: Annotated[Surface, Known("drawing")] = "machined"
+    """surface finish of the arm"""
+    pivot_notch: Annotated[
+        Notch | None, Known("Peterson's Stress Concentration Factors: hole or fillet", 2.0)
+    ] = None
+    """fatigue notch factor of the arm at its pivot"""
+    roller_notch: Annotated[
+        Notch | None, Known("Peterson's Stress Concentration Factors: eye or fillet", 3.0)
+    ] = None
+    """fatigue notch factor of the arm at the roller"""
     source: TableSource = NO_SOURCE
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        hub = self.depth if self.hub is None else self.hub
+        if self.bore is not None and hub is not None and not self.bore < hub:
+            key = "depth" if self.hub is None else "hub"
+            limit = f"< {shown(hub, 'mm')}, follower.arm.{key}"
+            raise InputError("follower.arm.bore", shown(self.bore, "mm"), limit)
+
+    @property
+    def is_described(self) -> bool:
+        """Whether the section of the arm is stated, by one of its dimensions at least."""
+        return self.width is not None or self.depth is not None
 
     @property
     def sense(self) -> float:

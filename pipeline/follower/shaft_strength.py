@@ -158,6 +158,11 @@ def reliability_factor(reliability: float) -> float:
     return float(1.0 - 0.08 * NormalDist().inv_cdf(reliability))
 
 
+def equivalent_stress(normal: Array, shear: Array) -> Array:
+    """Von Mises stress (...) of a normal and a shear stress, Pa; complex for a step."""
+    return np.asarray(np.sqrt(normal**2 + 3.0 * shear**2))
+
+
 def fibre_stresses(
     theta: ArrayLike, moment: Array, torque: Array, sections: Sections
 ) -> tuple[Array, Array]:
@@ -193,7 +198,7 @@ def fibre_stresses(
     def equivalent(of_bending: Array, of_torsion: Array) -> Array:
         pull = sections.notch_bending[:, None] * of_bending
         twist = (sections.notch_torsion * of_torsion)[:, None]
-        return np.sqrt(pull**2 + 3.0 * twist**2)
+        return equivalent_stress(pull, twist)
 
     high, low = bending.max(axis=2), bending.min(axis=2)
     most, least = shear.max(axis=1), shear.min(axis=1)
@@ -233,7 +238,7 @@ def greatest_stress(moment: Array, torque: Array, sections: Sections) -> Array:
     modulus = sections.modulus[:, None]
     bending = sections.notch_bending[:, None] * np.hypot(moment[:, 0], moment[:, 1]) / modulus
     shear = sections.notch_torsion[:, None] * torque / (2.0 * modulus)
-    return np.asarray(np.sqrt(bending**2 + 3.0 * shear**2))
+    return equivalent_stress(bending, shear)
 
 
 @dataclass(frozen=True, eq=False)

@@ -86,9 +86,10 @@ MODEL_LIMITS = (
         " the friction forces about the stem axis is left out."
     ),
     ModelLimit(
-        "An arm is rigid and without weight, its pivot without friction and clearance: masses,"
-        " springs and forces are those reduced to the roller centre. The sign-off does not cover"
-        " arm and pivot."
+        "An arm is a straight bar of one rectangular section, which its hubs do not stiffen;"
+        " without a stated one it is rigid. It has no weight, its pivot neither friction nor"
+        " clearance: masses, springs and forces are those reduced to the roller centre. The"
+        " sign-off does not cover the pivot."
     ),
     ModelLimit("A flat face does not turn about its stem, and its block is held by the stem."),
     ModelLimit(

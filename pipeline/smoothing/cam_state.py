@@ -327,7 +327,7 @@ class Constraint(Generic[State]):
     utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
     row: AnyLimit | None = None
     kept: Kept = field(default=Kept(), repr=False)
-    needs: Literal["", "roller", "face", "stem"] = ""
+    needs: Literal["", "roller", "face", "stem", "arm"] = ""
     stroke: str = ""
 
     @property

@@ -7,6 +7,7 @@ names the check. Rows of missing data have no demand; `test_part_data` tries the
 _ASSEMBLY = "unit/test_assembly.py"
 _CONTACT = "verification/test_contact_audit.py"
 _GUIDES = "verification/test_guides_audit.py"
+_ARM = "verification/test_arm_strength.py"
 _HUB = "verification/test_hub_elements.py"
 _ROLLER = "verification/test_roller_audit.py"
 _IMPACT = "verification/test_gear_impact.py"
@@ -60,6 +61,9 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_SYNTHESIS, "test_another_method_gains_what_the_check_tells"): ("synthesis_converged",),
     (_NUMERICS, "test_the_torque_of_the_pressures_by_summing_r_x_f"): (
         "contact_torque", "contact_work",
+    ),
+    (_ARM, "test_fatigue_and_yield_of_the_arm_by_stress_tensors"): (
+        "arm_fatigue_pivot", "arm_fatigue_roller", "arm_yield",
     ),
     # spring and motion
     (_SPRING, "test_margin_and_jump_from_motion_in_time"): (

@@ -7,8 +7,10 @@ from check_tools import by_limit, counted, limit_of, limited, loaded, tried, unl
 from trial_variants import (
     NAN,
     beside,
+    cycle_with,
     frictionless,
     geared,
+    on_arm,
     reversing,
     stiffened,
     struck,
@@ -45,6 +47,14 @@ from camwright.pipeline.follower.camshaft_loads import Counterweight
 # Four times the greatest shear along the surface over p0 at a traction coefficient of 0.03, of the
 # field of McEwen.
 SHAKEDOWN_USE = 4.0 * 0.259034
+
+
+def with_yield(safety):
+    """An arm at a safety against yield."""
+    arm = on_arm()
+    limits = made.changed(arm.case.limits, arm_yield_safety=safety)
+    return made.changed_solution(arm, case=made.changed(arm.case, limits=limits))
+
 
 # overspeed, life and space
 by_limit(
@@ -498,6 +508,33 @@ by_limit(
     by_hand.pin_fatigue(),
     "Goodman, each fibre of the pin, Shigley ch. 6",
     missing=lambda: with_material("hard", fatigue_bending=None),
+)
+by_limit(
+    "arm_fatigue_pivot",
+    "arm_safety",
+    lambda: on_arm(cycle_with("loads", axial_force=NAN)),
+    by_hand.arm_safety("bore", "hub"),
+    "Goodman, free body of the arm up to its end, Shigley ch. 6",
+    base=on_arm,
+    missing=lambda: on_arm(pivot_notch=None),
+)
+by_limit(
+    "arm_fatigue_roller",
+    "arm_safety",
+    lambda: on_arm(cycle_with("loads", axial_force=NAN)),
+    by_hand.arm_safety("cheeks", "eye"),
+    "Goodman, the more loaded cheek of the fork and the eye of the pin, Shigley ch. 6",
+    base=on_arm,
+    missing=lambda: on_arm(material=None),
+)
+tried(
+    "arm_yield",
+    limited("arm_yield", lambda p: with_yield(1500e6 / p), on_arm),
+    lambda: on_arm(roller_notch=None),
+    lambda: on_arm(cycle_with("loads", axial_force=NAN)),
+    by_hand.arm_stress(),
+    "Mohr's circle at the notch",
+    on_arm,
 )
 by_limit(
     "roller_pin_shear",

@@ -44,6 +44,7 @@ MUST_HAVE = {
     *("bearing_gap", "gear_gap", "machine_shaft_gap", "fork_shaft_gap", "fork_gap"),
     "tooth_count",
     "tooth_ratio",
+    *("arm_fatigue_pivot", "arm_fatigue_roller", "arm_yield"),
     *("guide_gap", "cam_radius", "torque_reduction", "contact_torque"),
     # forces and contact
     *("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed", "friction_balance"),

@@ -9,7 +9,7 @@ import pytest
 from check_tools import BY_ID
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from trial_variants import with_gas_spring, with_torsion_spring
+from trial_variants import on_arm, with_gas_spring, with_torsion_spring
 
 from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.quantities import Part
@@ -94,7 +94,7 @@ def test_every_datum_left_out_keeps_the_verdict_from_pass(keys):
 @pytest.mark.parametrize("part", PART_WORDS)
 def test_a_part_is_described_or_left_out_by_the_scope(part):
     declared = BY_ID[f"data_{part}"]
-    kinds = {"gas_spring": with_gas_spring, "torsion_spring": with_torsion_spring}
+    kinds = {"gas_spring": with_gas_spring, "torsion_spring": with_torsion_spring, "arm": on_arm}
     whole = kinds.get(part, made.solution)()
     found = declared(whole)
     assert found is not None

@@ -14,14 +14,14 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.verdict import governing_id, within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of
-from camwright.pipeline.case.scope_section import PART_WORDS, SCOPE_WORDS, SUBJECT_WORDS
+from camwright.pipeline.case.scope_section import OF_ARM, PART_WORDS, SCOPE_WORDS, SUBJECT_WORDS
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import figures
 from camwright.pipeline.results.trial import Trial
 
-OF_STEM = tuple(name for name in SCOPE_WORDS if name != "arm")
+OF_STEM = tuple(name for name in SCOPE_WORDS if name not in OF_ARM)
 """What a sign-off may leave out of a follower on a stem."""
 BARE = """
 schema_version = 1

@@ -99,7 +99,14 @@ def surging(numbers: Numbers) -> dict[str, Any]:
     return {**TOP, "stressed": work, "fatigued": work}
 
 
+def on_arm(numbers: Numbers) -> dict[str, Any]:
+    """Forces on the arm of the made-up solution, on the contour of a stem."""
+    path = RollerMotion(TURN["jet"], made.BASE, 0.0, numbers["roller.radius"])
+    return {**LOADED, "axial": FORCE, "motion": path}
+
+
 OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
+    "arm_yield": on_arm,
     "concave_radius": hollow,
     "guide_temperature_A": warm,
     "guide_temperature_B": warm,

@@ -17,6 +17,7 @@ from camwright.pipeline.contact.shrink_fit import SeatFit
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, Reversal
 from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 
@@ -73,6 +74,17 @@ def with_torsion_spring(seat_height: float | None = None, **values: Any) -> Solu
         rate=spring.rate,
         preload=spring.preload,
     )
+
+
+def on_arm(cycle: Cycle | None = None, **values: Any) -> Solution:
+    """The solution with the section of an arm, on the contour of a stem."""
+    stated = {
+        "width": 0.02, "depth": 0.02, "hub": 0.03, "bore": 0.01, "spring_distance": 0.04,
+        "pivot_notch": 2.0, "roller_notch": 3.0, "material": made.case().roller.pin.material,
+    }  # fmt: skip
+    arm = FollowerArm(centre_distance=0.09, length=0.08, swing="with", **(stated | values))
+    case = made.case(follower=made.changed(made.case().follower, arm=arm))
+    return made.solution(case=case, cycles=(cycle or made.cycle(),))
 
 
 def with_material(name: str, **values: Any) -> Solution:

@@ -1,0 +1,306 @@
+"""Arm of an oscillating follower as a beam: sections, moments, stresses, compliance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, distinct
+from camwright.geometry.pitch_curve import magnitude
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.follower.arm import FollowerArm
+from camwright.pipeline.follower.follower_kind import FollowerKind
+from camwright.pipeline.follower.pin_strength import support_force
+from camwright.pipeline.follower.roller_parts import Fork, Pin
+from camwright.pipeline.follower.shaft_strength import equivalent_stress
+
+_ODD = np.arange(1.0, 80.0, 2.0)  # terms of the series of a twisted rectangle
+_EQUAL_AREA = 0.808  # diameter of a round section over the root of a rectangle's area
+
+
+def torsion_of_rectangle(width: float, depth: float) -> tuple[float, float]:
+    """Torsion constant, m4, and modulus, m3, of a rectangle; the order of its sides is free.
+
+    References
+    ----------
+    Timoshenko and Goodier, Theory of Elasticity, sec. 109: series of the rectangular bar.
+    """
+    short, long = min(width, depth), max(width, depth)
+    half = 0.5 * np.pi * _ODD * long / short
+    decay = np.exp(-half)  # cosh overflows on a thin strip
+    constant = 1.0 - 192.0 / np.pi**5 * short / long * np.sum(np.tanh(half) / _ODD**5)
+    greatest = 1.0 - 8.0 / np.pi**2 * np.sum(2.0 * decay / (1.0 + decay**2) / _ODD**2)
+    twist = float(long * short**3 / 3.0 * constant)
+    return twist, float(twist / (short * greatest))
+
+
+class SectionLoads(NamedTuple):
+    """Loads of a section of the arm (...): moments, N m, and force along the arm, N.
+
+    bending: in the plane of the cam; sideways: across it; twisting: about the arm; along: > 0 in
+    tension.
+    """
+
+    bending: Array
+    along: Array
+    sideways: Array
+    twisting: Array
+
+
+class ArmSection(NamedTuple):
+    """Rectangular section of the arm with a hole through the middle of its depth.
+
+    distance: from the pivot, m; width: along the cam axis, m; hole: diameter, m, 0 without one;
+    notch: fatigue notch factor; cheeks: of a fork, 0 of the arm itself; eye: under the pin of the
+    roller.
+    """
+
+    name: str
+    distance: float
+    width: float
+    depth: float
+    notch: float
+    hole: float = 0.0
+    cheeks: int = 0
+    eye: bool = False
+
+    @property
+    def area(self) -> float:
+        """m2."""
+        return self.width * (self.depth - self.hole)
+
+    @property
+    def modulus(self) -> float:
+        """Section modulus in the plane of the cam, m3."""
+        return self.width * (self.depth**3 - self.hole**3) / (6.0 * self.depth)
+
+    @property
+    def side_modulus(self) -> float:
+        """Section modulus across the plane of the cam, m3."""
+        return self.area * self.width / 6.0
+
+    @property
+    def torsion_modulus(self) -> float:
+        """m3; beside a hole of the two bars that it leaves."""
+        bars = 2 if self.hole else 1
+        return bars * torsion_of_rectangle(self.width, (self.depth - self.hole) / bars)[1]
+
+    @property
+    def diameter(self) -> float:
+        """Diameter of the round section of equal fatigue strength, m.
+
+        References
+        ----------
+        Shigley's Mechanical Engineering Design, 10th ed., eq. 6-25: not rotating (recalled,
+        verify).
+        """
+        return float(_EQUAL_AREA * np.sqrt(self.area))
+
+    def normal(self, loads: SectionLoads) -> Array:
+        """Normal stress (4, ...) of its corners, Pa, with the notch factor."""
+        bent, aside = loads.bending / self.modulus, loads.sideways / self.side_modulus
+        pulled = loads.along / self.area
+        signs = ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0))
+        return np.stack([self.notch * (pulled + a * bent + b * aside) for a, b in signs])
+
+    def shear(self, loads: SectionLoads) -> Array:
+        """Shear stress (...) of torsion, Pa, with the notch factor."""
+        return np.asarray(self.notch * loads.twisting / self.torsion_modulus)
+
+    def amplitude_and_mean(self, loads: SectionLoads) -> tuple[Array, Array]:
+        """Von Mises amplitude and mean (4,), Pa, of its corners under loads over a turn (n,)."""
+        normal, shear = self.normal(loads), self.shear(loads)
+        high, low = normal.max(axis=-1), normal.min(axis=-1)
+        most, least = shear.max(), shear.min()
+        return (
+            equivalent_stress(0.5 * (high - low), 0.5 * (most - least)),
+            equivalent_stress(0.5 * (high + low), 0.5 * (most + least)),
+        )
+
+    def greatest(self, loads: SectionLoads) -> Array:
+        """Greatest von Mises stress (...) of its corners, Pa; complex for a step."""
+        normal = (
+            magnitude(loads.bending) / self.modulus
+            + magnitude(loads.along) / self.area
+            + magnitude(loads.sideways) / self.side_modulus
+        )
+        return equivalent_stress(self.notch * normal, self.shear(loads))
+
+
+class ArmForces(NamedTuple):
+    """Forces on the arm (...), N, reduced to its end at the length of the arm.
+
+    across: of the contact along the arc; along: the same along the arm, > 0 in tension; normal:
+    of the contact; closing: of spring, weight and machine; inertia: of the mass; couple: of the
+    contact about the middle of the roller in the plane of its normal and the cam axis, N m, >= 0.
+    """
+
+    across: Array
+    along: Array
+    normal: Array
+    closing: Array
+    inertia: Array
+    couple: Array
+
+
+@dataclass(frozen=True)
+class ArmBar:
+    """Straight bar on a pivot, which the contact bends at its end.
+
+    Parameters
+    ----------
+    arm : FollowerArm    with its width, depth, material and notch factors
+    end_share : float    of the mass of roller, pin and fork in that at the end; the rest is a
+                         uniform bar
+    pin, fork : or None  of the roller; None: not described, or a face
+    holds_pin : bool     of a roller
+    """
+
+    length: float
+    width: float
+    depth: float
+    material: Material
+    arm: FollowerArm
+    end_share: float
+    pin: Pin | None = None
+    fork: Fork | None = None
+    holds_pin: bool = True
+
+    @classmethod
+    def of(cls, arm: FollowerArm | None, end: FollowerKind, mass: float) -> ArmBar | None:
+        """Bar of an arm; None of a stem, and of an arm without section or material.
+
+        mass : float   that moves with the end, kg
+        """
+        if arm is None or arm.width is None or arm.depth is None or arm.material is None:
+            return None
+        masses = sum(each for each in end.moving.masses.values() if each is not None)
+        pin, fork = end.parts.get("pin"), end.parts.get("fork")
+        return cls(
+            *(arm.length, arm.width, arm.depth, arm.material, arm),
+            min(masses / mass, 1.0),
+            pin if isinstance(pin, Pin) else None,
+            fork if isinstance(fork, Fork) else None,
+            "pin" in end.parts,
+        )
+
+    @property
+    def held(self) -> float:
+        """Distance from the pivot at which the spring acts, m."""
+        return self.arm.spring_distance
+
+    @property
+    def pivot(self) -> tuple[ArmSection, ...]:
+        """Sections at the pivot: through its bore, and where the arm leaves the hub."""
+        arm, notch = self.arm, self.arm.pivot_notch or np.nan
+        beside = ("beside the pivot", 0.5 * (arm.hub or 0.0), self.width, self.depth, notch)
+        if arm.bore is None:
+            return (ArmSection(*beside),)
+        hub = arm.hub or self.depth
+        through = ArmSection("through the bore of the pivot", 0.0, self.width, hub, notch, arm.bore)
+        return through, ArmSection(*beside)
+
+    @property
+    def roller(self) -> tuple[ArmSection, ...]:
+        """Sections at the roller: of the cheeks or the arm where they leave the eye, and the eye.
+
+        The eye is judged where the pin is described.
+        """
+        notch, (reach, width, depth, cheeks) = self.arm.roller_notch or np.nan, self._end
+        left = (width, depth) if cheeks else (self.width, self.depth)
+        beside = ArmSection("beside the roller", self.length - reach, *left, notch, cheeks=cheeks)
+        if self.pin is None or not self.pin.diameter < depth:
+            return (beside,)
+        eye = self.length, width, depth, notch, self.pin.diameter, cheeks, True
+        return ArmSection("eye of the roller's pin", *eye), beside
+
+    @property
+    def _end(self) -> tuple[float, float, float, int]:
+        """Reach from the roller centre, m, width and depth of the eye, m, and its cheeks."""
+        hub, pin, fork = self.arm.roller_hub or self.depth, self.pin, self.fork
+        if pin is None or fork is None or fork.cheek_height is None or fork.cheek_length is None:
+            return 0.5 * hub, self.width, hub, 0
+        cheeks = fork.cheeks(pin)
+        return fork.cheek_length, cheeks * fork.cheek_width, fork.cheek_height, cheeks
+
+    @property
+    def sections(self) -> tuple[ArmSection, ...]:
+        """Judged sections, at the pivot and at a roller."""
+        return (*self.pivot, *(self.roller if self.holds_pin else ()))
+
+    def bending(self, distance: float, forces: ArmForces) -> Array:
+        """Bending moment (...) in the plane of the cam at a distance from the pivot, m, N m.
+
+        Of the contact at the end, of the spring where it acts, and of the inertia of roller, pin
+        and fork at the end and of a uniform bar.
+        """
+        share = distance / self.length
+        bar = 1.0 - 1.5 * share + 0.5 * share**3
+        swung = self.end_share * (1.0 - share) + (1.0 - self.end_share) * bar
+        pressed = max(1.0 - distance / self.held, 0.0) if self.held else 0.0
+        moment = forces.across * (1.0 - share) - forces.closing * pressed - forces.inertia * swung
+        return np.asarray(self.length * moment)
+
+    def loads(self, section: ArmSection, forces: ArmForces) -> SectionLoads:
+        """Loads (...) of a section.
+
+        Cheeks carry the couple by unequal forces: the loads are those of all cheeks as loaded as
+        the most loaded one.
+        """
+        loaded = np.real(forces.normal) > 0.0
+        # distance of the contact force from the middle of the roller
+        away = np.where(loaded, forces.couple, 0.0) / np.where(loaded, forces.normal, 1.0)
+        bent, none = self.bending(section.distance, forces), 0.0 * forces.normal
+        pin, uneven = self.pin, 1.0 + none
+        if pin is not None and section.cheeks:
+            uneven = section.cheeks * support_force(uneven, away, pin.span, pin.overhung)
+        if section.eye:
+            return SectionLoads(none, forces.normal * uneven, none, none)
+        if section.cheeks > 1:
+            return SectionLoads(bent * uneven, forces.along * uneven, none, none)
+        offset = away + self._offset(section)
+        sideways = magnitude(forces.along) * offset
+        return SectionLoads(bent, forces.along, sideways, forces.across * offset)
+
+    def _offset(self, section: ArmSection) -> float:
+        """Distance of the middle of a section from that of the roller, m."""
+        if self.pin is None or self.fork is None or not section.cheeks:
+            return self.arm.plane_offset
+        return 0.5 * sum(self.fork.faces(self.pin))
+
+    @property
+    def compliance(self) -> float:
+        """Deflection of its end per force across it there, m/N, with the spring held.
+
+        Bending and shear of the arm and its cheeks, between its pivot and the place of the spring.
+
+        References
+        ----------
+        Timoshenko, Strength of Materials I: unit-load method. Cowper, J. Appl. Mech. 33 (1966) 335:
+        shear coefficient of the rectangle.
+        """
+        reach, width, depth, cheeks = self._end
+        root = self.length - reach if cheeks else self.length
+        corners = distinct([0.0, min(self.held, self.length), root, self.length])
+        total, card = 0.0, self.material
+        shear = card.E / (2.0 * (1.0 + card.nu))
+        kappa = 10.0 * (1.0 + card.nu) / (12.0 + 11.0 * card.nu)
+        for start, end in pairwise(corners.tolist()):
+            b, h = (width, depth) if start >= root else (self.width, self.depth)
+            moments = self._unit_moments((start, 0.5 * (start + end), end))
+            # the square of a linear moment: Simpson's rule is exact
+            squares = np.array([1.0, 4.0, 1.0]) @ moments**2 / 6.0
+            force = (moments[2] - moments[0]) / (end - start)
+            total += (end - start) * squares / (card.E * b * h**3 / 12.0)
+            total += (end - start) * force**2 / (kappa * shear * b * h)
+        return float(total)
+
+    def _unit_moments(self, places: Sequence[float]) -> Array:
+        """Moment of a unit force across the end at places, m."""
+        x, held = np.asarray(places, dtype=float), self.held
+        inside = (self.length - held) * x / held if held else self.length - x
+        return np.where(x < held, inside, self.length - x)
