@@ -278,7 +278,11 @@ def face_mesh(
 def _rectangle(
     width: float, depth: float, back: list[OutlinePiece], sizing: ElementSize
 ) -> BodyMesh:
-    """Mesh of [-width/2, width/2] x [-depth, 0], its back in pieces from left to right."""
+    """Mesh of the rectangle [-width/2, width/2] x [-depth, 0], m; `back` are the pieces of its
+    lower edge from left to right, named as boundaries.
+
+    A contact point in `sizing` must be on the upper edge, which is refined beside it.
+    """
     half = 0.5 * width
     zone = None
     if sizing.contact_point is not None:

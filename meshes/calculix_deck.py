@@ -48,6 +48,7 @@ class DeckBody(MeshedBody):
     placed: tuple[tuple[int, int, float], ...] = ()
 
     def __post_init__(self) -> None:
+        """Refuse forces whose shape is not (2, nodes) of the mesh, and make them read-only."""
         freeze(self, forces=self.forces)
         shape = (2, self.mesh.points.shape[1])
         if self.forces.shape != shape:
@@ -206,7 +207,9 @@ def write_contact_pair(
 
 
 def _faces(body: TouchingBody) -> list[tuple[int, int]]:
-    """Element and number of its side for each facet that may touch."""
+    """Number of the element from 0 and of its side from 1, for each facet of the body that may
+    touch, in their order.
+    """
     sides = body.mesh.triangles[[[0, 1], [1, 2], [2, 0]]]  # (3, 2, elements)
     known = {
         frozenset((int(start), int(end))): (at, side + 1)
@@ -218,7 +221,9 @@ def _faces(body: TouchingBody) -> list[tuple[int, int]]:
 
 
 def _tied(body: TouchingBody, start: int, axle: int) -> list[str]:
-    """Held nodes that move with the axle."""
+    """Lines of equations by which the body's held nodes move with the axle; `start`: number of its
+    first node, `axle`: of the axle's node.
+    """
     lines = []
     for node in np.unique(body.mesh.boundary_nodes(body.held)).tolist():
         for component in range(2):
@@ -227,7 +232,11 @@ def _tied(body: TouchingBody, start: int, axle: int) -> list[str]:
 
 
 def _sprung(body: TouchingBody, start: int, axle: int, element: int) -> list[str]:
-    """Springs between means of nodal displacements and the axle, each on a node of its own."""
+    """Lines of the springs between weighted means of nodal displacements (`ways`) and the axle,
+    each spring on a node of its own behind `axle`.
+
+    start: number of the body's first node; element: number of the first spring
+    """
     lines = []
     for k, (way, stiffness) in enumerate(zip(body.ways, body.stiffness.tolist(), strict=True)):
         end = axle + 1 + k
@@ -251,6 +260,9 @@ def _equation(terms: Iterable[tuple[int, int, float]]) -> list[str]:
 
 
 def _heading_lines(names: Iterable[str], heading: Iterable[str]) -> list[str]:
+    """First lines of a deck: heading and units; a name of a body that is no valid set name is
+    refused.
+    """
     for name in names:
         if not _NAME.fullmatch(name):
             raise MeshError(f"body '{name}', must be letters, digits and underscores")
@@ -264,6 +276,9 @@ def _write(path: str | Path, lines: Iterable[str]) -> None:
 
 
 def _body_lines(name: str, body: MeshedBody, width: float, first: int, element: int) -> list[str]:
+    """Lines of a body: nodes, elements, a node set of each boundary, section of a given width, m,
+    material; numbers begin with `first` for nodes and `element` for elements.
+    """
     mesh = body.mesh
     points = (mesh.points / MILLIMETRE).T.tolist()
     lines = ["*NODE, NSET=" + name]

@@ -48,7 +48,9 @@ def write_msh(path: str | Path, meshes: Mapping[str, BodyMesh]) -> None:
 
 
 def _add_body(gmsh: ModuleType, name: str, mesh: BodyMesh, first: int) -> None:
-    """Add a body to the current model, its nodes numbered from `first`."""
+    """Add a body to gmsh's current model with its physical groups, its nodes numbered
+    from `first`.
+    """
     model = gmsh.model
     coordinates = np.vstack([mesh.points / MILLIMETRE, np.zeros(mesh.points.shape[1])])
     free = np.ones(mesh.points.shape[1], dtype=bool)
@@ -129,7 +131,9 @@ def _write_grid(path: str | Path, grid: VtuGrid) -> None:
 
 
 def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Fields]) -> dict[str, Array]:
-    """Fields of all bodies in their order, points first."""
+    """Fields of all bodies one after the other by name, (n,) or (n, c), nodes first; a vector of
+    two components gets a third one, 0.
+    """
     names = list(next(iter(data.values())))
     parts: dict[str, list[Array]] = {name: [] for name in names}
     for body, mesh in bodies.items():
@@ -206,7 +210,9 @@ def write_hexahedra(
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """Temporary file beside `path` that replaces it on success."""
+    """Context manager: temporary file beside `path` that replaces it on success; on an error `path`
+    stays as it was.
+    """
     path = Path(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:

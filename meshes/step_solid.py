@@ -102,12 +102,14 @@ class _Spline:
 
     @property
     def corners(self) -> Array:
+        """End points of the edges (n, 2), mm, the first again as the last; see `Side`."""
         first, last = self.spline.t[[0, -1]]
         corners: Array = self.spline(np.linspace(first, last, _EDGES_MOST + 1))
         corners[-1] = corners[0]
         return corners
 
     def curve(self, file: Entities, z: float) -> str:
+        """STEP reference of the spline curve at height `z`, mm."""
         controls = listed(file.point((*point, z)) for point in self.spline.c)
         repeats, knots = self._knots
         form = (".UNSPECIFIED.", ".T.", ".F.", repeats, knots, ".UNSPECIFIED.")
@@ -116,6 +118,9 @@ class _Spline:
     def wall(self, file: Entities, width: float) -> tuple[str, bool]:
         # The height comes first: OpenCASCADE integrates volumes along the second parameter edge by
         # edge, and along the first at once, which erred by 1 % along a contour.
+        """STEP reference of the spline surface from z = 0 to `width`, mm, and False: its normal
+        points into the solid.
+        """
         controls = listed(
             listed(file.point((*point, z)) for point in self.spline.c) for z in (0.0, width)
         )
@@ -165,6 +170,9 @@ def write_step(path: Path, outline: Outline, width: float, title: PartTitle) -> 
 
 
 def _require_wall(outline: Outline) -> None:
+    """Refuse a contour that intersects itself, and one that leaves no wall around bore
+    and keyway.
+    """
     contour = outline.contour
     if contour.self_intersections():
         raise GeometryError("contour = intersects itself, must bound one body")
@@ -178,7 +186,9 @@ def _require_wall(outline: Outline) -> None:
 
 
 def _loops(outline: Outline) -> list[list[Side]]:
-    """Contour, counter-clockwise, then the holes, clockwise."""
+    """Sides of the contour, counter-clockwise, then those of each hole, clockwise: bore with
+    keyway, counter-hole; mm.
+    """
     start = _angle_zero(outline.contour)
     spline = clamped_spline(outline.contour, _STEP_ERROR, start, start + FULL_TURN)
     spline.c = spline.c / MILLIMETRE
@@ -203,6 +213,7 @@ def _angle_zero(contour: Contour) -> float:
 
 
 def _bore(outline: Outline) -> list[Side]:
+    """Sides of the bore and its keyway, clockwise, mm."""
     radius, centre = outline.bore_radius / MILLIMETRE, np.zeros(2)
     if outline.keyway is None:
         return [_circle("bore", centre, radius)]
@@ -220,7 +231,9 @@ def _circle(name: str, centre: Array, radius: float) -> Side:
 
 
 def _solid(file: Entities, loops: Sequence[Sequence[Side]], width: float, name: str) -> str:
-    """Reference of the solid between z = 0 and its width."""
+    """STEP reference of the solid between z = 0 and `width`, mm: walls on all sides of the loops,
+    and both end faces.
+    """
     walls: list[str] = []
     below: list[list[str]] = []
     above: list[list[str]] = []
@@ -249,7 +262,9 @@ def _end(file: Entities, name: str, loops: Sequence[str], z: float, normal: Sequ
 
 
 def _face(file: Entities, name: str, loops: Sequence[str], surface: str, outward: bool) -> str:
-    """Reference of a face; its first loop is the outer one."""
+    """STEP reference of a face bounded by loops, the outer one first; outward: whether the normal
+    of its surface points out of the solid.
+    """
     outer, *inner = loops
     bounds = [file.add("FACE_OUTER_BOUND", "''", outer, ".T.")]
     bounds += [file.add("FACE_BOUND", "''", loop, ".T.") for loop in inner]

@@ -36,7 +36,7 @@ class VtuGrid:
 
 
 def vtu(grid: VtuGrid) -> bytes:
-    """Content of the VTU file."""
+    """Content of the VTU file of a grid: XML, with the numbers appended in binary."""
     appended = _Appended()
     count, corners = grid.cells.shape
     cells = {
@@ -78,7 +78,9 @@ class _Appended:
         self._size = 0
 
     def tag(self, name: str, values: Numbers) -> str:
-        """Append values; XML tag that refers to them."""
+        """Append values (n,) or (n, c), as 64-bit floats or 32-bit integers; the XML tag that
+        refers to them.
+        """
         array = np.ascontiguousarray(values)
         if array.dtype.kind == "f":
             array = array.astype("<f8")
@@ -96,7 +98,9 @@ class _Appended:
 
 
 def _packed(data: bytes) -> bytes:
-    """Compressed blocks of VTK after their number, size, last size and compressed sizes."""
+    """Data in zlib blocks behind VTK's header: number of blocks, their size, size of the last one,
+    compressed sizes.
+    """
     blocks = [data[k : k + _BLOCK] for k in range(0, len(data), _BLOCK)]
     packed = [zlib.compress(block, _LEVEL) for block in blocks]
     last = len(data) % _BLOCK

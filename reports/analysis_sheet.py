@@ -65,7 +65,10 @@ _SHOWN, _MOST = 0.5, 6  # utilisation from which a limit is shown, and the numbe
 
 
 def groups(turn: SheetTurn) -> tuple[tuple[str, tuple[SheetFigure, ...]], ...]:
-    """Figures by group for which the run has columns."""
+    """Figures of the sheet as pairs (title of the group, figures).
+
+    Figures without their columns in the run, and groups without any figure, are left out.
+    """
     makers: tuple[Callable[[SheetTurn], SheetFigure | None], ...] = (
         _torque, _spectrum, _components, _crank_speed, _lift, _outline, _pressure_angle, _face,
         _radii, _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
@@ -78,6 +81,9 @@ def groups(turn: SheetTurn) -> tuple[tuple[str, tuple[SheetFigure, ...]], ...]:
 
 
 def _torque(turn: SheetTurn) -> Figure | None:
+    """Figure of the shaft torque over the turn, N m: without and with the cam, and the cam torque
+    referred to the shaft; None without a machine torque.
+    """
     turn = turn.balanced
     curves = curves_of(
         turn, ("torque_before_Nm", turn.words.alone), ("torque_after_Nm", "with the cam"),
@@ -95,7 +101,9 @@ def _torque(turn: SheetTurn) -> Figure | None:
 
 
 def _spectrum(turn: SheetTurn) -> Figure | None:
-    """Amplitudes of the torque by harmonic order of the machine's shaft."""
+    """Figure of the torque amplitudes, N m, by harmonic order of the machine's shaft, without and
+    with the cam; None without a torque.
+    """
     turn = turn.balanced
     names = (("torque_before_Nm", turn.words.alone), ("torque_after_Nm", "with the cam"))
     count = min(_ORDERS, turn.crank.size // 2 - 1)
@@ -118,6 +126,9 @@ def _spectrum(turn: SheetTurn) -> Figure | None:
 
 
 def _crank_speed(turn: SheetTurn) -> Figure | None:
+    """Figure of the shaft speed over the turn, rad/s: machine alone, with the added inertia, with
+    the cam; None where the run has no speed.
+    """
     speed = turn.speed
     if speed is None:
         return None
@@ -139,6 +150,9 @@ def _crank_speed(turn: SheetTurn) -> Figure | None:
 
 
 def _components(turn: SheetTurn) -> Figure | None:
+    """Figure of the parts of the machine torque and their sum, N m, with the band of a measured
+    one; None without a torque.
+    """
     if turn.torque is None:
         return None
     whole = ("crank_angle_deg", "total_Nm", "error_bar_Nm")
@@ -162,6 +176,7 @@ def _components(turn: SheetTurn) -> Figure | None:
 
 
 def _lift(turn: SheetTurn) -> Figure | None:
+    """Figure of the lift s, mm, and its first three derivatives by cam angle, one panel each."""
     columns = turn.lift
     travel = turn.limit("spring travel", "mm", "spring_travel")
     rows = (
@@ -180,6 +195,9 @@ def _lift(turn: SheetTurn) -> Figure | None:
 
 
 def _outline(turn: SheetTurn) -> SheetFigure | None:
+    """Figure of the contour, with the pitch curve of a roller, and the follower at the cam angle of
+    the maximum contact pressure.
+    """
     c = turn.contour
     theta = turn.columns["cam_angle_deg"][turn.worst]
     distance = np.abs((c["cam_angle_deg"] - theta + 180.0) % 360.0 - 180.0)
@@ -198,7 +216,7 @@ def _outline(turn: SheetTurn) -> SheetFigure | None:
 
 
 def _balance(turn: SheetTurn) -> str:
-    """Unbalance without and with the counter-hole."""
+    """Sentence on the unbalance of the cam without and with the counter-hole, for a caption."""
     balance = turn.balance
     unbalance = (
         f" Its unbalance is {quantity(float(balance['unbalance_g_mm']), 'g mm')}"
@@ -218,7 +236,9 @@ def _balance(turn: SheetTurn) -> str:
 
 
 def _roller_outline(turn: SheetTurn, at: int) -> Array | None:
-    """Roller (2, n), mm, at a row of the contour; None if its radius is unknown."""
+    """Circle (2, n) of the roller about the point of the pitch curve at row `at` of the contour,
+    mm; None if its radius is unknown.
+    """
     radius, c = turn.length("roller", "radius"), turn.contour
     if radius is None:
         return None
@@ -226,7 +246,9 @@ def _roller_outline(turn: SheetTurn, at: int) -> Array | None:
 
 
 def _face_outline(turn: SheetTurn, at: int) -> Array | None:
-    """Block of the face (2, 5), mm, at a row of the contour; None if its size is unknown."""
+    """Closed rectangle (2, 5) of the face touching the contour at its row `at`, shifted by the
+    contact offset at the maximum contact pressure, mm; None if its width or thickness is unknown.
+    """
     c, place = turn.contour, turn.columns["face_contact_offset_mm"][turn.worst]
     width, thick = (turn.length("follower", "face", key) for key in ("width", "thickness"))
     if width is None or thick is None:
@@ -255,6 +277,9 @@ def _face(turn: SheetTurn) -> Figure | None:
 
 
 def _pressure_angle(turn: SheetTurn) -> Figure | None:
+    """Figure of the pressure angle over the turn with its limits on both sides, deg; None of a flat
+    face, where it is zero.
+    """
     if not turn.rolls:  # zero at every angle
         return None
     both = (*both_ways(turn.limit("limit", "deg", "pressure_angle")),
@@ -270,6 +295,9 @@ def _pressure_angle(turn: SheetTurn) -> Figure | None:
 
 
 def _radii(turn: SheetTurn) -> Figure | None:
+    """Figure of the signed radii of curvature of contour and pitch curve, mm, cut at
+    `LARGEST_RADIUS_MM`, with the least radius allowed.
+    """
     radius = turn.length("roller", "radius")
     limits: tuple[LimitLine, ...] = ()
     if radius is not None:
@@ -300,6 +328,7 @@ def broken(values: Array, largest: float) -> Array:
 
 
 def _radius_span(curves: Sequence[Curve]) -> tuple[float, float]:
+    """Lower and upper limit of the axis of radii, mm."""
     lows = [float(np.nanmin(c.y)) for c in curves if np.isfinite(c.y).any()]
     return min([0.0, *lows]) * 1.05, LARGEST_RADIUS_MM * 1.12
 
@@ -343,7 +372,9 @@ def _stress(turn: SheetTurn) -> Figure | None:
 
 
 def _ripple_map(turn: SheetTurn) -> Figure | None:
-    """Residual torque ripple by speed and engine load."""
+    """Figure of the ripple with the cam over that without it, by speed and engine load; None where
+    the map is not recorded or was refused.
+    """
     record = turn.ripple_map
     if record is None or "refused" in record:
         return None
@@ -366,7 +397,9 @@ def _ripple_map(turn: SheetTurn) -> Figure | None:
 
 
 def _trial_points(turn: SheetTurn) -> Figure | None:
-    """Ripple and worst utilisation by trial; None of a single trial."""
+    """Figure of torque ripple and greatest utilisation by number of the trial; None of a single
+    trial.
+    """
     if len(turn.points) < 2:
         return None
 
@@ -389,7 +422,9 @@ def _trial_points(turn: SheetTurn) -> Figure | None:
 
 
 def _trial_contours(turn: SheetTurn) -> SheetFigure | None:
-    """Contours of the trials over each other; None of a single trial."""
+    """Figure of the contours of the trials over each other, the final one last; None of a single
+    trial.
+    """
     if len(turn.trials) < 2:
         return None
     contours = tuple(
@@ -462,7 +497,9 @@ def limits_strip(limits: Table | None, gear_ratio: float, machine: MachineWords)
 
 
 def _strip(name: str, crank: Array, use: Array) -> Panel:
-    """Utilisation, and again where the limit is active."""
+    """Panel of the utilisation `use` (n,) of a limit over the shaft angle `crank` (n,), deg, drawn
+    in a second colour where it binds.
+    """
     active = np.where(use >= BINDS, use, np.nan)
     curves = (Curve(crank, np.clip(use, 0.0, None), "utilisation"),
               Curve(crank, active, "active", "vermillion"))  # fmt: skip

@@ -44,9 +44,11 @@ def arrangement_at(turn: SheetTurn, row: int | None = None) -> Drawing:
 
 
 def moving_data(turn: SheetTurn) -> dict[str, Json]:
-    """Drawing over the turn for a page: poses, arrows, values, angles; see `moving_record`.
+    """Record of the drawing over the turn for the script of a page: poses, arrows and words as by
+    `moving_record`, and the lift as text.
 
-    `at` is the place of the maximum contact pressure, `shaft` the angle of the machine's shaft.
+    `at` is the place of the maximum contact pressure among the drawn angles, `shaft` the angle of
+    the machine's shaft, deg.
     """
     count = turn.crank.size
     stride = -(-count // _OUTLINE_POINTS)
@@ -72,7 +74,9 @@ def motion_of(turn: SheetTurn) -> DrawnMotion:
 
 @lru_cache(maxsize=2)
 def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
-    """Sizes of the mechanism; sizes not stated in the case are scaled from the stem."""
+    """Sizes of the drawn mechanism from the case and the contour; sizes that the case does not
+    state are scaled from the diameter of the stem.
+    """
     contour = np.array([turn.contour["contour_x_mm"], turn.contour["contour_y_mm"]])
     axis, lowest = _reference(turn)
     stroke = float(np.max(turn.lift["lift_mm"]))
@@ -92,7 +96,9 @@ def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
 
 
 def _arm(turn: SheetTurn) -> DrawnArm | None:
-    """Arm of an oscillating follower; None of a stem."""
+    """Arm of an oscillating follower; None where a stem in guides carries the follower or a length
+    of the arm is not stated.
+    """
     distance, length = (
         turn.length("follower", "arm", key) for key in ("centre_distance", "length")
     )
@@ -105,7 +111,9 @@ def _arm(turn: SheetTurn) -> DrawnArm | None:
 
 
 def _counterweight(turn: SheetTurn) -> DrawnSector | None:
-    """Sector of the counterweight by its unbalance, as wide and high as `counterweight_body`."""
+    """Sector of the counterweight by its unbalance, stated or what the cam leaves of it, as wide
+    and high as `counterweight_body` makes it; None without one.
+    """
 
     def of(key: str, unit: str = "mm") -> float | None:
         return turn.length("camshaft", "counterweight", key, unit=unit)
@@ -131,7 +139,9 @@ def _counterweight(turn: SheetTurn) -> DrawnSector | None:
 
 
 def _below_follower(turn: SheetTurn) -> float:
-    """Outer radius of a counterweight of no stated size, mm."""
+    """Outer radius of a counterweight whose size is not stated, mm: prime radius less the
+    follower's reach and two assembly gaps.
+    """
     prime = turn.length("cam", "prime_radius") or 0.0
     cheeks = turn.length("roller", "fork", "cheek_height") or 0.0
     reach = max(turn.length("roller", "radius") or 0.0, 0.5 * cheeks) if turn.rolls else 0.0
@@ -149,9 +159,12 @@ def _sizes(
     turn: SheetTurn, stem: tuple[float, float, float, float, float],
     guides: tuple[DrawnBush, DrawnBush], spring: DrawnSpring, seat: float,
 ) -> MechanismSizes:  # fmt: skip
-    """Parts of the mechanism; stem: follower axis, height and lift, diameter and end of the stem.
+    """Sizes of all parts of the mechanism, mm.
 
-    Heights of the parts about the stem are over roller centre or face at maximum lift.
+    stem: x of the follower axis, height of roller centre or face at zero lift, greatest lift,
+    diameter of the stem and its end over the roller centre or face; seat: thickness of the moving
+    seat of the spring. Heights of the parts about the stem are over roller centre or face at
+    maximum lift.
     """
     axis, lowest, lift, diameter, end = stem
     highest, cheeks = lowest + lift, turn.length("roller", "fork", "cheek_height") or 0.0
@@ -180,7 +193,9 @@ def _sizes(
 
 
 def _discs(turn: SheetTurn) -> tuple[Disc, ...]:
-    """Bearings, counterweight and gear along the camshaft, as far as the case states them."""
+    """Bearings, counterweight and gear on the camshaft, each placed by its distance from the cam,
+    mm; () where the case states no positions, and without the parts of unknown size.
+    """
 
     def at(*path: str) -> float | None:
         return turn.length("camshaft", *path)
@@ -202,7 +217,9 @@ def _discs(turn: SheetTurn) -> tuple[Disc, ...]:
 
 
 def _reference(turn: SheetTurn) -> tuple[float, float]:
-    """x of the follower axis and height of roller centre or face at zero lift, mm."""
+    """x of the follower axis and height of roller centre or face at zero lift, mm: medians over the
+    turn, from the recorded contour.
+    """
     c, lift = turn.contour, turn.lift["lift_mm"]
     if not turn.rolls:
         support = (c["contour_x_mm"] * c["normal_x"] + c["contour_y_mm"] * c["normal_y"]) - lift
@@ -219,7 +236,9 @@ def _drilled(turn: SheetTurn) -> tuple[float, float, float] | None:
 
 
 def _pin(turn: SheetTurn, roller: float) -> float:
-    """Radius of the roller pin, mm."""
+    """Radius of the roller pin, mm, for a roller of radius `roller`: as stated, else that of the
+    hub, else a share of the roller.
+    """
     stated = turn.length("roller", "pin", "diameter")
     hub = turn.length("roller", "hub_radius")
     radius = 0.5 * stated if stated else hub or _PIN_SHARE * roller
@@ -227,6 +246,9 @@ def _pin(turn: SheetTurn, roller: float) -> float:
 
 
 def _face(turn: SheetTurn) -> tuple[float, float]:
+    """Width and thickness of a flat face, mm; an unknown width is just above twice the greatest
+    contact offset.
+    """
     width = turn.length("follower", "face", "width")
     thick = turn.length("follower", "face", "thickness")
     wanders = turn.columns.get("face_contact_offset_mm")
@@ -235,7 +257,9 @@ def _face(turn: SheetTurn) -> tuple[float, float]:
 
 
 def _guides(turn: SheetTurn, stem: float, highest: float) -> tuple[DrawnBush, DrawnBush]:
-    """Guide A at its overhang from roller centre or face at maximum lift, guide B beyond it."""
+    """Guides A and B on a stem of diameter `stem`: A at its overhang from roller centre or face at
+    maximum lift (height `highest`, mm), B beyond it.
+    """
     overhang = turn.length("follower", "overhang_at_max_lift") or _OVERHANG_STEMS * stem
     spacing = turn.length("guides", "spacing") or _SPACING * stem
     a, b = (
@@ -250,9 +274,11 @@ def _spring(
     turn: SheetTurn, stem: float, places: tuple[float, float],
     guides: tuple[DrawnBush, DrawnBush], seat: float,
 ) -> DrawnSpring:  # fmt: skip
-    """The spring between the guides where it fits there, else above them; see `StemLayout`.
+    """The spring as the case describes it: a coil between the guides where it fits there, else
+    above them; see `StemLayout`.
 
-    places: height of the reference point of the follower at zero lift, and the lift.
+    places: height of the reference point of the follower at zero lift, and the lift, mm; stem: its
+    diameter; seat: thickness of the moving seat, mm.
     """
     lowest, stroke = places
     kind = turn.case.get("spring", {}).get("kind", "coil")
@@ -291,7 +317,9 @@ def _spring(
 
 
 def _installed(turn: SheetTurn) -> float | None:
-    """Length of a coil spring at zero lift, mm: free length less preload over rate."""
+    """Length of a coil spring at zero lift, mm: free length less preload over rate, both by the
+    recorded forces; None where it is unknown or shorter than the travel.
+    """
     free = turn.length("spring", "design", "free_length")
     lift, force = turn.columns["lift_mm"], turn.columns["spring_force_N"]
     low, high = int(np.argmin(lift)), int(np.argmax(lift))
@@ -309,7 +337,9 @@ def _stem_end(
     guides: tuple[DrawnBush, DrawnBush],
     spring: DrawnSpring,
 ) -> float:
-    """Height of the end of the stem at zero lift, mm."""
+    """Height of the upper end of the stem at zero lift, mm: by the stated length, else just above
+    guide B, and never below the seat of the spring.
+    """
     stated = turn.length("follower", "stem_length")
     if stated is not None:
         return max(lowest + stated, spring.seat)

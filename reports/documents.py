@@ -154,7 +154,9 @@ def _safety(row: CheckRow, check: RecordedCheck[CheckRecord]) -> Safety:
 
 
 def _others(rows: Sequence[CheckRow], known: Sequence[CheckRow]) -> str:
-    """Number of the required checks that the table leaves out, by status."""
+    """Sentence with the number, by status, of the checks `rows` beyond those that the table shows,
+    the first `MOST` of `known`; "" without any.
+    """
     left = [row for row in rows if row not in known[:MOST]]
     counts = [
         (sum(row.status.id == status for row in left), text)
@@ -166,7 +168,7 @@ def _others(rows: Sequence[CheckRow], known: Sequence[CheckRow]) -> str:
 
 
 def _facts(material: ReportMaterial) -> Iterator[tuple[str, str]]:
-    """Load case, life, lubricant, temperatures, key figures."""
+    """Pairs (name, value) of the sheet: load case, life, lubricant, temperatures, key figures."""
     case, checks = material.case, material.run.final.checks
     yield "Drawn load case", shortened(material.turn.load_case, 40)
     lives = [c for c in checks if c["unit"] == "h" and c["demand"] is not None]
@@ -186,7 +188,7 @@ def _facts(material: ReportMaterial) -> Iterator[tuple[str, str]]:
 
 
 def _lubricant(case: Record) -> str:
-    """Viscosity of the oil with its source; lubrication of the roller bearing."""
+    """Viscosity of the oil with its source and lubrication of the roller bearing, in words."""
     oil = case.get("lubricant", {})
     parts = [*filter(None, (str(oil.get("viscosity", "")), str(source_in(oil.get("source")))))]
     bearing = case.get("roller", {}).get("bearing", {}).get("lubrication")
@@ -195,7 +197,7 @@ def _lubricant(case: Record) -> str:
 
 
 def _temperatures(case: Record) -> str:
-    """Temperatures in operation that the case states."""
+    """Temperatures in operation that the case states, in words."""
     stated = [("guides, ambient", case.get("guides", {}).get("ambient_temperature"))]
     for path, name in _TEMPERATURES:
         table: Record = case
@@ -209,7 +211,9 @@ def _temperatures(case: Record) -> str:
 
 
 def _first(verdict: Verdict) -> Iterator[tuple[str, str]]:
-    """Scope, waivers and values to be confirmed."""
+    """Pairs (name, text) at the top of the sheet: scope, waivers, relaxed limits, values to be
+    confirmed, the last cut to the room left.
+    """
     scope = shortened(verdict.scope or "All parts are covered by this sign-off.", _LONG)
     waivers = shortened("; ".join(verdict.waived) or "none", _LONG)
     yield "Scope", scope
@@ -280,6 +284,9 @@ def drawing_content(material: ReportMaterial) -> ShopDrawing | None:
 
 
 def _content(material: ReportMaterial, record: Record) -> ShopDrawing:
+    """Contents of the shop drawing from the record of its dimensions, file `DIMENSIONS`: views,
+    lists, notes, facts.
+    """
     part, case = _part(material, record), material.case
     title = str(case.get("title") or case["name"])
     roughness, thickness = record["roughness_rq_um"], record["thickness_mm"]
@@ -321,6 +328,9 @@ def _content(material: ReportMaterial, record: Record) -> ShopDrawing:
 
 
 def _part(material: ReportMaterial, record: Record) -> DrawnCam:
+    """Cam to draw from the contour and the record of its dimensions: lengths in mm, keyway (width,
+    depth beyond the bore, angle in rad), counter-hole (x, y, radius).
+    """
     contour = material.turn.contour
     keyway, hole, roughness = record["keyway"], record["counter_hole"], record["roughness_rq_um"]
     bore = size_of(record["bore"])
@@ -342,6 +352,7 @@ def _part(material: ReportMaterial, record: Record) -> DrawnCam:
 
 
 def _track(record: Record) -> Track:
+    """Axial section of a running surface from its record; mm."""
     end, crown = record["end"], record["crown"]
     return Track(
         float(record["flat_width_mm"]),
@@ -363,7 +374,7 @@ def _drops(tracks: Record) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
 
 
 def _mating(tracks: Record) -> str:
-    """Surface of the follower on the cam."""
+    """Sentence on the running surface of the follower: flat width, ends, crown."""
     word, record = next((word, each) for word, each in tracks.items() if word != "cam")
     crown = record["crown"]
     shape = "straight" if crown is None else f"crown {crown_words(str(crown['kind']))}"

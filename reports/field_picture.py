@@ -92,7 +92,7 @@ class Raster:
 
 
 def read_field(path: Path) -> Field:
-    """Field at the cam angle of the highest pressure.
+    """Stress field at the cam angle of the highest pressure from the field file of a run.
 
     Raises
     ------
@@ -122,7 +122,9 @@ def read_field(path: Path) -> Field:
 
 
 def _outline(step: FieldStep) -> NDArray[np.int64]:
-    """Edges (2, k) of a body, without those of hidden triangles."""
+    """Edges (2, k) of the outer boundary of a body as numbers of nodes, without those of hidden
+    triangles.
+    """
     edges = np.stack([step.triangles, np.roll(step.triangles, -1, axis=0)]).reshape(2, -1)
     _, first, count = np.unique(
         np.sort(edges, axis=0), axis=1, return_index=True, return_counts=True
@@ -159,7 +161,9 @@ def find_contact(field: Field) -> tuple[Array, Array]:
 
 
 def contact_view(field: Field, half_width: float, point: Array, normal: Array) -> View:
-    """View of four half-widths on either side of the contact, follower above."""
+    """View of four half-widths, each `half_width` mm, on either side of the contact, the follower
+    above; colours and iso lines by the stress within it.
+    """
     away = np.hypot(*(field.points - point[:, None]))
     peak = float(field.von_mises[away < CONTACT_REACH * half_width].max(initial=1e-9))
     reach = CONTACT_REACH * half_width
@@ -171,7 +175,7 @@ def contact_view(field: Field, half_width: float, point: Array, normal: Array) -
 
 
 def body_view(field: Field) -> View:
-    """View of cam and follower in the file's frame, logarithmic colours."""
+    """View of both bodies as a whole in the file's frame, with logarithmic colours."""
     low, high = field.points.min(axis=1), field.points.max(axis=1)
     centre, half = (low + high) / 2, 0.53 * (high - low)
     peak = float(field.von_mises.max(initial=1e-9))
@@ -246,7 +250,9 @@ def flat(field: Field, view: View) -> Raster:
 
 
 def deformed(field: Field, view: View) -> Array:
-    """Points (2, n) displaced to true scale relative to the anchor; undeformed without one."""
+    """Points (2, n), mm, moved by their displacements to true scale, relative to that of the point
+    nearest the view's anchor; undeformed without an anchor.
+    """
     if view.anchor is None:
         return field.points
     away = np.hypot(*(field.points - np.array(view.anchor)[:, None]))

@@ -68,9 +68,12 @@ def framed(
     notes: tuple[tuple[str, float], ...] = (), above: Above | None = None,
     unit: float | None = None,
 ) -> bytes:  # fmt: skip
-    """PNG of a raster (rows, columns, 3) in axes with colour bar and scale bar.
+    """PNG of a raster (rows, columns, 3) in axes with colour bar, scale bar and curves above.
 
-    unit : length of one on both axes, mm, for second axes in mm; None without them
+    extent : left, right, bottom and top of the axes; labels : of the x and y axis; title, clim :
+    words and range of the colours; bar : length and words of the scale bar; notes : words, each at
+    a share of the height; unit : length of one on both axes, mm, for second axes in mm; None
+    without them
     """
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm, Normalize
@@ -115,7 +118,9 @@ def framed(
 
 
 def _in_millimetres(ax: Axes, unit: float, left: float, bottom: float) -> None:
-    """Second axes in mm, left of the axes and below them, at shares of their size."""
+    """Second axes in mm at shares `left` and `bottom` of the size of the axes beside and below
+    them; `unit`: mm in one on the first axes.
+    """
     scales = (lambda length: unit * length, lambda length: length / unit)
     below = ax.secondary_xaxis(bottom, functions=scales)
     below.set_xlabel("mm", labelpad=1)
@@ -124,6 +129,7 @@ def _in_millimetres(ax: Axes, unit: float, left: float, bottom: float) -> None:
 
 
 def _draw_above(ax: Axes, span: tuple[float, float], above: Above) -> None:
+    """Curves over the raster's horizontal `span`, the first one filled to zero."""
     for number, (label, places, values) in enumerate(above.curves):
         colour = COLOURS[SERIES[number]]
         ax.plot(places, values, color=colour, dashes=(4, 3) if number else (), label=label)
@@ -137,6 +143,9 @@ def _draw_above(ax: Axes, span: tuple[float, float], above: Above) -> None:
 
 
 def _scale_bar(ax: Axes, extent: tuple[float, float, float, float], bar: tuple[float, str]) -> None:
+    """Bar with its words at the lower left; `bar`: length in units of the axes, words; `extent`:
+    left, right, bottom, top.
+    """
     length, words = bar
     x0 = extent[0] + 0.04 * (extent[1] - extent[0])
     y0 = extent[2] + 0.05 * (extent[3] - extent[2])

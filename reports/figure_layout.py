@@ -16,7 +16,9 @@ WORDS_HEIGHT = 0.09
 
 
 def vertical_span(panel: Panel, named: bool) -> tuple[float, float]:
-    """Vertical axis limits: curves, ribbons, near limits, space for names of marks or points."""
+    """Lower and upper limit of the vertical axis: curves, ribbons, near limits, space for names of
+    marks (`named`) or points.
+    """
     if panel.span is not None:
         return panel.span
     values = np.concatenate([curve.reached for curve in panel.curves] or [np.zeros(1)])
@@ -69,7 +71,8 @@ def _sides(
 ) -> tuple[list[bool], bool]:
     """Whether each label stands above its line, and whether all are clear of one another.
 
-    `taken` are the places of other words. Labels with only one possible place come first, of
+    `heights` are those of the lines, `wanted` the preferred sides, `taken` the places of other
+    words, as shares of the height of the axes. Labels with only one possible place come first, of
     others the lowest (sign 1) or highest (-1).
     """
     slots = [{True: height, False: height - WORDS_HEIGHT} for height in heights]

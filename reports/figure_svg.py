@@ -130,7 +130,9 @@ class Drawn:
 
 @lru_cache(maxsize=1)
 def drawn_groups(material: ReportMaterial) -> Sequence[tuple[str, Sequence[Drawn]]]:
-    """Drawings of the sheet, by group; cached."""
+    """Drawings of the sheet as pairs (title of the group, drawings), those begun ahead taken from
+    their worker; cached.
+    """
 
     def drawn(figure: SheetFigure) -> Drawn:
         task = material.ahead.get(content_key(figure)) if material.ahead else None
@@ -246,7 +248,9 @@ def themed(svg: str, figure_id: str) -> str:
 
 
 def _compact(path: str) -> str:
-    """Straight lines with relative coordinates in tenths of a point; they do not drift."""
+    """Path data of straight lines with relative coordinates rounded to tenths of a point; the
+    rounded positions are subtracted, so that no error adds up.
+    """
     parts, here = [], (0, 0)
     for command, x, y in re.findall(r"([MLz])(?:\s*(-?[\d.]+) (-?[\d.]+))?", path):
         if command == "z":
@@ -269,7 +273,9 @@ def _canvas(width: float, height: float) -> Canvas:
 
 
 def _panels(figure: Figure, width: float) -> Canvas:
-    """Panels in rows; an axis that the row below has as well has no labels."""
+    """Canvas, `width` inches wide, of the panels in rows and columns; an axis that the row below
+    has as well has no labels.
+    """
     columns, panels = figure.columns, figure.panels
     names = [len(name) for panel in panels for name in panel.rows]
     left = max([LEFT, *(0.15 + LETTER * count for count in names)])
@@ -316,7 +322,7 @@ def _top(figure: Figure, k: int, inner: float) -> float:
 
 
 def _height(figure: Figure, panel: Panel, inner: float) -> float:
-    """Height of the axes of a panel, inches."""
+    """Height of the axes of a panel, inches; `inner`: their width, inches."""
     if panel.kind == "bars":
         return BAR * len(panel.rows) + 0.1
     if panel.kind == "outline":
@@ -393,7 +399,9 @@ def _mark_name(ax: Axes, mark: AxisMark) -> None:
 
 
 def _curve(ax: Axes, panel: Panel, curve: Curve, right: float) -> Artist | Container:
-    """Draw a curve with its ribbon and notes, bars up to `right`; its sign in a legend."""
+    """Draw a curve with its ribbon and notes, bars up to `right`; returns the artist that stands
+    for it in a legend.
+    """
     colour = COLOURS[curve.colour]
     if curve.look == "bar":
         return _bars(ax, panel, curve, right)
@@ -423,7 +431,9 @@ def _notes(ax: Axes, curve: Curve) -> None:
 
 
 def _bars(ax: Axes, panel: Panel, curve: Curve, right: float) -> BarContainer:
-    """Bars of a curve: in the rows of the panel, or side by side with those of other curves."""
+    """Draw the bars of a curve: in the rows of the panel, up to `right`, or side by side with those
+    of other curves.
+    """
     look: dict[str, Any] = {"color": COLOURS[curve.colour], "label": curve.label, "zorder": 3}
     if panel.kind == "bars":
         start, length = curve.bars(right)
@@ -436,7 +446,7 @@ def _bars(ax: Axes, panel: Panel, curve: Curve, right: float) -> BarContainer:
 
 
 def _rows(ax: Axes, panel: Panel, axis: HorizontalAxis) -> None:
-    """Names, ends and limits of horizontal bars."""
+    """Names and values of horizontal bars, and the limits across them."""
     for row, end in enumerate(panel.ends):
         if not np.isnan(end):
             ax.annotate(f"{end:.4g}", (min(end, axis.span[1]), row), xytext=(8, 0),
@@ -475,7 +485,7 @@ def _horizontal(ax: Axes, axis: HorizontalAxis, columns: int) -> None:
 
 
 def _legend_columns(panel: Panel, inner: float) -> int:
-    """Most columns of a legend, up to `LEGEND_ROW`, that the axes are wide enough for."""
+    """Most columns of a legend, up to `LEGEND_ROW`, that fit above axes `inner` inches wide."""
     labels = [curve.label for curve in panel.labelled]
     for columns in range(min(len(labels), LEGEND_ROW), 1, -1):
         longest = sum(max(map(len, part)) for part in np.array_split(labels, columns))
@@ -501,7 +511,9 @@ def _legend(
 
 
 def _limits(ax: Axes, panel: Panel, low: float, high: float, *, below_names: bool) -> None:
-    """Limit lines; limits outside the axes are written at their edge, below names of marks."""
+    """Draw the limits on axes from `low` to `high`; those outside are written at the edge, below
+    names of marks where `below_names`.
+    """
     placed = placed_limits(panel, low, high)
     for line, above in placed.inside:
         ax.axhline(line.value, color=COLOURS["fail"], linewidth=0.9, linestyle=LIMIT, zorder=2.5)
@@ -523,6 +535,8 @@ def _limits(ax: Axes, panel: Panel, low: float, high: float, *, below_names: boo
 
 
 def _second_axis(ax: Axes, second: SecondAxis) -> None:
+    """Horizontal axis above the panel, its values those of the first axis over `ratio`."""
+
     def to_second(first: ArrayLike) -> ArrayLike:
         return np.asarray(first) / second.ratio
 

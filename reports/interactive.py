@@ -122,7 +122,9 @@ class _Drawn(NamedTuple):
 
 
 def _panels(figure: Figure) -> Spec:
-    """Panels one below the other; those without an axis of their own have one in common."""
+    """Plotly data and layout of a figure: panels one below the other; those without an axis of
+    their own have one in common.
+    """
     lines, axis, last = _Lines.of(figure), figure.axis, len(figure.panels)
     drawn = _Drawn([], {}, [], [])
     for number, domain in enumerate(lines.domains):
@@ -152,6 +154,9 @@ def _panels(figure: Figure) -> Spec:
 
 
 def _panel(figure: Figure, number: int, domain: tuple[float, float], drawn: _Drawn) -> None:
+    """Add the traces, axes, limits and legend of panel `number` to `drawn`; `domain` is its
+    vertical extent, shares of the figure from below.
+    """
     panel, end = figure.panels[number], "" if number == 0 else str(number + 1)
     axis, legend, top = figure.axis_of(panel), figure.legends[number], domain[1]
     across, up = "x" if panel.axis is None else f"x{number + _OWN_AXES}", f"y{end}"
@@ -234,6 +239,9 @@ class _Lines:
 
     @classmethod
     def of(cls, figure: Figure) -> _Lines:
+        """Layout of the panels of a figure from top to bottom, with room for titles, legends and
+        axes.
+        """
         headings = [
             _LEGEND_PIXELS * (legend + bool(panel.title or panel.note))
             for legend, panel in zip(figure.legends, figure.panels, strict=True)
@@ -253,7 +261,12 @@ class _Lines:
 def _limits(
     panel: Panel, axis: str, low: float, high: float, *, below_names: bool
 ) -> tuple[list[Spec], list[Spec]]:
-    """Lines and labels of the limits of a panel."""
+    """Plotly shapes and annotations of the limits of a panel: lines, and labels beside them.
+
+    `axis` is the id of the panel's y axis, as ``y2``, which goes from `low` to `high` in the unit
+    of the panel. The label of a limit beyond these stands at the edge, at the upper one below the
+    names of the marks if `below_names`.
+    """
     placed = placed_limits(panel, low, high)
     shapes: list[Spec] = [
         {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "yref": axis, "y0": line.value,
@@ -275,7 +288,9 @@ def _limits(
 
 
 def _mark(mark: AxisMark, drawn: _Drawn) -> None:
-    """A mark over all panels, with its name at the top."""
+    """Add a mark of the horizontal axis to `drawn`: a shade or a dotted line over all panels, with
+    its name at the top.
+    """
     common: Spec = {"xref": "x", "x0": mark.start, "yref": "paper", "y0": 0, "y1": 1}
     name: Spec = {"yref": "paper", "y": 1, "yanchor": "top"}
     if mark.end is not None:
@@ -293,6 +308,9 @@ def _mark(mark: AxisMark, drawn: _Drawn) -> None:
 
 
 def _curve(curve: Curve, panel: Panel, axis: HorizontalAxis, hover: str) -> Spec:
+    """Plotly trace of a curve without its axes and x; `hover`: further words of the text at the
+    pointer.
+    """
     flat = panel.kind == "bars"
     along, quantity, unit = (
         ("x", axis.quantity, axis.unit) if flat else ("y", panel.quantity, panel.unit)
@@ -318,7 +336,9 @@ def _curve(curve: Curve, panel: Panel, axis: HorizontalAxis, hover: str) -> Spec
 
 
 def _ribbon(curve: Curve) -> list[Spec]:
-    """Lower and upper edge of the ribbon of a curve."""
+    """Plotly traces of lower and upper edge of the ribbon of a curve, the area between filled;
+    empty without one.
+    """
     if curve.upper is None or curve.look == "bar":
         return []
     edge: Spec = {"type": "scatter", "mode": "lines", "showlegend": False, "hoverinfo": "skip",
@@ -345,6 +365,9 @@ def _outline(figure: OutlineFigure | ContoursFigure) -> Spec:
 
 
 def _outline_curve(curve: OutlineCurve) -> Spec:
+    """Plotly trace of a curve of an outline, mm, with the cam angle at the pointer where it is
+    known.
+    """
     x, y = curve.points
     hover: Spec = {"hoverinfo": "skip"}
     if curve.angle is not None:

@@ -81,6 +81,9 @@ def live_view(material: ReportMaterial) -> LiveView | None:
 
 
 def _view(material: ReportMaterial, record: Record) -> LiveView:
+    """Contents of the section from the record ``8_live.json``: sliders, key figures, the `FOLLOWED`
+    checks of greatest utilisation, checks left out with the reason.
+    """
     ordered = [each.id for each in in_order(of_records(material.run.final.checks))]
     title_of = {str(each["id"]): str(each["title"]) for each in material.run.final.checks}
     by_id = {each["id"]: each for each in record["quantities"] if each["limit"] is not None}
@@ -111,6 +114,7 @@ def _slider(place: int, factor: Record) -> LiveSlider:
 
 
 def _row(each: Record) -> LiveRow:
+    """Row of a quantity of the record; a limit that changes with the design has no text."""
     limit = each["limit"]
     constant = limit is not None and len(limit["coefficients"]) == 1
     words = quantity(limit["coefficients"][0], each["unit"], 4) if constant else ""
@@ -118,6 +122,9 @@ def _row(each: Record) -> LiveRow:
 
 
 def _fit_words(record: Record) -> str:
+    """Sentences on the fitted polynomials: number of designs they go through, how their error is
+    measured, refused designs.
+    """
     words = (
         f"Polynomials through {record['settings']} screened designs within the ranges; the error "
         f"of each figure, ±, is the greatest at {record['held_out']} further ones, with that of "

@@ -63,7 +63,9 @@ def words_of(case: Record, gear_ratio: float, *, balances: bool = True) -> Machi
 
 
 def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[AxisMark, ...]:
-    """Marks that a torque carries, in every cycle of a cam turn."""
+    """Marks of the case's torque, each with angle and name, repeated in every cycle of a cam turn,
+    which is `turn` deg of the shaft; () without readable ones.
+    """
     stated = torque.get("marks")
     rows = [row for row in stated if isinstance(row, Mapping)] if isinstance(stated, list) else []
     try:
@@ -77,6 +79,10 @@ def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[AxisMark, ...]:
 def _repeated(
     starts: list[float], names: list[str] | tuple[str, ...], cycle: float, turn: float
 ) -> tuple[AxisMark, ...]:
+    """Marks from each of the `starts`, deg, to the next one, in every cycle of the turn, every
+    second one shaded; `cycle` and `turn` in deg of the shaft. () where the turn is no whole number
+    of cycles.
+    """
     count = round(turn / cycle)
     if not starts or count < 1 or abs(turn / cycle - count) > _WHOLE * count:
         return ()

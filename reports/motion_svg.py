@@ -86,7 +86,9 @@ class _MotionPanel:
 
     @property
     def span(self) -> tuple[float, float]:
-        """Least and greatest value, rounded outwards to ticks."""
+        """Lower and upper end of the axis, rounded outwards to ticks, with zero and the limit
+        within.
+        """
         every = [curve.values for curve in self.curves]
         ends = [0.0, *(float(v.min()) for v in every), *(float(v.max()) for v in every)]
         if np.isfinite(self.limit):
@@ -104,7 +106,9 @@ class _MotionPanel:
 
 
 def _step(span: float) -> float:
-    """Step of the ticks of a span: 1, 2 or 5 times a power of ten."""
+    """Step of the ticks of an axis of length `span`: 1, 2 or 5 times a power of ten, at most
+    `_TICKS` steps.
+    """
     if not span > 0.0:
         return 1.0
     power = 10.0 ** np.floor(np.log10(span / _TICKS))
@@ -195,7 +199,8 @@ def _text(
 
 
 def _panels(turn: SheetTurn) -> list[_MotionPanel]:
-    """Forces and contact pressure over the turn, of those that are known at every angle.
+    """Panels of the forces and of the contact pressure over the turn, with the curves that are
+    known at every angle.
 
     They are not where the follower may leave the cam.
     """
@@ -215,7 +220,7 @@ def _panels(turn: SheetTurn) -> list[_MotionPanel]:
 
 
 def _box(panel_number: int, count: int) -> tuple[float, float, float, float]:
-    """Left, top, width and height of the axes of a panel."""
+    """Left, top, width and height of the axes of the panel `panel_number` of `count`, pixels."""
     height = (_PAGE_HEIGHT - _HEAD - _FOOT) / count
     left = _SPLIT + _PANEL_GAP + _AXIS_LEFT
     return (
@@ -227,7 +232,9 @@ def _box(panel_number: int, count: int) -> tuple[float, float, float, float]:
 
 
 def _panel(panel: _MotionPanel, panel_number: int, count: int) -> str:
-    """Axes and curves of a panel."""
+    """SVG of axes, legend, limit and curves of the panel `panel_number` of `count`,
+    from the top.
+    """
     left, top, width, height = _box(panel_number, count)
     lines = [_text(f"{panel.title}, {panel.unit}", left, top - 26.0, 13.5, weight=650)]
     for value in panel.ticks:
@@ -265,6 +272,7 @@ def _panel(panel: _MotionPanel, panel_number: int, count: int) -> str:
 
 
 def _height_of(panel: _MotionPanel, panel_number: int, count: int, value: float) -> float:
+    """Vertical position of a value in its panel, pixels from above."""
     _, top, _, height = _box(panel_number, count)
     low, high = panel.span
     return top + height * (high - value) / (high - low)
@@ -273,6 +281,9 @@ def _height_of(panel: _MotionPanel, panel_number: int, count: int, value: float)
 def _line(
     start: tuple[float, float], end: tuple[float, float], colour: str, width: float, dash: str = ""
 ) -> str:
+    """SVG line between two points (x, y), pixels, in a colour by name; `dash`: lengths of dashes
+    and gaps.
+    """
     dashed = f' stroke-dasharray="{dash}"' if dash else ""
     ends = zip(("x1", "y1", "x2", "y2"), (*start, *end), strict=True)
     places = " ".join(f'{name}="{decimal(value)}"' for name, value in ends)
@@ -280,13 +291,17 @@ def _line(
 
 
 def _frames(size: int) -> Array:
-    """Rows of the frames, the first again at the end."""
+    """Rows of the turn drawn as frames, at most `FRAMES`, the first again at the end; `size`: rows
+    of the turn.
+    """
     count = min(FRAMES, size)
     return np.append(np.arange(count) * size // count, 0)
 
 
 def _marks(panel: _MotionPanel, panel_number: int, count: int, row: int) -> str:
-    """Cursor and dots at a row."""
+    """SVG of the cursor and of a dot on each curve at a row of the turn, as in the
+    still picture.
+    """
     left, top, width, height = _box(panel_number, count)
     x = left + width * row / panel.curves[0].values.size
     dots = (_dot(x, _height_of(panel, panel_number, count, float(c.values[row])), c.colour)
@@ -295,7 +310,7 @@ def _marks(panel: _MotionPanel, panel_number: int, count: int, row: int) -> str:
 
 
 def _moving_marks(panel: _MotionPanel, panel_number: int, count: int) -> str:
-    """Cursor and dots that run over the turn."""
+    """SVG of a cursor that runs over the turn with a dot on each curve, animated."""
     left, top, width, height = _box(panel_number, count)
     marks = [_line((left, top), (left, top + height), "ink", 1.2)]
     for curve in panel.curves:
@@ -345,7 +360,7 @@ def _placed(svg: str, name: str) -> str:
 
 
 def _moving(turn: SheetTurn, motion: DrawnMotion) -> str:
-    """Drawing of the mechanism with its motion; forces are stated by their greatest values."""
+    """SVG of the mechanism in motion; each force is stated by its greatest value of the turn."""
     mechanism = mechanism_of(turn)
     rows = [int(k) for k in _frames(motion.theta.size)]
     drawn = [drawing(mechanism, motion, row) for row in rows]
@@ -369,7 +384,9 @@ def _with_words(svg: str, name: str, words: str) -> str:
 
 
 def _with_motion(svg: str, group: ShapeGroup, poses: Sequence[Pose]) -> str:
-    """The drawing with the motion of a group: turn, shift, and stretch of its lines."""
+    """The drawing `svg` with the motion of one of its groups through given poses: turn, shift, and
+    stretch of its lines.
+    """
     turns = np.degrees(np.unwrap([pose.turn for pose in poses]))
     shifts = [f"{decimal(pose.shift[0])} {decimal(-pose.shift[1])}" for pose in poses]
     inside = _transform("translate", shifts)
@@ -391,7 +408,9 @@ def _path(shape: DrawnOutline, stretch: float) -> str:
 
 
 def _with_arrow(svg: str, name: str, at: Sequence[Arrow]) -> str:
-    """The drawing with the motion of an arrow, hidden where it is shorter than its head."""
+    """The drawing `svg` with the arrow `name` moved through the given arrows, hidden where it is
+    shorter than its head.
+    """
     ends: dict[str, list[str]] = {key: [] for key in ("x1", "y1", "x2", "y2")}
     seen = []
     for arrow in at:

@@ -93,7 +93,9 @@ class OutlineFigure:
         return tuple(curves)
 
     def _openings(self) -> list[OutlineCurve]:
-        """Bore, keyway and counter-hole; a proposed hole is dashed."""
+        """Outlines of bore, keyway and counter-hole; a proposed hole, not drilled yet,
+        is dashed.
+        """
         curves = []
         if self.bore_radius is not None:
             bore = circle((0.0, 0.0), self.bore_radius)
@@ -189,7 +191,9 @@ def circle(centre: tuple[float, float], radius: float) -> Array:
 
 
 def _slot(bore_radius: float, width: float, depth: float, angle: float) -> Array:
-    """Sides and bottom (2, 4) of a keyway, open to the bore; angle in rad."""
+    """Open line (2, 4) of a keyway: side, bottom and other side, from the bore outwards; lengths in
+    mm, angle of its middle in rad.
+    """
     inner, outer = np.sqrt(max(bore_radius**2 - width**2 / 4, 0.0)), bore_radius + depth
     corners = np.array([[inner, outer, outer, inner], np.array([-1, -1, 1, 1]) * width / 2])
     cosine, sine = np.cos(angle), np.sin(angle)

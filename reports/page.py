@@ -37,7 +37,7 @@ def write(material: ReportMaterial) -> list[Path]:
 
 
 def text(material: ReportMaterial) -> bytes:
-    """HTML of the page, UTF-8."""
+    """HTML of the report's page, UTF-8, from its templates."""
     figures = [drawn.figure for _, group in drawn_groups(material) for drawn in group]
     report, drawing = report_content(material), arrangement_at(material.turn)
     svg = svg_of(drawing, _PAGE_COLOURS, "inherit", 'aria-hidden="true" focusable="false"')
@@ -58,7 +58,7 @@ def _is_check_table(section: ReportSection) -> bool:
 
 
 def links(material: ReportMaterial) -> list[tuple[str, str]]:
-    """(words, relative address) of the existing files of the run."""
+    """Pairs (words, relative address) of the files of the run that exist, to be linked."""
     places = (material.folder, material.run.path)
     return [(words, name) for words, name in LINKS if any((p / name).is_file() for p in places)]
 

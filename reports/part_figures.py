@@ -26,6 +26,7 @@ def endurance(turn: SheetTurn) -> tuple[LimitLine, ...]:
 
 
 def _forces(turn: SheetTurn) -> Figure | None:
+    """Figure of the force components on the follower over the turn, N."""
     curves = curves_of(
         turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
         ("side_force_N", "side force"), ("guide_friction_A_N", "friction A"),
@@ -45,7 +46,9 @@ def _forces(turn: SheetTurn) -> Figure | None:
 
 
 def _spring_force(turn: SheetTurn) -> Figure | None:
-    """Over the travel in use; of a coil spring with its force at solid length."""
+    """Figure of the spring force, N, over the travel in use, mm; of a coil spring with its force at
+    solid length. None without travel.
+    """
     spring = turn.case.get("spring", {})
     lift, first = np.unique(turn.columns["lift_mm"], return_index=True)
     if lift.size < 2:
@@ -68,7 +71,9 @@ def _spring_force(turn: SheetTurn) -> Figure | None:
 
 
 def _energy(turn: SheetTurn) -> Figure | None:
-    """Energies of spring and follower, and what cam and guides have exchanged since the angle 0."""
+    """Figure of the energies, J: of spring and follower, and what cam and guides have exchanged
+    since the angle 0. None without the mass of the follower.
+    """
     c = turn.columns
     mass = turn.length("follower", "mass", unit="kg")
     if mass is None:
@@ -98,13 +103,15 @@ def _energy(turn: SheetTurn) -> Figure | None:
 
 
 def _summed(values: Array, over: Array) -> Array:
-    """Integral (n,) by the trapezoidal rule from the first point."""
+    """Integral (n,) of values (n,) over positions (n,) from the first one, by the
+    trapezoidal rule.
+    """
     steps = 0.5 * (values[1:] + values[:-1]) * np.diff(over)
     return np.concatenate([[0.0], np.cumsum(np.nan_to_num(steps))])
 
 
 def _load_cases(turn: SheetTurn) -> Figure | None:
-    """Extremes of the load cases side by side; None of a single one."""
+    """Figure with the extremes of the load cases as bars side by side; None of a single one."""
     if len(turn.others) < 2:
         return None
     names = tuple(name for each in turn.others for name in each.load_cases)
@@ -138,7 +145,9 @@ def _load_cases(turn: SheetTurn) -> Figure | None:
 
 
 def _speed_sweep(turn: SheetTurn) -> Figure | None:
-    """Contact force and surge over the speed, with the resonances of the spring."""
+    """Figure of contact force and surge of the spring over the speed, with its resonances, at the
+    first preload of the sweep; None with fewer than three speeds.
+    """
     sweep = turn.sweep
     if sweep is None:
         return None
@@ -165,7 +174,9 @@ def _speed_sweep(turn: SheetTurn) -> Figure | None:
 
 
 def _peaks(values: Array) -> list[int]:
-    """Rows of the maxima that stand out by `_PROMINENCE` of the greatest value, at most three."""
+    """Indices, ascending, of at most three highest maxima of `values` (n,) that rise by
+    `_PROMINENCE` of the greatest value above the lows beside them.
+    """
     inner = range(1, values.size - 1)
     highest = [k for k in inner if values[k] > values[k - 1] and values[k] >= values[k + 1]]
 
@@ -214,6 +225,9 @@ def _normal_force(turn: SheetTurn) -> Figure | None:
 
 
 def _guides(turn: SheetTurn) -> Figure | None:
+    """Figure of the guide reactions by elastic guides and by statics, of what length and clearance
+    change in them, and of the friction loads, N.
+    """
     pairs = (
         ("guide_reaction_A_N", "A, finite elements"), ("guide_reaction_A_statics_N", "A, statics"),
         ("guide_reaction_B_N", "B, finite elements"), ("guide_reaction_B_statics_N", "B, statics"),
@@ -235,6 +249,7 @@ def _guides(turn: SheetTurn) -> Figure | None:
 
 
 def _jamming(turn: SheetTurn) -> Figure | None:
+    """Figure of the jam index, guide friction over axial force, over the turn; None of an arm."""
     if turn.on_arm:  # whose pivot has no friction
         return None
     limits = turn.limit("limit", "", "jam_index")
@@ -251,6 +266,9 @@ def _jamming(turn: SheetTurn) -> Figure | None:
 
 
 def _speed(turn: SheetTurn) -> Figure | None:
+    """Figure of the follower speed, m/s, and of mean pressure times speed in both guides, MPa m/s,
+    with their limits.
+    """
     velocity = turn.columns["follower_velocity_m_per_s"]
     curves: list[Curve] = []
     means: list[Curve] = []
@@ -322,6 +340,9 @@ def _film(turn: SheetTurn) -> Figure | None:
 
 
 def _edge_pressure(turn: SheetTurn) -> Figure | None:
+    """Figure of the peak pressure between stem and bore, MPa, and of the friction heat of the
+    guides, W, with limits.
+    """
     peaks = (("guide_edge_pressure_A_MPa", "guide A"), ("guide_edge_pressure_B_MPa", "guide B"))
     heats = (("guide_friction_power_A_W", "guide A"), ("guide_friction_power_B_W", "guide B"))
     limits = turn.limit("limit A", "MPa", "guide_edge_pressure_A") + turn.limit(
@@ -353,7 +374,9 @@ def _elastic(turn: SheetTurn) -> Figure | None:
 
 
 def _parts(turn: SheetTurn) -> Figure | None:
-    """Each stress on its own axes, with its limit where a check has one of the same stress."""
+    """Figure of the stresses in spring, pin, outer ring, key and bore, each on its own axes with
+    its limit where a check has one of the same stress, and of the shaft bearing loads.
+    """
     stresses = (
         ("spring_stress_MPa", "spring wire", ()),
         ("pin_stress_MPa", "roller pin", turn.limit("limit", "MPa", "roller_pin")),
@@ -386,7 +409,9 @@ def _relative(point: Record) -> tuple[str, float, float]:
 
 
 def _goodman(turn: SheetTurn, part: str) -> Figure | None:
-    """Goodman diagram of a part, stresses over its strengths."""
+    """Goodman diagram of a part: amplitude over endurance strength by mean stress over static
+    strength; None where its fatigue is not recorded.
+    """
     record = turn.fatigue.get(part)
     if record is None:
         return None

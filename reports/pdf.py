@@ -70,7 +70,9 @@ def typeset(template: str, document: DataclassInstance) -> bytes:
 
 
 def _fields(value: DataclassInstance, folder: Path) -> Mapping[str, Json]:
-    """Fields and properties as JSON; pictures are written to `folder`."""
+    """Fields and properties of a part of the document as JSON, with pictures written to `folder`
+    and drawings as SVG.
+    """
     if isinstance(value, Drawn):
         figure = value.figure
         words = {"title": figure.title, "caption": figure.caption, "alt": figure.alt}
@@ -94,6 +96,9 @@ def _fields(value: DataclassInstance, folder: Path) -> Mapping[str, Json]:
 
 
 def _json(value: Value, folder: Path) -> Json:
+    """Value as JSON: text with break opportunities, sequences and nested parts likewise; pictures
+    are written to `folder`.
+    """
     if isinstance(value, str):
         return _broken(value)
     if value is None or isinstance(value, (int, float)):

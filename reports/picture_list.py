@@ -50,7 +50,9 @@ class Picture:
 @lru_cache(maxsize=1)
 @shipped()
 def stress_pictures(material: ReportMaterial) -> Sequence[Picture]:
-    """Stress field below the contact and in both bodies."""
+    """Pictures of the stress field below the contact and in both bodies, or one entry with the
+    reason why they are missing.
+    """
     turn, path = material.turn, material.run.path / FIELD
     try:
         field = field_picture.read_field(path)
@@ -96,7 +98,9 @@ def stress_pictures(material: ReportMaterial) -> Sequence[Picture]:
 @lru_cache(maxsize=1)
 @shipped()
 def envelope_pictures(material: ReportMaterial) -> Sequence[Picture]:
-    """Maps of the maximum stress below the contour; none for a contour that encloses no body."""
+    """Maps of the maximum stress below the contour over the turn; () for a contour that encloses no
+    body, and one entry with the reason where the map is unreadable.
+    """
     file = material.run.final.path / stress_map.FILE
     if not file.exists():
         return ()
@@ -138,7 +142,9 @@ def envelope_pictures(material: ReportMaterial) -> Sequence[Picture]:
 @lru_cache(maxsize=1)
 @shipped()
 def guide_pictures(material: ReportMaterial) -> Sequence[Picture]:
-    """Pressure in both guides; none for a contour that encloses no body."""
+    """Picture of the pressure in both guides; () for a contour that encloses no body, and an entry
+    with the reason where it is unreadable.
+    """
     file = material.run.final.path / pressure_figures.FILE
     if not file.exists():
         return ()
@@ -170,7 +176,9 @@ def guide_pictures(material: ReportMaterial) -> Sequence[Picture]:
 @lru_cache(maxsize=1)
 @shipped()
 def axial_pictures(material: ReportMaterial) -> Sequence[Picture]:
-    """Pressure along the line of contact; none where the case lacks an end."""
+    """Picture of the pressure along the line of contact; () where the case lacks an end, and an
+    entry with the reason where it is unreadable.
+    """
     final = material.run.final
     file, follower = final.path / pressure_figures.AXIAL, material.turn.follower_name
     if not file.exists():

@@ -66,7 +66,8 @@ class GuidePressure:
 
 
 def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressure]:
-    """Guides A and B: line load of one load case, pressure at the worst angle of all load cases.
+    """Guides A and B: line load over the turn of one load case, bore pressure at the worst angle of
+    all load cases.
 
     Raises
     ------
@@ -93,7 +94,9 @@ def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressur
 
 
 def drawn(guides: tuple[GuidePressure, GuidePressure]) -> bytes:
-    """PNG of the pressure in both guides."""
+    """PNG of the pressure in both guides, a row each: line load over the turn, bore unrolled, worst
+    slice.
+    """
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
@@ -112,6 +115,9 @@ def drawn(guides: tuple[GuidePressure, GuidePressure]) -> bytes:
 
 
 def _over_the_turn(canvas: Figure, ax: Axes, guide: GuidePressure) -> None:
+    """Map of the magnitude of the line load, N/mm, logarithmic, over cam angle and position along
+    the guide, with the worst angle.
+    """
     from matplotlib.colors import LogNorm
     from matplotlib.ticker import FuncFormatter, NullLocator
 
@@ -132,7 +138,9 @@ def _over_the_turn(canvas: Figure, ax: Axes, guide: GuidePressure) -> None:
 
 
 def _unrolled(canvas: Figure, ax: Axes, guide: GuidePressure, norm: Normalize) -> None:
-    """Pressure on the unrolled bore, cut on the unloaded side, around the loaded area."""
+    """Map of the bore pressure over angle and position along the guide, cut open on the unloaded
+    side and limited to the loaded area.
+    """
     pressure = np.nan_to_num(guide.pressure)
     angle = guide.round
     if angle[int(np.argmax(pressure[guide.slice]))] ** 2 > 90.0**2:
@@ -155,7 +163,9 @@ def _unrolled(canvas: Figure, ax: Axes, guide: GuidePressure, norm: Normalize) -
 
 
 def _pressed(places: Array, pressure: Array) -> tuple[float, float]:
-    """Loaded interval, extended by a tenth of its length on either side."""
+    """First and last of the places (n,) under pressure (n,), each moved outwards by a tenth of
+    their distance within the places; all of them without pressure.
+    """
     on = places[pressure > 0]
     if not on.size:
         return float(places[0]), float(places[-1])
@@ -164,7 +174,7 @@ def _pressed(places: Array, pressure: Array) -> tuple[float, float]:
 
 
 def _across(polar: PolarAxes, guide: GuidePressure, norm: Normalize) -> None:
-    """Pressure in the slice of maximum pressure, drawn outwards from the bore."""
+    """Polar plot of the pressure in the slice of maximum pressure, drawn outwards from the bore."""
     from matplotlib import colormaps
     from matplotlib.collections import PolyCollection
 
@@ -227,9 +237,10 @@ class AxialPressure:
 
 
 def read_axial(path: Path, load_case: str, worst: tuple[str, float] | None) -> AxialPressure:
-    """Axial pressure over the turn of one load case, and at one cam angle, deg.
+    """Axial pressure over the turn of one load case, and at one cam angle of any load case.
 
-    worst : tuple   None: the maximum over the turn of the load case
+    worst : tuple   load case and cam angle, deg, of that angle, the nearest known one; None: the
+    maximum over the turn of `load_case`
 
     Raises
     ------
@@ -280,7 +291,9 @@ class CertifiedPressure:
         return bool((self.ends[1] - self.ends[0]) * (axial.tilted[-1] - axial.tilted[0]) < 0)
 
     def over(self, axial: AxialPressure) -> tuple[Array, Array, Array]:
-        """Positions, mm, values and error bars, the loaded end on the side of the half-spaces."""
+        """Positions of both ends and the middle in axial order, mm, with pressures and error bars,
+        MPa, each (3,); mirrored where the loaded end is on the other side in `axial`.
+        """
         places = np.array([0.5 * (axial.edges[0] + axial.edges[1]), 0.0,
                            0.5 * (axial.edges[-1] + axial.edges[-2])])  # fmt: skip
         values = np.array([self.ends[0], self.centre, self.ends[1]])
@@ -288,7 +301,9 @@ class CertifiedPressure:
         return places, *((values[::-1], bars[::-1]) if self._is_mirrored(axial) else (values, bars))
 
     def curve(self, axial: AxialPressure) -> tuple[Array, Array]:
-        """Positions, mm, and pressure, MPa, between the means at the ends where there are such."""
+        """Positions along the line, mm, and pressure there, MPa, without the cells at the ends that
+        are means; mirrored as in `over`.
+        """
         line = self.line[::-1] if self._is_mirrored(axial) else self.line
         reach = axial.edges[-1] - (axial.mean_length if axial.has_means else 0.0)
         inside = np.abs(self.along) < reach
@@ -372,6 +387,9 @@ def _along_the_line(
     centre: float | None,
     certified: CertifiedPressure | None,
 ) -> None:
+    """Draw the pressure along the line at the worst angle, without tilt and at the greatest moment,
+    with limit and plane-strain pressure, MPa, and the certified ends.
+    """
     middles, whole = 0.5 * (axial.edges[1:] + axial.edges[:-1]), slice(None)
     if axial.has_means:
         whole = slice(1, -1)
@@ -410,6 +428,7 @@ def _along_the_line(
 
 
 def _over_line_and_turn(canvas: Figure, ax: Axes, axial: AxialPressure) -> None:
+    """Map of the pressure at the greatest moment over cam angle and axial position."""
     step = float(axial.angle[1] - axial.angle[0]) if axial.angle.size > 1 else 360.0
     turn = np.append(axial.angle, axial.angle[-1] + step) - 0.5 * step
     shown = ax.pcolormesh(turn, axial.edges, axial.whole.T, cmap=COLOUR_MAP, vmin=0.0,

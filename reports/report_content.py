@@ -262,7 +262,7 @@ def titled(text: str, checks: Sequence[Record]) -> str:
 
 
 def _facts(material: ReportMaterial) -> list[tuple[str, str]]:
-    """Identification of the run."""
+    """Identification of the run as pairs (name, value)."""
     summary, count = material.run.summary, len(material.run.trials)
     versions = summary["versions"]
     code = [str(versions.get("camwright", "")), str(versions.get("source", ""))[:8]]
@@ -276,7 +276,7 @@ def _facts(material: ReportMaterial) -> list[tuple[str, str]]:
 
 
 def _checks(material: ReportMaterial) -> ReportSection:
-    """All checks in one table: failed, without data, waived, passed."""
+    """Section with all checks in one table: failed, without data, waived, passed."""
     rows = report_tables.check_rows(material.run.final.checks)
     order = ("fail", "not_evaluated", "waived", "pass")
     rows.sort(key=lambda row: (bool(row.judged_at), order.index(row.status.id),
@@ -292,7 +292,9 @@ def _checks(material: ReportMaterial) -> ReportSection:
 
 
 def failed_checks(material: ReportMaterial) -> ReportSection:
-    """Failed checks, required ones first, and required checks without data."""
+    """Section of the failed checks, required ones first; those left to a deeper solution are not
+    among them.
+    """
     rows = [row for row in report_tables.check_rows(material.run.final.checks) if not row.judged_at]
     groups = (
         ("", [row for row in rows if row.status.id == "fail" and row.must_have]),
@@ -309,6 +311,7 @@ def failed_checks(material: ReportMaterial) -> ReportSection:
 
 
 def _numbers(material: ReportMaterial) -> ReportSection:
+    """Section of the key figures of the final trial and of the shaft's speed ripple."""
     summary = material.run.summary
     headline = report_tables.headline_rows(summary["headline"])
     blocks = [SectionBlock(Pairs("Key figures", headline, 2))]
@@ -330,6 +333,9 @@ def _governing_load_case(material: ReportMaterial) -> str:
 
 
 def _sheet(material: ReportMaterial) -> ReportSection:
+    """Section of the analysis sheet: its figures for the drawn load case, by group, without those
+    that compare trials.
+    """
     turn = material.turn
     count, others = len(turn.others), ""
     if count > 1:
@@ -346,6 +352,9 @@ def _sheet(material: ReportMaterial) -> ReportSection:
 
 
 def _trials(material: ReportMaterial) -> ReportSection:
+    """Section that compares the trials, with shadow prices of the limits and prices of the
+    machine's numbers.
+    """
     run = material.run
     rows = [_trial(*each) for each in zip(run.trials, run.ripples, strict=True)]
     table = ReportTable("Trials", TRIALS_HEAD, rows, 2, 3)
@@ -381,7 +390,9 @@ def _trials(material: ReportMaterial) -> ReportSection:
 
 
 def _trial(trial: TrialRecord, ripple: float | None) -> list[str | Status]:
-    """A trial as a row; ripple: see `Run.ripples`."""
+    """Row of a trial in the table of trials; ripple: standard deviation of the torque with the cam,
+    N m, see `Run.ripples`.
+    """
     record = trial.record
     rows = [row for row in report_tables.check_rows(trial.checks) if row.id in trial.binding]
     width = record["smoothing_width_deg"]
@@ -402,6 +413,9 @@ def _trial(trial: TrialRecord, ripple: float | None) -> list[str | Status]:
 
 
 def _evidence(material: ReportMaterial) -> ReportSection:
+    """Section of the numerical evidence: certificate, ends, consistency of the inputs, benchmarks,
+    residuals, mesh, times.
+    """
     summary, final = material.run.summary, material.run.final
     points = final.record["certificate"]
     method = str(final.record["contact_method"])
@@ -483,7 +497,9 @@ def _evidence(material: ReportMaterial) -> ReportSection:
 
 
 def _sheets(material: ReportMaterial) -> ReportSection:
-    """Hand-check sheets; the reason why the run has none."""
+    """Section of the hand-check sheets, governing ones first; a note with the reason where the run
+    has none.
+    """
     title = "Hand-check sheets"
     try:
         run = SheetRun(material.run.path, material.run)
@@ -502,6 +518,7 @@ def _sheets(material: ReportMaterial) -> ReportSection:
 
 
 def _versions(material: ReportMaterial) -> ReportSection:
+    """Section of versions, hashes and fields for signatures."""
     summary = material.run.summary
     kept = (
         f" run.json lists the SHA-256 of {len(summary['files'])} results, whose hash stands above, "
@@ -523,7 +540,7 @@ def _versions(material: ReportMaterial) -> ReportSection:
 
 
 def _hashes(material: ReportMaterial) -> list[tuple[str, str]]:
-    """SHA-256 of input, results, source and meshes."""
+    """Pairs (name, SHA-256) of input, results, source and meshes, as far as known."""
     summary, mesh = material.run.summary, material.run.final.record["mesh"]
     meshes = None if mesh is None else mesh.get("sha256")
     digests: dict[str, Json] = {"input": summary["input_sha256"]}

@@ -56,9 +56,10 @@ def read_material(folder: Path, ahead: Mapping[str, PendingCall] | None = None) 
 
 
 def governing_turn(run: Run, case: Record) -> SheetTurn:
-    """Governing load case of the final trial among those with valid loads.
+    """Governing load case of the final trial among those in which the follower stays on the cam and
+    does not lock.
 
-    Of all of them where it leaves the cam or locks in each.
+    Among all load cases where it leaves the cam or locks in each.
     """
     final = run.final
     names = final.cycle.load_cases

@@ -129,7 +129,7 @@ def quantity(value: Scalar, unit: str = "", digits: int = 4) -> str:
 
 
 def in_unit(value: float, unit: str, wanted: str) -> float | None:
-    """Value in the unit of a figure; None for another dimension."""
+    """Value given in `unit`, converted to the unit of a figure; None for another dimension."""
     shown, scale = SHOWN_AS.get(unit, (unit, 1.0))
     if shown == wanted:
         return value * scale
@@ -281,7 +281,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
 
 
 def _error(check: Record, unit: str) -> str:
-    """Error bar of a demand, in its unit; empty below the last digit shown."""
+    """Error bar of a demand as text, in its unit as shown; "" below the last digit shown."""
     error, demand = (_finite(check[name]) for name in ("error", "demand"))
     if error is None or demand is None or not error or error < LEAST_ERROR * abs(demand):
         return ""
@@ -294,7 +294,7 @@ def _finite(value: Json) -> float | None:
 
 
 def worst_corner(check: Record) -> tuple[str, str] | None:
-    """Governing tolerance corner of a check, with its demand.
+    """Name of the governing tolerance corner of a check, and its demand as text with unit.
 
     None if the check has none, or if its demand equals the nominal one in all digits shown.
     """
@@ -403,6 +403,9 @@ def input_tables(case: Record) -> list[InputTable]:
 
 
 def _sections(case: Record, path: str = "") -> Iterator[tuple[str, Record]]:
+    """Pairs (title, section) of the tables in a case and in their own sections, parents first;
+    titles hold the path, list items a number.
+    """
     for key, value in case.items():
         title = f"{path} › {words(key)}" if path else words(key)
         if isinstance(value, Mapping) and key not in ("source", "sources"):
@@ -431,6 +434,7 @@ def _is_section(value: Json) -> bool:
 
 
 def _value(value: Json | dt.date) -> str:
+    """Value of a case as text; computed numbers with units are cut to twelve digits."""
     if isinstance(value, dt.date):
         return value.isoformat()
     if isinstance(value, str):

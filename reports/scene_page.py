@@ -189,7 +189,9 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
 
 
 def _flank(material: ReportMaterial, view: TurnView, width: float) -> Json:
-    """The flank, with the maximum stress of the turn below each point of the contour."""
+    """Record of the flank for the page, with the maximum von Mises stress of the turn below each
+    point of the contour, MPa, where it is known.
+    """
     outer = view.contour
     record = ring(outer, width).as_record(_DIGITS)
     greatest = _greatest(material, view, outer.shape[1])
@@ -201,7 +203,9 @@ def _flank(material: ReportMaterial, view: TurnView, width: float) -> Json:
 
 
 def _greatest(material: ReportMaterial, view: TurnView, stations: int) -> Array | None:
-    """Maximum von Mises stress below each point of the contour, MPa; None without a map."""
+    """Maximum von Mises stress below each of `stations` points of the contour at equal cam angles,
+    MPa; None without a map.
+    """
     try:
         envelope = stress_map.read_envelope(
             material.run.final.path / stress_map.FILE, view.load_case
@@ -222,7 +226,7 @@ def _cam(view: TurnView, width: float) -> Solid:
 
 
 def _counterweight(mechanism: DrawnMechanism) -> list[Solid]:
-    """Sector of the counterweight, which turns with the cam."""
+    """Sector of the counterweight, which turns with the cam, as a list; [] without one."""
     weight = mechanism.counterweight
     if weight is None:
         return []
@@ -231,7 +235,7 @@ def _counterweight(mechanism: DrawnMechanism) -> list[Solid]:
 
 
 def _drilled(mechanism: DrawnMechanism, width: float) -> list[Solid]:
-    """Hole that balances the cam: its wall, and its mouth on both faces."""
+    """Wall of the hole that balances the cam, and its mouth on both faces; [] without one."""
     if mechanism.counter_hole is None:
         return []
     x, y, radius = mechanism.counter_hole
@@ -242,6 +246,9 @@ def _drilled(mechanism: DrawnMechanism, width: float) -> list[Solid]:
 
 
 def _roller(view: TurnView, width: float) -> Json:
+    """Record of the roller `width` mm wide: rim, faces, cover of its bearing, and a spoke by its
+    two radii, which shows its rotation.
+    """
     unit = unit_circle()
     away = np.hypot(*view.follower)
     outer, inner = away.max() * unit, away.min() * unit
@@ -255,7 +262,9 @@ def _roller(view: TurnView, width: float) -> Json:
 
 
 def _follower(view: TurnView, width: float, stem: float, top: float) -> Solid:
-    """Stem with fork and pin of a roller, or with the block of a flat face."""
+    """Stem with fork and pin of a roller, or with the block of a flat face, about the follower's
+    origin; width of the cam, diameter of the stem and height of its end, mm.
+    """
     low, high = view.follower.min(axis=1), view.follower.max(axis=1)
     if not view.is_roller:
         # the y axis of the body points to the cam, downwards here
@@ -304,7 +313,9 @@ def _frame(mechanism: DrawnMechanism) -> Solid:
 
 
 def _sleeve(sleeve: Sleeve, bore: float, highest: float) -> Solid:
-    """Body about the stem, its ends at heights over the reference point at maximum lift."""
+    """Sleeve with its bore, mm, about the stem; its ends are heights over the reference point at
+    maximum lift, which is at `highest`.
+    """
     length = sleeve.high - sleeve.low
     outer, inner = 0.5 * sleeve.diameter * unit_circle(), 0.5 * bore * unit_circle()
     walls = [ring(outer, length), ring(inner, length)]
@@ -313,7 +324,9 @@ def _sleeve(sleeve: Sleeve, bore: float, highest: float) -> Solid:
 
 
 def _contacts(view: TurnView, lab: Array) -> Array:
-    """Contact points (2, f), mm."""
+    """Contact points (2, f) in the frame of the guides, mm: on the roller along its normal, or the
+    highest point of the contour under a flat face. `lab`: origins (2, f) of the follower there.
+    """
     angle = view.to_lab + view.turn
     if view.is_roller:
         reach = float(np.hypot(*view.follower).max())
@@ -354,7 +367,10 @@ def _ends(material: ReportMaterial) -> Json:
 
 
 def _end_block(field: EndField, of_body: NDArray[np.bool_], reach: float) -> dict[str, Json]:
-    """Faces of one body within a reach, mm, of the middle of contact: its stress and pressure."""
+    """Record of the faces of one body within `reach`, mm, of the middle of contact: points,
+    triangles, von Mises stress at the points, contact pressure of the triangles; `of_body`
+    (cells,): whether a cell is of this body.
+    """
     nodes = np.unique(field.cells[of_body])
     points, first = field.points[nodes], int(nodes[0])
     axes = [np.unique(part) for part in points.T]

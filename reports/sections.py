@@ -172,7 +172,8 @@ def draw(
     ahead: Mapping[str, PendingCall] | None = None,
     progress: Progress = SILENT,
 ) -> dict[str, Sequence[Path]]:
-    """Write parts of the report of a run, recorded or not yet; see `report`.
+    """Write parts of the report of a run, recorded or not yet; files by name of the part, see
+    `report`.
 
     Parameters
     ----------

@@ -92,7 +92,9 @@ class SheetTurn:
 
     @property
     def balanced(self) -> SheetTurn:
-        """First load case with a machine torque; itself if there is none."""
+        """The same with the first load case that has a machine torque as the drawn one; itself if
+        there is none.
+        """
         for table in (self.columns, *self.others):
             torque = table.get("torque_before_Nm")
             if torque is not None and np.isfinite(torque).all():
@@ -102,7 +104,9 @@ class SheetTurn:
 
     @property
     def worst(self) -> int:
-        """Row of the maximum contact pressure; of Hertz without finite elements."""
+        """Row of the maximum contact pressure in `columns`: by finite elements, by Hertz where
+        these are missing.
+        """
         for name in ("p0_fe_MPa", "p0_hertz_MPa"):
             if np.isfinite(self.columns[name]).any():
                 return int(np.nanargmax(self.columns[name]))
@@ -140,7 +144,9 @@ class SheetTurn:
         raise ResultError("5_cycle.csv: no half-width at the maximum contact pressure")
 
     def length(self, *path: str, unit: str = "mm") -> float | None:
-        """Value of the case in a unit; None if absent or of another dimension."""
+        """Value of the case at a path of keys, as a number in `unit`; None if absent or of another
+        dimension.
+        """
         value: object = self.case
         for key in path:
             value = value.get(key) if isinstance(value, Mapping) else None
@@ -150,7 +156,7 @@ class SheetTurn:
             return None
 
     def bound(self, check_id: str) -> float | None:
-        """Recorded limit of a check; None without one."""
+        """Recorded limit of a check in the unit of its record; None without one."""
         for check in self.checks:
             if check["id"] == check_id and isinstance(check["limit"], (int, float)):
                 return float(check["limit"])
@@ -182,7 +188,11 @@ def lowest(*limits: LimitLine) -> tuple[LimitLine, ...]:
 def curves_of(
     turn: SheetTurn, *wanted: tuple[str, str], dashed: Sequence[int] = ()
 ) -> tuple[Curve, ...]:
-    """Curves of (column, label) pairs; missing columns are omitted."""
+    """Curves of pairs (column, label) by crank angle; columns that are missing or nowhere finite
+    are omitted.
+
+    Solid curves have the range of all load cases as a ribbon; `dashed` are indices of pairs.
+    """
     made = []
     for number, (column, label) in enumerate(wanted):
         values = turn.columns.get(column)
@@ -228,7 +238,8 @@ def _size(curve: Curve) -> float:
 
 
 def _apart(panel: Panel) -> tuple[Panel, ...]:
-    """Panel without curves that are zero; those that look flat beside the greatest one follow.
+    """Panel without the curves that are zero; those that look flat beside the greatest one follow
+    in a second panel.
 
     A panel in which all curves are zero is left out.
     """

@@ -40,7 +40,8 @@ def read_envelope(path: Path, load_case: str) -> dict[str, Array]:
 
 
 def unrolled(values: Array, depth: Array, levels: Array) -> Array:
-    """Values (n, k) at depths (n, k) interpolated to common depths (m,), (m, n).
+    """Values (n, k) at depths (n, k) of n stations, interpolated to the common depths `levels`
+    (m,): (m, n).
 
     NaN below the deepest value of a station.
     """
@@ -49,7 +50,7 @@ def unrolled(values: Array, depth: Array, levels: Array) -> Array:
 
 
 def drawn(envelope: dict[str, Array]) -> bytes:
-    """PNG of the stress maps over cam angle and depth."""
+    """PNG of the maps of maximum stress over cam angle and depth."""
     from matplotlib.figure import Figure
 
     angle, depth = envelope["cam_angle_deg"], envelope["depth_mm"]

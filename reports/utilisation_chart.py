@@ -42,7 +42,7 @@ class BarGroup:
 
 
 def utilisation_chart(checks: Sequence[Record]) -> tuple[BarGroup, ...]:
-    """Bars of the twelve greatest utilisations of required design checks, by part.
+    """Bars of the twelve greatest utilisations of required design checks, grouped by part.
 
     Parts follow by their greatest utilisation; the others with missing data are one last group.
     """

@@ -171,6 +171,7 @@ def _names_all(clause: str, titles: Collection[str]) -> bool:
 
 
 def _sentence(checks: Sequence[Check], required: Sequence[Check], missing: Sequence[Check]) -> str:
+    """Sentence on the numbers of required and optional checks by outcome."""
     if not checks:
         return "There are no checks. The verdict is FAIL without evidence."
     held = sum(c["status"] == "pass" for c in required)
@@ -198,7 +199,9 @@ def _sentence(checks: Sequence[Check], required: Sequence[Check], missing: Seque
 
 
 def governing(checks: Sequence[Check]) -> str:
-    """Sentence on the governing check, see `verdict.governing`; empty without one."""
+    """Sentence on the governing check with demand, limit and place, see `verdict.governing`; ""
+    without one.
+    """
     first = governing_of(of_records(checks))
     if first is None:
         return ""

@@ -114,7 +114,9 @@ def machine_prices(records: Json) -> ReportTable:
 
 
 def consistency(records: Sequence[Record] | None) -> tuple[ReportTable, bool]:
-    """Inputs beside their implied values, and whether any is flagged."""
+    """Table of inputs beside their implied values, and whether any of them is flagged
+    as different.
+    """
     compared = records or ()
     rows = [
         [
@@ -184,7 +186,9 @@ def measurement_notes(record: Json) -> list[str]:
 
 
 def certificate(points: Sequence[Record]) -> ReportTable:
-    """Peak pressure on each mesh, extrapolation and grid convergence, by certificate point."""
+    """Table of the peak pressure on each mesh, its extrapolation and grid convergence, by
+    certificate point.
+    """
     rows = []
     for point in points:
         pressure = _figure(point, "p0_MPa")
@@ -217,7 +221,9 @@ def certified(points: Sequence[Record]) -> ReportTable:
 
 
 def ends(points: Sequence[Record]) -> ReportTable:
-    """End pressures over plane strain by half-spaces and finite elements."""
+    """Table of the end pressures over that of plane strain, by half-spaces and by
+    finite elements.
+    """
     rows = []
     for point in points:
         blocks = _figure(point, "finite_elements")
@@ -234,7 +240,9 @@ def ends(points: Sequence[Record]) -> ReportTable:
 
 
 def stress_below(points: Sequence[Record]) -> ReportTable:
-    """Greatest stresses below middle and ends of the contact at the first certified angle."""
+    """Table of the greatest stresses below middle and ends of the contact at the first certified
+    angle, MPa and mm.
+    """
     rows = []
     for point in points[:1]:
         p0 = float(point["plane_strain_p0_MPa"])
@@ -275,7 +283,9 @@ def ends_refused(trial: Record) -> str:
 
 
 def hertz_difference(record: Json) -> str:
-    """Sentence on the change of Hertz p0 by finite elements; "" without them."""
+    """Sentence on the change of Hertz p0 by finite elements, as ranges in percent by cause; ""
+    without them.
+    """
     if not isinstance(record, Mapping):
         return ""
     ranges = {
@@ -321,7 +331,9 @@ def _order(figure: Record) -> str:
 
 
 def _deviation(figure: Record) -> str:
-    """Deviation of the cycle from the extrapolated value of the same quantity, %."""
+    """Deviation of the value in the cycle from the extrapolated one of the same quantity, %, as
+    text.
+    """
     cycle, zero = figure.get("cycle"), figure.get("extrapolated")
     if not isinstance(cycle, int | float) or not isinstance(zero, int | float) or not zero:
         return DASH
@@ -354,6 +366,7 @@ def _change(price: Json, per: str = "") -> str:
 
 
 def _ranges(ranges: Json) -> str:
+    """Cam angles from start to end, deg, of several ranges as text."""
     shown = [
         number(start) if start == stop else f"{number(start)}\N{EN DASH}{number(stop)}"
         for start, stop in (ranges if isinstance(ranges, list) else ())

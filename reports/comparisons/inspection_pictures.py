@@ -38,7 +38,11 @@ def draw(run: Path, tolerance_um: float, folder: Path) -> Path:
 
 
 def figure_of(run: Path, tolerance_um: float, folder: Path) -> Figure:
-    """Deviation and part, force and pressure by drawing and part over the cam angle."""
+    """Panels of an inspected cam: measured deviation and form, um, contour as drawn and as
+    inspected, normal force and contact pressure of both.
+
+    The run is that of the drawn cam, folder that of the inspection.
+    """
     deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv")
     nominal = read_run(run).final
     state = nominal.cycle.load_cases[0]
@@ -62,6 +66,9 @@ def figure_of(run: Path, tolerance_um: float, folder: Path) -> Figure:
 
 
 def _part(contour: Table, deviation: Table) -> Panel:
+    """Panel of the nominal contour and of the inspected one, its deviation from the drawing, um,
+    exaggerated along the normals.
+    """
     drawn, normal = (
         np.array([contour[name] for name in names])
         for names in (("contour_x_mm", "contour_y_mm"), ("normal_x", "normal_y"))

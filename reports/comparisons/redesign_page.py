@@ -81,6 +81,9 @@ def figure_of(document: RedesignDocument) -> Figure:
 
 
 def _page(document: RedesignDocument, picture: Picture) -> str:
+    """HTML of the page: points of the front with their picture, designs not on the front and parts
+    excluded by bounds, each with the reason.
+    """
     title = f"{document['case']}: redesign, ripple against {document['against']}"
     words = (
         "Each point is a case file with the lift of the constrained synthesis, checked by closed "

@@ -111,7 +111,10 @@ def _as_text(value: Cells) -> str:
 
 
 def _cell(name: str, value: Cells, common: Sequence[str]) -> Cell:
-    """A cell of the page; the first of the rank is recommended."""
+    """Value of the column `name` as a cell of the page; the first of the rank is recommended.
+
+    Checks in `common` are left out of the missing ones.
+    """
     if name == "missing" and isinstance(value, (list, tuple)):
         value = [one for one in value if one not in common]
     text = listed(value)

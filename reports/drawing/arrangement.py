@@ -158,7 +158,9 @@ class DrawnMechanism:
         return tuple(FORCES) if self.arm is None else ("contact",)
 
     def reference(self, lift: Array) -> tuple[Array, Array]:
-        """Roller centre or middle of the face (2, n), mm, and its travel from y, rad."""
+        """Roller centre or middle of the face (2, n), mm, at lifts (n,), mm, and the angle of its
+        direction of travel from the y axis (n,), rad, counter-clockwise.
+        """
         if self.arm is not None:
             return self.arm.end(lift), self.arm.travel(lift)
         height = self.lowest + lift
@@ -230,14 +232,16 @@ def cam_turn(theta: float) -> float:
 
 
 def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing:
-    """Drawing of the mechanism at one row of the motion."""
+    """Drawing of the mechanism at row `row` of the motion, in groups from the bottom layer to the
+    top one.
+    """
     m, lift = mechanism, float(motion.lift[row])
     theta = float(motion.theta[row])
     groups = (
         ShapeGroup("axes", (*_axes(m), *_gear(m))),
         ShapeGroup("cam", tuple(_cam(m)), Pose(cam_turn(theta))),
         ShapeGroup("turning", tuple(_turning(m))),
-        *(_carried(m, lift) if m.arm is None else _swinging(m, m.arm, lift)),
+        *(_stem_groups(m, lift) if m.arm is None else _arm_groups(m, m.arm, lift)),
         ShapeGroup("forces", tuple(arrows(m, motion, row))),
         ShapeGroup("values", tuple(_values(m, motion, row))),
     )
@@ -249,15 +253,19 @@ def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing
     return Drawing("Arrangement", words, groups, _box(m))
 
 
-def _carried(m: DrawnMechanism, lift: float) -> tuple[ShapeGroup, ...]:
-    """Follower on its stem, spring and guides."""
+def _stem_groups(m: DrawnMechanism, lift: float) -> tuple[ShapeGroup, ...]:
+    """Groups of a follower on its stem, from back to front: spring behind the stem, follower,
+    spring before it, guides; lift in mm.
+    """
     behind, before = m.spring.groups(m.axis, lift)
     follower = ShapeGroup("follower", tuple(_follower(m)), Pose(shift=(m.axis, m.lowest + lift)))
     return (*behind, follower, *before, ShapeGroup("guides", tuple(_guides(m))))
 
 
-def _swinging(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
-    """Arm with its roller, and the fixed pivot."""
+def _arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
+    """Groups of a follower on an arm, from back to front: arm with its roller, turned to the lift,
+    mm, and the fixed pivot.
+    """
     edge, thin = Pen("ink", _EDGE * m.scale, "steel"), Pen("muted", _THIN * m.scale)
     half, roller, end = 0.6 * arm.bearing, m.roller or 0.0, (0.0, -arm.length)
     bar = rectangle(-half, -arm.length, half, 0.0)
@@ -318,7 +326,9 @@ def _axes(m: DrawnMechanism) -> list[Shape]:
 
 
 def _gear(m: DrawnMechanism) -> list[Shape]:
-    """Outline of the greatest part about the camshaft, behind the cam: the gear."""
+    """Outline of the greatest part about the camshaft beyond the cam, such as the gear, behind it;
+    empty where none is greater.
+    """
     if not m.reach > m.radius_max:
         return []
     pen = Pen("muted", _THIN * m.scale, dash="dashdot")
@@ -326,7 +336,9 @@ def _gear(m: DrawnMechanism) -> list[Shape]:
 
 
 def _counterweight(m: DrawnMechanism) -> list[Shape]:
-    """Sector that has the unbalance of the counterweight, before the cam."""
+    """Sector with the unbalance of the counterweight in the frame of the cam, before the cam; empty
+    without one.
+    """
     weight = m.counterweight
     if weight is None:
         return []
@@ -438,7 +450,12 @@ def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
 
 
 def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arrow]:
-    """Force arrows on the follower at one row, to a scale common to the turn."""
+    """Arrows of the forces on the follower at row `row`, tail and tip in mm, all to the scale at
+    which the greatest force of the turn is `arrow_length` long.
+
+    A contact force ends at the contact, a guide reaction at the edge of the stem, the spring force
+    beside its moving seat; a negative force points the other way.
+    """
     m = mechanism
     scale = m.arrow_length / motion.greatest_force if motion.greatest_force > 0.0 else 0.0
     touch = contact_point(m, motion)[:, row]
@@ -465,7 +482,9 @@ def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arr
 
 
 def label_places(mechanism: DrawnMechanism) -> dict[str, tuple[float, float]]:
-    """Positions of the value labels, in a column right of the mechanism, without overlap."""
+    """Left end of the baseline (x, y), mm, of each value label by name of the force, in a column
+    right of the mechanism, moved up where they would overlap.
+    """
     m, pitch = mechanism, 2.7 * mechanism.text
     wanted = {"contact": m.reach + 0.6 * m.text}
     if m.arm is None:
@@ -480,7 +499,9 @@ def label_places(mechanism: DrawnMechanism) -> dict[str, tuple[float, float]]:
 
 
 def _column(m: DrawnMechanism) -> float:
-    """Left edge of the values: right of spring, face, guides and the arrows beside them, mm."""
+    """x of the left edge of the value labels, mm: right of spring, face, guides and the arrows
+    beside them.
+    """
     if m.arm is not None:
         return m.envelope.across[1] + 0.8 * m.text
     bush = max(0.5 * each.bore + each.wall for each in m.guides) + 0.55 * m.stem
@@ -490,7 +511,9 @@ def _column(m: DrawnMechanism) -> float:
 
 
 def _values(m: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Shape]:
-    """Names and values of the forces; angle; scale of the arrows."""
+    """Texts with names and values of the forces and with the angle at row `row`, and a bar with the
+    force that its length stands for.
+    """
     made: list[Shape] = []
     for name, (x, y) in label_places(m).items():
         words = _newtons(motion, name, row)
@@ -516,13 +539,16 @@ def _values(m: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Shape]:
 
 
 def _round(value: float) -> float:
-    """Greatest of 1, 2, 5 times a power of ten up to a value."""
+    """Greatest number of the form 1, 2 or 5 times a power of ten that is not above a positive
+    value.
+    """
     power = 10.0 ** np.floor(np.log10(value))
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value))
 
 
 @lru_cache(maxsize=2)
 def _box(m: DrawnMechanism) -> tuple[float, float, float, float]:
+    """Left, bottom, right and top of the drawing with its labels and margins, mm."""
     margin = 1.4 * m.text
     places = label_places(m)
     widest = max(Text(name, (0.0, 0.0), 0.82 * m.text).box[2] for name in FORCES.values())
@@ -537,9 +563,11 @@ def _box(m: DrawnMechanism) -> tuple[float, float, float, float]:
 def moving_record(
     mechanism: DrawnMechanism, motion: DrawnMotion, rows: Sequence[int]
 ) -> dict[str, Json]:
-    """Poses, arrows and values at rows of the motion, for an animated page.
+    """Poses of the groups that move, arrows and words at rows of the motion, for an animated page,
+    each as a list over the rows by name of group or force.
 
-    Poses are turn (deg, counter-clockwise), shift x and y (mm) and stretch of each row.
+    Poses are turn (deg, counter-clockwise), shift x and y (mm) and stretch of each row; arrows x
+    and y of tail and tip, mm.
     """
     poses: dict[str, list[Pose]] = {}
     shown = mechanism.shown_forces

@@ -137,7 +137,9 @@ def segment(start: tuple[float, float], end: tuple[float, float]) -> Array:
 
 
 def hatching(box: tuple[float, float, float, float], spacing: float) -> tuple[Array, ...]:
-    """Hatching at 45 deg within a rectangle, the sign of a fixed part."""
+    """Lines at 45 deg, each (2, 2), that fill a rectangle (left, bottom, right, top) at a spacing,
+    mm: the sign of a fixed part.
+    """
     left, bottom, right, top = box
     lines = []
     for cross in np.arange(left - (top - bottom) + 0.5 * spacing, right, spacing):

@@ -45,6 +45,9 @@ def _head(name: str, colour: str) -> str:
 
 
 def _group(group: ShapeGroup, colours: Mapping[str, str]) -> str:
+    """SVG group of shapes with its pose as a transform; the stretch is applied to the shapes
+    themselves.
+    """
     pose = group.pose
     place = ""
     if pose.turn or any(pose.shift):
@@ -66,6 +69,9 @@ def _shape(shape: DrawnOutline | Arrow | Text, stretch: float, colours: Mapping[
 
 
 def _outline(shape: DrawnOutline, stretch: float, colours: Mapping[str, str]) -> str:
+    """SVG path of an outline with its holes, stretched along y, in the colours that its
+    pen names.
+    """
     pen = shape.pen
     fill = colours[pen.fill] if pen.fill else "none"
     style = f'fill="{fill}"'
@@ -90,7 +96,9 @@ def line_path(points: Array, stretch: float, closed: bool) -> str:
 
 
 def _arrow(arrow: Arrow, colours: Mapping[str, str]) -> str:
-    """A line up to the head, which the marker adds; hidden where the head is longer."""
+    """SVG line up to the head, which the marker adds; hidden where the head is longer than the
+    arrow.
+    """
     tail, tip = np.array(arrow.tail), np.array(arrow.tip)
     length = float(np.hypot(*(tip - tail)))
     shown = length > arrow.head
@@ -104,6 +112,7 @@ def _arrow(arrow: Arrow, colours: Mapping[str, str]) -> str:
 
 
 def _text(text: Text, colours: Mapping[str, str]) -> str:
+    """SVG text on its baseline; a changing value has its name as an attribute."""
     x, y = text.place
     weight = ' font-weight="bold"' if text.bold else ""
     name = f' data-value="{text.name}"' if text.name else ""

@@ -69,7 +69,7 @@ class Track:
 
     @property
     def end_words(self) -> str:
-        """Ends as on a drawing."""
+        """Ends as on a drawing: sharp, chamfer or radius with its size, or not stated."""
         if self.end is None:
             return "edges: not stated"
         kind, size = self.end
@@ -93,7 +93,9 @@ class Track:
         return np.hstack([left[:, ::-1] * [[-1.0], [1.0]], [y, low], right])
 
     def _end(self, low: float) -> Array:
-        """Points (2, m) of the right end, from the flat outwards."""
+        """Points (2, m) of the right end from the flat outwards, axial and radial coordinate, mm,
+        at height `low` of the flat's edge.
+        """
         half, (kind, size) = 0.5 * self.flat, self.end or ("sharp", 0.0)
         if kind != "radius":
             return np.array([[half, half + size], [low, low - size]])
@@ -187,7 +189,7 @@ def _thin(*lines: Array, dash: str = "solid") -> DrawnOutline:
 
 
 def _arrow(tail: tuple[float, float], tip: tuple[float, float]) -> Iterator[Shape]:
-    """Thin line with a head."""
+    """Thin line of a dimension or leader with a head at its tip."""
     back = np.array(tail) - np.array(tip)
     neck = np.array(tip) + 1.05 * HEAD * _ARROW * back / np.hypot(*back)
     start = (float(neck[0]), float(neck[1]))
@@ -201,6 +203,9 @@ def _from_polar(radius: float, degrees: float, x: float, y: float) -> tuple[floa
 
 
 def _front(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
+    """Shapes of the front view about (x, y), mm on paper: contour, bore, counter-hole, angles,
+    centre lines, plane of the section, sense of rotation, tolerance, roughness.
+    """
     scale, centre = part.scale, np.array([[x], [y]])
     edge = Pen("ink", _EDGE)
     contour = scale * part.contour + centre
@@ -244,7 +249,9 @@ def _turning(part: DrawnCam, x: float, y: float, scale: float) -> Iterator[Shape
 
 
 def _tolerance_frame(part: DrawnCam, contour: Array, x: float, y: float) -> Iterator[Shape]:
-    """Profile of a line with its datums, ISO 1101, on a leader to the contour."""
+    """Frame of the tolerance of a line profile with its datum, ISO 1101, on a leader to the contour
+    (2, n) drawn about (x, y), mm on paper.
+    """
     touch = _on_contour(contour, _PROFILE_AT, x, y)
     low, left, height = HEIGHT - 11.0, 10.0, 7.0
     widths = (8.0, 4.0 + GLYPH * _TEXT * len(part.profile_tolerance),
@@ -265,7 +272,9 @@ def _tolerance_frame(part: DrawnCam, contour: Array, x: float, y: float) -> Iter
 
 
 def _roughness(part: DrawnCam, contour: Array, x: float, y: float) -> Iterator[Shape]:
-    """Surface texture of the contour, ISO 21920-1: material removed."""
+    """Sign for the surface texture of the contour, ISO 21920-1: material removed; on a leader to
+    the contour (2, n) drawn about (x, y), mm on paper.
+    """
     touch = _on_contour(contour, _ROUGH_AT, x, y)
     left, low = x + 34.0, HEIGHT - 12.0
     yield from _arrow((left, low), touch)
@@ -282,6 +291,9 @@ def _roughness(part: DrawnCam, contour: Array, x: float, y: float) -> Iterator[S
 
 
 def _section(part: DrawnCam, left: float, y: float) -> Iterator[Shape]:
+    """Shapes of section C-C through the shaft axis, hatched, its left face at x = `left` and the
+    axis at height y, mm on paper.
+    """
     scale = part.scale
     high, low = (scale * radius_at(part.contour, turn) for turn in (0.5 * np.pi, 1.5 * np.pi))
     up, down = (scale * radius_at(part.hole, turn) for turn in (0.5 * np.pi, 1.5 * np.pi))
@@ -302,7 +314,9 @@ def _section(part: DrawnCam, left: float, y: float) -> Iterator[Shape]:
 
 
 def _detail(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
-    """Bore with its keyway turned upwards, at its own scale."""
+    """Bore with its keyway turned upwards and dimensioned, at its own scale, its centre at (x, y),
+    mm on paper.
+    """
     scale, radius = part.detail_scale, part.detail_scale * part.bore_radius
     upright = None if part.keyway is None else (*part.keyway[:2], 0.5 * np.pi)
     hole = scale * bore_outline(part.bore_radius, upright)
@@ -376,9 +390,10 @@ def _dimension(
     flag: str = "",
     above: bool = False,
 ) -> Iterator[Shape]:
-    """Horizontal dimension: extension lines from `edge`, arrows from outside, text behind or above.
+    """Horizontal dimension between the two x of `ends`: extension lines from height `edge`, arrows
+    from outside at height `line`, text behind or above; mm on paper.
 
-    A datum of this size stands in a frame behind the text, ISO 5459.
+    A datum of this size, letter `flag`, stands in a frame behind the text, ISO 5459.
     """
     low, high = ends
     beyond = 2.0 if line > edge else -2.0

@@ -74,7 +74,9 @@ class Coil:
     def groups(
         self, axis: float, lift: float
     ) -> tuple[tuple[ShapeGroup, ...], tuple[ShapeGroup, ...]]:
-        """Groups behind and before the stem at a lift."""
+        """Groups of shapes behind and before the stem at a lift, on a follower axis at x = `axis`,
+        mm.
+        """
         pose = self.pose(axis, lift)
         behind, before = self._strands()
         return (
@@ -88,7 +90,9 @@ class Coil:
         return Pose(shift=(axis, self.seat + lift + 0.5 * self.wire), stretch=inside)
 
     def _strands(self) -> tuple[list[Array], list[Array]]:
-        """Half coils on the far side and on the near side, x in mm, y from 0 to 1."""
+        """Half coils as straight segments (2, 2) on the far side and on the near side; x in mm, y
+        from 0 to 1.
+        """
         count = max(round(self.turns), 2)
         half = 0.5 * self.diameter
         steps = np.linspace(0.0, 1.0, 2 * count + 1)
@@ -99,7 +103,9 @@ class Coil:
         return strands[1::2], strands[::2]
 
     def _drawn(self, strands: list[Array], fill: str) -> tuple[DrawnOutline, ...]:
-        """Strands of wire with an edge."""
+        """Outlines of the wire along given strands: a dark line and a narrower one of colour `fill`
+        on it.
+        """
         widths = (("ink", self.wire), (fill, (1.0 - 2.0 * _WIRE_EDGE) * self.wire))
         return tuple(
             DrawnOutline((strand,), Pen(stroke, width), closed=False)
@@ -126,7 +132,9 @@ class DrawnGasSpring:
 
     @classmethod
     def drawn(cls, case: CaseLengths, at: SpringPlaces) -> DrawnGasSpring:
-        """As the case states it, on the end of the stem."""
+        """Gas spring of the case on the end of the stem; area and volume that the case does not
+        state are scaled from stem and stroke.
+        """
         area = case.length("spring", "gas", "area", unit="mm^2") or at.stem**2
         volume = case.length("spring", "gas", "volume", unit="cm^3")
         held = at.stroke * area if volume is None else 1e3 * volume
@@ -145,7 +153,9 @@ class DrawnGasSpring:
     def groups(
         self, axis: float, lift: float
     ) -> tuple[tuple[ShapeGroup, ...], tuple[ShapeGroup, ...]]:
-        """Groups behind and before the stem at a lift."""
+        """Groups of shapes behind the stem, here none, and before it at a lift, on a follower axis
+        at x = `axis`, mm.
+        """
         wall = _WALL_SHARE * self.bore
         low, rod = self.top - self.body, 0.5 * _ROD_SHARE * self.bore
         half = 0.5 * self.bore
@@ -183,7 +193,9 @@ class Torsion:
 
     @classmethod
     def drawn(cls, case: CaseLengths, at: SpringPlaces) -> Torsion:
-        """As the case states it, with its pin between the guides."""
+        """Torsion spring of the case, its pin on the follower between the guides; lengths that the
+        case does not state are scaled from the stroke.
+        """
         arm = case.length("spring", "torsion", "arm") or 2.0 * at.stroke
         raised = case.length("spring", "torsion", "arm_angle", unit="rad") or 0.0
         diameter = case.length("spring", "torsion", "mean_diameter") or 0.4 * arm
@@ -214,7 +226,9 @@ class Torsion:
     def groups(
         self, axis: float, lift: float
     ) -> tuple[tuple[ShapeGroup, ...], tuple[ShapeGroup, ...]]:
-        """Groups behind and before the stem at a lift."""
+        """Groups of shapes behind the stem, here none, and before it at a lift, on a follower axis
+        at x = `axis`, mm.
+        """
         half = 0.5 * self.diameter
         coil = DrawnOutline((circle(half + 0.5 * self.wire), circle(half - 0.5 * self.wire)),
                        Pen("ink", _EDGE, "steel"))  # fmt: skip

@@ -70,7 +70,9 @@ def paint(view: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
 
 
 def painted(folder: Path, count: int, window: str) -> bool:
-    """Whether a child process could paint the views of a folder in an OpenGL window."""
+    """Whether a child process painted the views of a folder, 0 to `count` - 1, in an OpenGL window
+    of VTK's class `window`.
+    """
     try:
         child = subprocess.run(  # noqa: S603 - our own interpreter and module
             module_command(__name__, str(folder), str(count)),

@@ -59,6 +59,9 @@ def figure_of(document: DesignDocument) -> Figure:
 
 
 def _torque(document: DesignDocument) -> Panel:
+    """Panel of the torque about its mean, N m, over one cycle of the machine, without and with the
+    cam.
+    """
     demand, chosen = document["torque"], document["chosen"]
     cycle, before = demand["cycle_deg"], np.array(demand["values_Nm"])
     angle = np.arange(before.size, dtype=float) * (cycle / before.size)
@@ -76,6 +79,9 @@ def _torque(document: DesignDocument) -> Panel:
 
 
 def _front(document: DesignDocument) -> Panel:
+    """Panel of the ripple left, N m, over the size, mm: screened designs within and beyond limits,
+    synthesised front, chosen design.
+    """
     points, chosen, cloud = document["points"], document["chosen"], document["cloud"]
     if points:
         far = _RIPPLE_MOST * points[-1]["size_mm"]
@@ -119,6 +125,9 @@ def _cam(chosen: ChosenDesign) -> Panel:
 
 
 def _words(document: DesignDocument) -> str:
+    """Lines of text on demand, screening and the chosen design with its sizes, beside
+    the panels.
+    """
     chosen, demand = document["chosen"], document["torque"]
     turns = "turn" if demand["ratio"] == 1.0 else "turns"
     lines = [

@@ -144,7 +144,9 @@ class Page:
 
 
 def titled(name: str, unit: str = "") -> tuple[str, str]:
-    """Label and unit of a dataset column, for tables and axes of a study's page."""
+    """Label and unit of a dataset column for tables and axes of a study's page; `unit`: of the
+    column where its label states none.
+    """
     if name == UTILISATION:
         return "Utilisation of the governing check", ""
     if name == PASS:
@@ -166,7 +168,9 @@ def page_of(
     links: Mapping[int, str],
     drawn: int,
 ) -> Page:
-    """Contents of a study's page, from its title, facts and answers."""
+    """Contents of a study's page, from its title, facts and answers; `links`: page of a design's
+    run by number of the design; `drawn`: number of designs on the page.
+    """
     counts = answers["designs"]
     failures, silent = _failures(answers["failures"])
     front = answers["front"]
@@ -184,6 +188,9 @@ def page_of(
 
 
 def _share(answers: Record) -> YieldShare:
+    """Share of the designs that pass with its confidence interval, in words; without an interval
+    where the designs are no sample.
+    """
     share, by = answers["yield"], answers["designs"]["by"]
     value, interval = share["value"], share["interval"]
     passing = (
@@ -224,7 +231,7 @@ def _whole(share: Record) -> int:
 
 
 def _percent(value: float) -> str:
-    """A share in per cent; not rounded to 0 or 100 unless it is."""
+    """A share, 0 to 1, as text in per cent; not rounded to 0 or 100 unless it is exactly so."""
     shown = f"{100.0 * value:.1f}"
     if shown == "100.0" and value < 1.0:
         shown = "> 99.9"
@@ -239,6 +246,9 @@ def _counted(count: int | None) -> str:
 
 
 def _tiles(answers: Record) -> list[Tile]:
+    """Tiles of the page: numbers of designs by outcome, most frequent failure, size of
+    the front.
+    """
     counts = answers["designs"]
     passing, failing, _ = STATES[counts["by"]]
     depths = ", ".join(f"{_counted(n)} at {words(name)}" for name, n in counts["depth"].items())
@@ -258,7 +268,7 @@ def _tiles(answers: Record) -> list[Tile]:
 
 
 def _failures(rows: Sequence[Record]) -> tuple[list[FailureRow], str]:
-    """Rows of the checks that fail or lack data in some designs; the others in a sentence."""
+    """Rows of the checks that fail or lack data in some designs, and a sentence on the others."""
     absent = [row["title"] for row in rows if not row["fail"] and row["not_evaluated"] >= row["of"]]
     partly = [row for row in rows if row["title"] not in absent]
     made = []
@@ -296,6 +306,9 @@ def _effects_lead(answers: Record) -> str:
 
 
 def _effect(output: Record) -> Effect | None:
+    """Effects of all factors on one output: bars between the means at the levels of each factor, by
+    swing, and its sensitivity indices; None without effects.
+    """
     if not output["effects"]:
         return None
     label, unit = titled(output["name"], output["unit"])
@@ -338,6 +351,7 @@ def _effect(output: Record) -> Effect | None:
 
 
 def _index(row: Record, name: str) -> Index:
+    """Sensitivity index `name` of a factor with its confidence interval, clipped to 0 to 1."""
     low, high = row[f"{name}_interval"]
     value = row[name]
     shown, left, right = (min(max(v, 0.0), 1.0) for v in (value, low, high))
@@ -346,6 +360,7 @@ def _index(row: Record, name: str) -> Index:
 
 
 def _front_lead(front: Record | None, by: str) -> str:
+    """Sentence on the objectives of the Pareto front and on the designs it is taken from."""
     if front is None:
         return "The study file does not state two objectives."
     names = [f"{titled(o['column'])[0]} ({_GOALS[o['goal']]})" for o in front["objectives"]]
@@ -355,6 +370,9 @@ def _front_lead(front: Record | None, by: str) -> str:
 
 
 def _front(front: Record | None, links: Mapping[int, str]) -> DesignTable | None:
+    """Table of the designs on the Pareto front with their objectives and factors; None without a
+    front.
+    """
     if front is None or not front["designs"]:
         return None
     objectives = [", ".join(filter(None, titled(o["column"], o["unit"])))
@@ -377,6 +395,7 @@ def _judged(point: Record, factors: Sequence[str]) -> list[str]:
 
 
 def _worst(answers: Record, links: Mapping[int, str]) -> DesignTable | None:
+    """Table of one row: the design of greatest utilisation; None where no design has one."""
     worst = answers["worst"]
     if worst is None:
         return None
@@ -389,6 +408,9 @@ def _worst(answers: Record, links: Mapping[int, str]) -> DesignTable | None:
 
 
 def _sections(answers: Record) -> list[ReportSection]:
+    """Sections below the drawings: extremes of the outputs; factors, and messages of designs
+    without a result.
+    """
     blocks = []
     spread = [
         [titled(o["name"], o["unit"])[0], titled(o["name"], o["unit"])[1] or DASH,

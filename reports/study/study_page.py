@@ -91,7 +91,7 @@ def text(
 
 
 def _data(answers: Record, designs: DesignRows) -> Record:
-    """Data of the drawings: columns as base64 of little-endian numbers."""
+    """Data of the drawings: columns as base64 of little-endian numbers, with labels and units."""
     names = _drawn(answers, designs)
     axes, matrix = _first_choice(answers, names)
     columns = []
@@ -129,7 +129,9 @@ def _drawn(answers: Record, designs: DesignRows) -> list[str]:
 
 
 def _first_choice(answers: Record, names: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Columns shown at first: as axes, and in the matrix; factors by their effect."""
+    """Columns shown at first: those of the parallel axes, and those of the matrix of scatter plots;
+    factors by their effect.
+    """
     by_name = {output["name"]: output for output in answers["outputs"]}
     judged = by_name.get(PASS, {"effects": ()})["effects"] or \
         by_name.get(UTILISATION, {"effects": ()})["effects"]  # fmt: skip
@@ -150,6 +152,9 @@ def _first_choice(answers: Record, names: Sequence[str]) -> tuple[list[str], lis
 def _front_data(
     front: Record | None, names: Sequence[str], design: NDArray[np.int64]
 ) -> Record | None:
+    """Pareto front for the drawings: columns of both objectives as indices of `names`, and rows of
+    its designs in `design`; None without one.
+    """
     if front is None or not front["designs"]:
         return None
     x, y = (names.index(o["column"]) for o in front["objectives"])
