@@ -180,7 +180,9 @@ def _discretised(loops: list[list[OutlinePiece]], size: SizeField) -> list[list[
 
 
 def _zone(sizing: ElementSize, centre: float) -> Zone | None:
-    """Equal facets about an arc length, m, shifted by the phase; None without a contact."""
+    """Zone of equal facets about the arc length `centre`, m, shifted by the sizing's phase; None
+    without a contact.
+    """
     if sizing.contact_size is None or not sizing.refined:
         return None
     step = sizing.contact_size
@@ -332,7 +334,9 @@ def half_disc_mesh(radius: float, sizing: ElementSize) -> BodyMesh:
 
 
 def _mirrored(half: Triangulation, axis: str) -> BodyMesh:
-    """`half` (x >= 0) and its mirror image in x = 0, joined at the nodes of boundary `axis`."""
+    """Mesh of `half` (x >= 0) and its mirror image in x = 0, joined at the nodes of its boundary
+    `axis`.
+    """
     shared = np.unique(half.boundaries[axis])
     count, corners = half.points.shape[1], int(half.triangles[:3].max()) + 1
     own = np.setdiff1d(np.arange(count), shared)

@@ -160,7 +160,7 @@ def hole_size(size: SizeField, path: SampledContour, hole: HoleLike) -> SizeFiel
 
 
 def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -> SizeField:
-    """Element size limited by four edges per fillet."""
+    """Element size made finer so that each fillet of the keyway has four edges."""
     fillet = keyway.fillet
     if fillet > 0:
         outer, half = bore_radius + keyway.depth, 0.5 * keyway.width

@@ -78,7 +78,7 @@ def cam_on_shaft(
 
 
 def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -> SizeField:
-    """Element size limited by `_PER_FILLET` edges per fillet."""
+    """Element size made finer so that each fillet has `_PER_FILLET` edges."""
     floor, half, fillet = bore_radius + keyway.depth, 0.5 * keyway.width, keyway.fillet
     if fillet > 0.0:
         for side in (-1.0, 1.0):
@@ -88,7 +88,9 @@ def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -
 
 
 def _in_order(mesh: BodyMesh, name: str) -> Index:
-    """Nodes (n,) of a boundary of arcs about the origin by their polar angle."""
+    """Nodes (n,) of the boundary `name`, arcs about the origin, in the order of their
+    polar angle.
+    """
     nodes = mesh.boundary_nodes(name)
     angle = np.arctan2(*mesh.points[::-1, nodes]) % FULL_TURN
     # the node at zero, or a hair below it, comes first on both bodies

@@ -78,7 +78,9 @@ class LoadedBody:
 
     @cached_property
     def _quadrature(self) -> tuple[Array, Array, scipy.sparse.csr_array]:
-        """Points (2, q), outward normals times weights (2, q), shape values (nodes, q)."""
+        """Gauss points (2, q) on the free surface, m, outward normals times weights (2, q), m, and
+        values of the nodal shapes there (nodes, q).
+        """
         triples = self._free_facets
         corners = self.body.mesh.points[:, triples]
         s = (1 + _GAUSS_POINTS) / 2
@@ -144,6 +146,7 @@ class LoadedBody:
 
     @property
     def _springs_key(self) -> tuple[str, ...]:
+        """Hashes of the springs for the cache key; () without springs."""
         springs = self.body.springs
         if springs is None:
             return ()
@@ -289,7 +292,9 @@ class LoadedBody:
         return loads, np.negative(far, out=far)
 
     def _half_plane_displacement(self, contacts: Array, normals: Array) -> Array:
-        """Half-plane displacement (2, nodes, count) at held nodes and springs."""
+        """Displacement (2, nodes, count) of the half-plane under a unit force, m per N/m, at the
+        nodes that are held or on springs; zero elsewhere.
+        """
         mesh, body = self.body.mesh, self.body
         nodes = body.held_nodes
         if body.springs is not None:
@@ -301,11 +306,12 @@ class LoadedBody:
         return field
 
     def _at_contacts(self, displaced: Array, contacts: Array, normals: Array) -> Array:
-        """Slope of the tangential and bend of the outward displacement (2, count) at contacts.
+        """Slope of the tangential displacement and second derivative of the outward one along the
+        surface, (2, count), at the contacts.
 
-        displaced (2, m, count) at the condensed nodes. A cubic is fitted to the surface nodes
-        about each contact, with weights that vanish at the outermost one: continuous when the
-        contact passes a node.
+        displaced (2, m, count) at the condensed nodes. A cubic is fitted to the surface nodes about
+        each contact, with weights that vanish at the outermost one: continuous when the contact
+        passes a node.
         """
         mesh = self.body.mesh
         surface = np.searchsorted(self.condensed_nodes, mesh.boundary_nodes(self.surface))

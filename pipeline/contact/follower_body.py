@@ -89,6 +89,7 @@ class RollerBody:
         return np.array([[0.0], [self.radius]]), np.array([[0.0], [1.0]])
 
     def mesh_at(self, contour: Contour, theta: float, sizing: ElementSize) -> BodyMesh:
+        """Mesh of the roller in the cam frame at cam angle `theta`, rad, refined at the contact."""
         contact, normal = contour.points(theta), contour.normal(theta)
         facing = float(np.arctan2(-normal[1], -normal[0]))
         mesh = roller_mesh(self.radius, self.hub_radius, facing, sizing)
@@ -135,6 +136,7 @@ class FaceBody:
         return np.stack([along, nothing]), np.stack([nothing, one])
 
     def mesh_at(self, contour: Contour, theta: float, sizing: ElementSize) -> BodyMesh:
+        """Mesh of the face in the cam frame at cam angle `theta`, rad, refined at the contact."""
         arm = float(contour.pitch.slide(theta).on_face)
         here = replace(sizing, contact_point=np.array([arm, 0.0]))
         mesh = face_mesh(self.width, self.thickness, self.stem_diameter, here)

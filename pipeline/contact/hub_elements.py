@@ -196,7 +196,9 @@ class HubUnits:
         return float(pressed @ share / share.sum())
 
     def _amplitudes(self, units: Array, loads: HubLoads) -> Array:
-        """Columns (r, n) of a quantity (r, l) of the unit loads under loads."""
+        """Values (r, n) of a quantity under n loads, from its values `units` (r, l) under the unit
+        loads; the contact force is interpolated over the cam angle.
+        """
         ahead, behind, spin = units[:, :3].T
         contacts = units[:, 3:]
         turn = np.append(uniform_turn(contacts.shape[1]), FULL_TURN)
@@ -208,7 +210,10 @@ class HubUnits:
         return np.asarray(pushed + key + spin[:, None] * loads.speed**2)
 
     def _searched(self, right: Array, start: Array) -> Array:
-        """Nodal forces (k, n) without tension, by the set of nodes in contact at each angle."""
+        """Nodal forces (k, n) of the seat without tension, by the set of nodes in contact at each
+        angle; right (k + 2, n): closing of the gap, m, and resultant; start (k, n): forces of a
+        closed seat.
+        """
         forces, closed = np.zeros_like(start), start[:, 0] > 0.0
         for column in range(right.shape[1]):
             forces[:, column], closed = self._touching(right[:, column], closed)
@@ -222,7 +227,7 @@ class HubUnits:
         """
         touching = self._settled(right, closed)
         if touching is None:
-            touching = self._settled(right, self._pressed(right))
+            touching = self._settled(right, self._nodes_of_least_energy(right))
         if touching is None:
             raise ContactError(f"contact of the seat = not found in {_ITERATIONS} steps")
         return touching
@@ -230,7 +235,9 @@ class HubUnits:
     def _settled(
         self, right: Array, closed: NDArray[np.bool_]
     ) -> tuple[Array, NDArray[np.bool_]] | None:
-        """As `_touching` from one first set; None where the nodes do not settle."""
+        """Nodal forces (k,) without tension and the nodes in contact, by exchange from the set
+        `closed`; None where the nodes do not settle. See `_touching`.
+        """
         count, known = closed.size, self._arrays["compliance"]
         deep, give = _SEAT_CONVERGED * float(np.abs(right[:count]).max()), np.diag(known)
         for _ in range(_ITERATIONS):
@@ -247,8 +254,10 @@ class HubUnits:
             closed = closed ^ wrong
         return None
 
-    def _pressed(self, right: Array) -> NDArray[np.bool_]:
-        """Nodes in contact by non-negative least squares of the complementary energy."""
+    def _nodes_of_least_energy(self, right: Array) -> NDArray[np.bool_]:
+        """Whether each node (k,) is in contact, by non-negative least squares of the complementary
+        energy.
+        """
         count = self.normals.shape[1]
         root, inverse = self._roots
         # of the size of the compliance, so that equilibrium outweighs the energy
@@ -266,14 +275,18 @@ class HubUnits:
 
 
 def _solved(seated: SeatedCam) -> dict[str, Array]:
-    """The arrays of `HubUnits`."""
+    """The arrays of `HubUnits`, by finite elements: free cam and shaft, under nodal forces between
+    them and under the unit loads.
+    """
     radius, slot = seated.bore_radius, seated.slot
     sizing = ElementSize(far_size=_FAR_SIZE * radius)
     meshes = cam_on_shaft(seated.contour, radius, slot, sizing, seated.refinement)
     cam = _Free(meshes.cam, seated.cam, "contour")
     shaft = _Free(meshes.shaft, seated.shaft, "seat")
     normals = meshes.cam.points[:, meshes.of_bore] / radius
-    loads = np.concatenate([_keyed(cam, seated), cam.spun()[..., None], _pushed(cam, seated)], 2)
+    loads = np.concatenate(
+        [_key_forces(cam, seated), cam.spun()[..., None], _contact_forces(cam, seated)], 2
+    )
     resultant = loads.sum(axis=1)
     seat = _at_nodes(cam, meshes.of_bore, normals)
     of_loads = cam.displacement(np.concatenate([seat, loads], axis=2))
@@ -346,7 +359,9 @@ class _Free:
 
 
 def _tangential(mesh: BodyMesh, name: str) -> Array:
-    """Nodal forces (2, nodes) along the outline, counter-clockwise."""
+    """Nodal forces (2, nodes) along the outline `name`, counter-clockwise, in proportion to length
+    and radius.
+    """
     forces, radius = np.zeros_like(mesh.points), mesh.boundary_nodes(name)
     start, end, _ = mesh.facet_triples(name)
     weight = _nodal(mesh, name, np.hypot(*(mesh.points[:, end] - mesh.points[:, start])))
@@ -378,8 +393,10 @@ def _at_nodes(body: _Free, nodes: NDArray[np.int64], normals: Array) -> Array:
     return loads
 
 
-def _pushed(cam: _Free, seated: SeatedCam) -> Array:
-    """Unit forces (2, nodes, contacts) against the outward normal, at points of the contour."""
+def _contact_forces(cam: _Free, seated: SeatedCam) -> Array:
+    """Nodal forces (2, nodes, contacts) of a unit force, N/m, against the outward normal at each of
+    the contacts, equally spaced in cam angle.
+    """
     mesh, theta = cam.mesh, uniform_turn(CONTACTS)
     points, normals = seated.contour.points(theta), seated.contour.normal(theta)
     triples = mesh.facet_triples("contour")
@@ -394,8 +411,10 @@ def _pushed(cam: _Free, seated: SeatedCam) -> Array:
     return loads
 
 
-def _keyed(cam: _Free, seated: SeatedCam) -> Array:
-    """Even pressure of the key on its flanks (2, nodes, 2) with a couple of 1 and -1."""
+def _key_forces(cam: _Free, seated: SeatedCam) -> Array:
+    """Nodal forces (2, nodes, 2) of an even pressure of the key on one flank and on the other, with
+    couples of 1 and -1; zero without a keyway.
+    """
     mesh, slot = cam.mesh, seated.slot
     loads = np.zeros((*mesh.points.shape, 2))
     if slot is None:
@@ -422,7 +441,9 @@ def _keyed(cam: _Free, seated: SeatedCam) -> Array:
 
 
 def _along_root(cam: _Free, seated: SeatedCam, displacement: Array) -> tuple[Array, Array]:
-    """Places (2, m) of the root and stress (m, k) along the boundary there."""
+    """Places (2, m), m, of the nodes at the root of the keyway, or of the bore without one, and
+    stress (m, k) along the boundary there under displacements (2, nodes, k).
+    """
     mesh, slot = cam.mesh, seated.slot
     name = "bore" if slot is None else "keyway"
     triples = mesh.facet_triples(name)

@@ -287,6 +287,9 @@ def _asperity_share(film: LineFilm, roughness: float, hardness: float, modulus: 
 
 
 def _regression(film: LineFilm, roughness: float, hardness: float, modulus: float) -> MixedFilm:
+    """Film thickness, m, and share of the load on asperities by the regression, without
+    its range.
+    """
     W, U, G, s, V = _groups(film, roughness, hardness, modulus).values()
     central = 1 + 0.2 * s**1.222 * V**0.223 * W**-0.229 * U**-0.748 * G**-0.842
     least = 1 + 0.026 * s**1.120 * V**0.185 * W**-0.312 * U**-0.809 * G**-0.977

@@ -100,7 +100,9 @@ class RingBody:
         return self._annulus.mesh_at(contour, theta, sizing)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> Springs:
-        """Balls as springs on the mesh at a cam angle; in the ring's frame for contour None."""
+        """Balls as springs on the mesh of the ring at cam angle `theta`, rad, in the cam frame; in
+        the ring's own frame where `contour` is None.
+        """
         if contour is None:
             return ball_springs(mesh, np.zeros(2), 0.5 * np.pi, self.ring, self.width)
         normal = contour.normal(theta)
@@ -119,6 +121,9 @@ def unit_bend(body: RingBody) -> float:
 
 
 def _bend(body: RingBody) -> Array:
+    """Bend of the outer ring at a contact, 1/m per N/m, as an array; see
+    `LoadedBody.correction`.
+    """
     mesh = body.coarse_mesh()
     material = body.material
     elastic = ElasticBody(

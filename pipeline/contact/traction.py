@@ -83,7 +83,11 @@ def _sliding_stress(x: Array, depth: Array) -> Array:
 
 
 def _greatest(measure: Callable[[Array, Array], Array]) -> Array:
-    """Maxima (m,) under a contact of a measure (m, n) at places x and depth (m, n), half-widths."""
+    """Maxima (m,) of m stress measures over the solid under the contact, by search on ever finer
+    grids.
+
+    measure: function of x and depth, both (m, n) in half-widths, that returns (m, n)
+    """
     half = _GRID_REACH / _CELLS
     sides = np.linspace(-_GRID_REACH, _GRID_REACH, 2 * _CELLS + 1)
     x, depth = (each.ravel()[None] for each in np.meshgrid(sides, sides[_CELLS:]))

@@ -128,7 +128,7 @@ def test_the_search_finds_the_least_energy():
     count = units.normals.shape[1]
     right = np.append(np.full(count, 1e-7), [1.2e5, 5e4])
     found, closed = units._touching(right, np.ones(count, dtype=bool))
-    other, same = units._touching(right, units._pressed(right))
+    other, same = units._touching(right, units._nodes_of_least_energy(right))
     assert (closed == same).all()
     assert found == pytest.approx(other, rel=1e-9, abs=1e-3)
     assert 3 < closed.sum() < count

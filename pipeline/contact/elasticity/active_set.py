@@ -133,7 +133,9 @@ def solve(
 def _together(
     C: Array, g: Array, weights: Array, targets: Array, start: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
-    """Active-set sweeps over all problems at once; those that do not settle by `_primal`."""
+    """Pressures (count, n) and rigid motions (count, k) of all problems by primal-dual sweeps at
+    once; those that do not settle by `_primal`.
+    """
     count, size = g.shape
     pressures, motions = np.zeros((count, size)), np.zeros(targets.shape)
     unsettled = np.arange(count)
@@ -175,7 +177,8 @@ def _determined(weights: Array, active: NDArray[np.bool_]) -> bool:
 def _equality_solutions(
     C: Array, g: Array, weights: Array, targets: Array, active: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
-    """Zero gap on the active pressures, zero pressure elsewhere, of each problem.
+    """Pressures (count, n) and rigid motions (count, k) with zero gap where `active`, zero pressure
+    elsewhere.
 
     With the prescribed resultants `targets` (count, k), the first a unit force.
     """
@@ -196,7 +199,9 @@ def _equality_solutions(
 
 
 def _primal(C: Array, g: Array, weights: Array, targets: Array) -> tuple[Array, Array]:
-    """One problem by the primal active-set method; the energy decreases, so no set recurs."""
+    """Pressures (n,) and rigid motion (k,) of one problem by the primal active-set method; the
+    energy decreases, so no set recurs.
+    """
     p = _balanced(weights, targets)
     active = np.ones(g.size, dtype=bool)
     for _ in range(20 * g.size):

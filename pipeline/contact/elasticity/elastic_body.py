@@ -113,7 +113,7 @@ class ElasticBody:
         return own if self.springs is None else own + self._stiffness_of(self.springs)
 
     def _stiffness_of(self, springs: Springs) -> scipy.sparse.csc_array:
-        """Stiffness matrix of the springs."""
+        """Stiffness matrix of the springs, all degrees of freedom, N/m2."""
         spring, component, node = np.nonzero(springs.ways)
         entries = (springs.ways[spring, component, node], (spring, self.dofs[component, node]))
         ways = scipy.sparse.csc_matrix(entries, shape=(springs.stiffness.size, self.basis.N))
@@ -243,9 +243,9 @@ class CondensedBody:
 
     @cached_property
     def _held(self) -> tuple[NDArray[np.int64], scipy.sparse.sparray, NDArray[np.int64]]:
-        """Places of the held degrees of freedom in a flat displacement (2, all nodes).
-
-        The stiffness that couples the nodes to them, and which of them are of the nodes.
+        """Places of the held degrees of freedom in a flat displacement (2, all nodes), the
+        stiffness that couples the condensed nodes to them, and which of them belong to condensed
+        nodes.
         """
         body, seen = self.body, self.body.dofs[:, self.nodes].ravel()
         place = np.empty(body.basis.N, dtype=int)
@@ -341,7 +341,9 @@ class StressRecovery:
 def _stacked(
     values: list[Array], dofs: NDArray[np.int64], shape: tuple[int, int]
 ) -> scipy.sparse.csr_array:
-    """Sparse matrix (quadrature points, degrees of freedom) of the values per local shape."""
+    """Sparse matrix (quadrature points, degrees of freedom) from values (elements, points) per
+    local shape and numbers `dofs` (shapes, elements).
+    """
     elements, quadrature = values[0].shape
     rows = np.arange(elements * quadrature)
     parts = [

@@ -42,6 +42,7 @@ class Bush(SolidBar):
 
 
 def _elastic(field: str, modulus: float, poisson: float) -> None:
+    """Refuse a modulus or Poisson's ratio out of bounds; field: name in the message."""
     if not 0.0 < modulus < np.inf:
         raise InputError(f"{field}.modulus", modulus, "> 0 Pa")
     if not 0.0 <= poisson < 0.5:

@@ -68,6 +68,9 @@ def _solved(factor: scipy.sparse.linalg.SuperLU, right: Array) -> Array:
 
 
 def _by_cholmod(matrix: scipy.sparse.csc_array) -> Callable[[Array], Array]:
+    """Solver of a symmetric positive definite matrix by CHOLMOD, for right-hand sides (n,) or (n,
+    k).
+    """
     from cvxopt import cholmod, spmatrix
     from cvxopt import matrix as dense
 
@@ -88,6 +91,9 @@ def _by_cholmod(matrix: scipy.sparse.csc_array) -> Callable[[Array], Array]:
 
 
 def _by_pardiso(matrix: scipy.sparse.sparray) -> Callable[[Array], Array]:
+    """Solver of a symmetric positive definite matrix by PARDISO, for right-hand sides (n,) or (n,
+    k).
+    """
     from pypardiso import PyPardisoSolver
 
     solver = PyPardisoSolver(mtype=_POSITIVE_DEFINITE)

@@ -286,6 +286,9 @@ class SummedCrown:
         return np.asarray(total)
 
     def _beside(self, crown: Crown, middle: float, y: Array) -> Array:
+        """Drop (...), m, at y of a crown with its middle at `middle`, m, less its value and slope
+        at y = 0; that of one side, `side`, counts on both.
+        """
         before, level, after = crown.drop(np.array([-_SLOPE_STEP, 0.0, _SLOPE_STEP]) - middle)
         slope = (after - before) / (2.0 * _SLOPE_STEP)
         along = self.side * np.abs(y)

@@ -218,7 +218,9 @@ class _Elimination:
         return self.section.facet_loads(float(self._steps[slab])) if slab < self._along else None
 
     def without_outer_plane(self, slab: int, loads: _Loads | None, columns: Index) -> _Gone:
-        """Eliminate the outer plane of a slab under loads in some columns."""
+        """Eliminate the outer plane of a slab, with the nodes behind it, under loads in some
+        columns of the right side; what is left acts on the inner plane.
+        """
         outer, cross, inner, middle = self._stiffness.condensed(float(self._steps[slab]))
         ahead, half, kept = np.zeros_like(self._right), None, self._kept
         if loads is not None:
@@ -277,7 +279,9 @@ class _Section:
         self.supported_between = self._supported(refined_x[is_between], refined_z[is_between])
 
     def _supported(self, place_x: Index, place_z: Index) -> Index:
-        """Unknowns that are not held by the base or the symmetry of x."""
+        """Unknowns, three per node, that are neither held by the base nor by the symmetry of x;
+        places of the nodes in half edges.
+        """
         free = np.ones((place_x.size, 3), dtype=bool)
         free[place_z == 2 * (self.z.size - 1)] = False
         free[place_x == 0, 0] = False
@@ -355,13 +359,16 @@ class _SlabStiffness:
         self._of_thickness: dict[float, tuple[Array, Array, Array, _Middle]] = {}
 
     def condensed(self, thickness: float) -> tuple[Array, Array, Array, _Middle]:
-        """Stiffness of the outer plane, its coupling to the inner one, the latter's; the middle."""
+        """Stiffness of the outer plane, its coupling to the inner plane, stiffness of the inner
+        plane, all without the nodes between, and these eliminated nodes; thickness in m.
+        """
         if thickness not in self._of_thickness:
             self._of_thickness.clear()
             self._of_thickness[thickness] = self._computed(thickness)
         return self._of_thickness[thickness]
 
     def _computed(self, thickness: float) -> tuple[Array, Array, Array, _Middle]:
+        """What `condensed` returns, by elimination of the nodes between both planes."""
         first, second, third = self._parts
         whole = thickness * first + second + third / thickness
         planar = 3 * self._section.planar
@@ -388,6 +395,9 @@ class _Reference:
 
 @cache
 def _reference() -> _Reference:
+    """Nodes and integrals of the products of slopes of the quadratic serendipity brick, on the unit
+    cube.
+    """
     from skfem import Basis, BilinearForm, ElementHexS2, MeshHex
 
     basis = Basis(MeshHex(), ElementHexS2(), intorder=_QUADRATURE_ORDER)

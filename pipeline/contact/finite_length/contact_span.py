@@ -70,7 +70,9 @@ def contact_cells(pair: FinitePair, force: float, moment: float, sizes: CellSize
 
 
 def _mapped(edges: Array, low: float, high: float, zone: float) -> Array:
-    """Edges of a whole line, m, mapped to a part of it; those near an end that it reaches stay."""
+    """Cell edges, m, of the whole line mapped to its part from `low` to `high`; within `zone`, m,
+    of an end that the part reaches they keep their distances.
+    """
     reach = float(edges[-1])
     share = (high - low) / (2.0 * reach)
     first, last = (
@@ -100,7 +102,9 @@ def contact_span(pair: FinitePair, force: float, moment: float) -> ContactSpan:
 def _span(
     whole: float, curvature: float, modulus: float, crown: Crown, force: float, moment: float
 ) -> ContactSpan:
-    """Extent of a contact of a whole length, m; kept for bodies of other lengths."""
+    """Extent of the contact on a crowned line of length `whole`, m, under force and moment, by
+    springs along the line; cached for bodies that share these inputs.
+    """
     low, high, length = -0.5 * whole, 0.5 * whole, whole
     pressed = np.empty(0)
     edges = np.empty(0)

@@ -128,7 +128,7 @@ class FactorTable:
 
         Inputs as those of `factors`.
         """
-        kappa, load, couple = _alike(curvature, force, moment)
+        kappa, load, couple = _checked_inputs(curvature, force, moment)
         share = couple / (load * self.pair.contact_length)
         if not (np.abs(share) <= GREATEST_MOMENT).all():
             worst = int(np.argmax(np.abs(share)))
@@ -179,7 +179,7 @@ class FactorTable:
         In amount at most `most` (count,), N m, and `GREATEST_MOMENT` of force and length. One of
         both supports yields by `compliance` (count,), rad/(N m), times the moment.
         """
-        kappa, load, angle = _alike(curvature, force, tilt)
+        kappa, load, angle = _checked_inputs(curvature, force, tilt)
         length = load * self.pair.contact_length
         limit = np.minimum(most, GREATEST_MOMENT * length)
         if self.pair.is_symmetric and not (angle * limit).any():
@@ -223,8 +223,11 @@ class FactorTable:
         )
 
     def _place(self, curvature: Array, force: Array, count: Index) -> _Place:
-        """Nodes of the table about contacts (count,), and the numbers of their nodes and
-        interpolation weights (count, k); a node gets as many moments as the contacts need, `count`.
+        """Interpolation in the table: its nodes about the contacts, and for each contact the
+        numbers of its nodes and their weights, both (contacts, k).
+
+        count (contacts,): number of moments that each contact needs at its nodes; missing ones are
+        computed.
         """
         if self._depends_on_load:
             line_load = force / self.pair.contact_length
@@ -382,7 +385,9 @@ class _Node:
 
     @classmethod
     def of(cls, ladder: _Ladder, moments: Array, edges: Array, line: Array, turn: Array) -> _Node:
-        """Rows of all moments from those computed; those below zero by symmetry where left out."""
+        """Node with a row per moment of the ladder, filled with edges, m, pressures and turns
+        computed at `moments`; those below zero by symmetry where left out.
+        """
         ends, lines = (np.zeros((ladder.signed.size, each.shape[1])) for each in (edges, line))
         turns = np.full(ladder.signed.size, np.nan)
         signs = (1,) if (moments < 0).any() else (-1, 1)
@@ -438,8 +443,8 @@ def _lines(nodes: tuple[_Node, ...]) -> Array:
     return readonly(np.concatenate([np.hstack([node.edges, node.line]) for node in nodes]))
 
 
-def _alike(*values: ArrayLike) -> list[Array]:
-    """Curvature, force and a third input as arrays (count,)."""
+def _checked_inputs(*values: ArrayLike) -> list[Array]:
+    """Curvature, force and a third input broadcast to arrays (count,); InputError out of bounds."""
     arrays = [np.atleast_1d(np.asarray(value, dtype=float)) for value in values]
     kappa, load, third = np.broadcast_arrays(*arrays)
     for name, each in (("curvature", kappa), ("force", load)):

@@ -98,9 +98,11 @@ class _Image(NamedTuple):
 def _add_free_ends(
     pairs: Array, cells: PressureCells, free: Mapping[tuple[float, float], float]
 ) -> None:
-    """Add what the ends of bodies of a length, m, and Poisson's ratio add, times a softness, 1/Pa.
+    """Add what the free ends of the bodies yield more than half-spaces, to displacements over
+    pressures of pairs of cells `pairs` (m, m, k, k), in place.
 
-    To displacements over pressures of pairs of cells (m, m, k, k), as those of `influence`.
+    free: softness, 1/Pa, of each body by its length, m, and Poisson's ratio; axes of `pairs` as
+    those of `influence`. Loads mirrored at both ends, and a smooth rest in powers of the place.
     """
     m, k = cells.shape
     place, mean, across_d2 = cells.centres_along, np.zeros((m, m)), np.zeros((m, m))
@@ -123,9 +125,10 @@ def _add_free_ends(
 
 
 def _image(cells: PressureCells, shift: float, poisson: float) -> _Image:
-    """Influence of the loads mirrored at y = shift/2, times their factor.
+    """Influence of the loads mirrored at the end y = shift/2, m, times the factor of Poisson's
+    ratio that frees this end of stress.
 
-    Loads whose distance is large to the width by the mean and the second moments of the cells.
+    Distant loads by their mean and second moments over the cells, near ones exactly.
     """
     along = cells.centres_along
     # Cells of a rounded end may reach beyond the end of the other body.
@@ -192,7 +195,9 @@ def _rising(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 @lru_cache(maxsize=64)
 def _places(count: int) -> NDArray[np.intp]:
-    """Places (count, count) of pairs in any order among those in rising order."""
+    """Indices (count, count) of all pairs of numbers, in any order, among the pairs in rising
+    order.
+    """
     first, second = _rising(count)
     places = np.empty((count, count), dtype=np.intp)
     places[first, second] = places[second, first] = np.arange(first.size)
@@ -222,7 +227,9 @@ class _Pairs:
         self.areas = steps[first] * steps[second]
 
     def integrated(self, primitive: Array) -> Array:
-        """Integrals (p, ...) over both cells from a primitive (e, ...) taken twice."""
+        """Integrals (p, ...) over both cells of each pair, from the twofold primitive (e, ...) at
+        the distances of the edges.
+        """
         i, j = self._cells
         corner = self._corners
         rising = primitive[corner[i + 1, j + 1]] - primitive[corner[i, j + 1]]
@@ -231,7 +238,9 @@ class _Pairs:
 
 
 def _double_integral(across: _Pairs, along: _Pairs) -> Array:
-    """Integral of 1/r over pairs of cells, (p across, p along), m3."""
+    """Integrals of 1/r over both cells of each pair, (p across, p along), m3: exact when near, by
+    mean and second moments when far apart.
+    """
     primitive = _fourth_primitive(across.edges[:, None], along.edges)
     values = along.integrated(across.integrated(primitive).T).T
     square = across.centres[:, None] ** 2 + along.centres**2

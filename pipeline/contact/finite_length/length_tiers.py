@@ -262,7 +262,8 @@ def _result(
     unknowns: int,
     halves: Sequence[_SignedLine] = (),
 ) -> TierResult:
-    """Result of a contact on the mesh `place` of three, coarse to fine.
+    """Result of one method from contacts on three meshes, coarse to fine, with error bars; the
+    contact is that on mesh `place`.
 
     halves : sequence   by half-spaces on the same cells and on finer ones that fit the contact
     """
@@ -309,6 +310,7 @@ def meshes_of(pair: FinitePair, half_width: float, sizes: CellSizes) -> list[Pre
 
 
 def _require_load(pair: FinitePair, force: float, tilt: float | None, moment: float | None) -> None:
+    """Refuse a force that is not positive, a tilt or moment beyond its bound, and both at once."""
     if not 0 < force < np.inf:
         raise InputError("force", force, "> 0 N")
     if tilt is not None and not abs(tilt) < _TILT:
