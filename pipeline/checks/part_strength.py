@@ -421,14 +421,15 @@ cheek_pressure = check(
     method="volumes times densities, and a share of the spring",
     moved_by_tolerance=False,
     formula="m_r + m_p + m_f + m_s + m_c <= x m; m_r: mass of roller with bearing, or face, m_p:"
-    " pin, m_f: fork, m_s: stem, m_c: follower.spring_share of the spring, of the parts that the"
-    " scope covers, m: follower.mass, x: limits.follower_mass_ratio.",
+    " pin, m_f: fork, m_s: stem, or arm at the roller, m_c: follower.spring_share of the spring, of"
+    " the parts that the scope covers, m: follower.mass, x: limits.follower_mass_ratio.",
     symbols=dict.fromkeys(("m_r", "m_p", "m_f", "m_s", "m_c"), f"{STATED} [g]"),
     reason="every force of inertia and the jump speed rest on a mass that the parts exceed",
     load_cases=NONE,
     values=(
         "follower.mass",
         "follower.stem_material.density",
+        "follower.arm.material.density",
         "roller.material.density",
         "roller.pin.material.density",
         "roller.fork.material.density",
@@ -444,8 +445,9 @@ def follower_mass(solution: Solution) -> Demand:
     total = sum(masses.values())
     parts = ", ".join(f"{name} {shown(mass, 'g')}" for name, mass in masses.items())
     note = f"at least {shown(total, 'g')}: {parts}" if missing else parts
-    named = {"pin": "m_p", "fork": "m_f", "stem": "m_s", "spring": "m_c"}
-    stated = {symbol: masses.get(name, 0.0) for name, symbol in named.items()}
+    named = {"pin": "m_p", "fork": "m_f", "stem": "m_s", "arm": "m_s", "spring": "m_c"}
+    stated = dict.fromkeys(named.values(), 0.0)
+    stated |= {named[name]: mass for name, mass in masses.items() if name in named}
     stated["m_r"] = sum(mass for name, mass in masses.items() if name not in named)
     value = None if missing else total
     return Demand(value, allowed, missing=missing, note=note, stated=stated)
@@ -456,24 +458,35 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
 
     A stem without a length counts up to its far guide. A part outside the scope is left out.
     """
-    machine, follower = solution.machine, solution.case.follower
+    machine = solution.machine
     parts, design = machine.follower.moving, machine.spring.design
     masses = {name: mass for name, mass in parts.masses.items() if mass is not None}
     missing = [
         key for part, keys in parts.missing.items() if machine.scope.covers(part) for key in keys
     ]
-    length = follower.stem_length
-    if length is None:
-        length = follower.overhang_at_max_lift + machine.guides.spacing
-        missing.append("follower.stem_length")
-    section = 0.25 * np.pi * follower.stem_diameter**2
-    below = max(length - parts.inset, 0.0)
-    masses["stem"] = float(follower.stem_material.density * section * below)
+    bar = machine.arm_bar
+    if machine.arm is None:
+        masses["stem"], lacks = _stem_mass(solution, parts.inset)
+        missing += lacks
+    elif bar is not None:
+        masses["arm"] = bar.mass_at_end(parts.inset)
     if design is not None:
-        masses["spring"] = follower.spring_share * design.mass
+        masses["spring"] = solution.case.follower.spring_share * design.mass
     elif machine.spring.shape is None and machine.scope.covers("spring"):
         missing.append("spring.design")
     return masses, tuple(missing)
+
+
+def _stem_mass(solution: Solution, inset: float) -> tuple[float, tuple[str, ...]]:
+    """Mass of the stem less an inset, m, at its end, kg; missing keys."""
+    follower = solution.case.follower
+    length = follower.stem_length
+    lacks: tuple[str, ...] = ()
+    if length is None:
+        length = follower.overhang_at_max_lift + solution.machine.guides.spacing
+        lacks = ("follower.stem_length",)
+    section = 0.25 * np.pi * follower.stem_diameter**2
+    return float(follower.stem_material.density * section * max(length - inset, 0.0)), lacks
 
 
 _TENSILE = "roller.bearing.ring.tensile_strength"

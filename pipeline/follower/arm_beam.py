@@ -227,6 +227,15 @@ class ArmBar:
         cheeks = fork.cheeks(pin)
         return fork.cheek_length, cheeks * fork.cheek_width, fork.cheek_height, cheeks
 
+    def mass_at_end(self, inset: float) -> float:
+        """Mass at its end with the moment of inertia of the bar less an inset there, m, kg.
+
+        Its hubs are left out.
+        """
+        reach = max(self.length - inset, 0.0)
+        section = self.material.density * self.width * self.depth
+        return section * reach**3 / (3.0 * self.length**2)
+
     @property
     def sections(self) -> tuple[ArmSection, ...]:
         """Judged sections, at the pivot and at a roller."""
@@ -298,6 +307,23 @@ class ArmBar:
             total += (end - start) * squares / (card.E * b * h**3 / 12.0)
             total += (end - start) * force**2 / (kappa * shear * b * h)
         return float(total)
+
+    @property
+    def couple_compliance(self) -> float:
+        """Slope of the line of contact under a couple there in its plane, rad/(N m).
+
+        Twist of the arm and bending of its cheeks to either side, at a pressure angle of zero.
+        """
+        (reach, width, depth, cheeks), card, pin = self._end, self.material, self.pin
+        shear = card.E / (2.0 * (1.0 + card.nu))
+        twisted = self.length - reach if cheeks else self.length
+        slope = twisted / (shear * torsion_of_rectangle(self.width, self.depth)[0])
+        if cheeks > 1 and pin is not None:
+            bent = card.E * (width / cheeks) * depth**3 / 12.0
+            slope += 2.0 * reach**3 / (3.0 * bent * pin.span**2)
+        elif cheeks:
+            slope += reach / (shear * torsion_of_rectangle(width, depth)[0])
+        return slope
 
     def _unit_moments(self, places: Sequence[float]) -> Array:
         """Moment of a unit force across the end at places, m."""

@@ -17,10 +17,14 @@ from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.arm_strength import arm_forces, arm_yield, bar_of
+from camwright.pipeline.checks.part_strength import moving_masses
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.arm_beam import ArmBar, torsion_of_rectangle
+from camwright.pipeline.follower.guide_contact import BearingLine, settle
+from camwright.pipeline.follower.guide_reactions import Guide, lobatto
+from camwright.pipeline.follower.pivot_bush import pressed_bush
 from camwright.pipeline.follower.roller_parts import Fork, Pin
 from camwright.pipeline.preview import preview_case
 
@@ -164,6 +168,74 @@ def test_the_elastic_follower_stands_on_its_arm():
     assert plain < members["arm"] < 2.5 * plain  # the cheeks are softer, and shear is added
     stiffer = replace(machine, arm=replace(machine.arm, depth=0.048))
     assert stiffer.follower_frequency > 1.2 * machine.follower_frequency
+
+
+@pytest.mark.parametrize("forked", [False, True])
+def test_a_couple_twists_the_arm_and_bends_its_cheeks_apart(forked):
+    """Saint-Venant's bar, and two cantilevers that the couple bends to either side."""
+    bar = replace(bar_of(trial().solution.numbers), fork=None)
+    card = bar.material
+    shear, twist = card.E / 2.6, torsion_of_rectangle(0.028, 0.024)[0]
+    slope = 0.1 / (shear * twist)
+    if forked:
+        fork = Fork(cheek_width=0.005, cheek_height=0.022, cheek_length=0.026, material=STEEL)
+        bar = replace(bar, fork=fork, pin=Pin(diameter=0.017, span=0.023, material=STEEL))
+        apart = (1.0 / 0.023) * 0.026**3 / (3.0 * card.E * 0.005 * 0.022**3 / 12.0)
+        slope = 0.074 / (shear * twist) + 2.0 * apart / 0.023
+    assert bar.couple_compliance == pytest.approx(slope, rel=1e-9)
+
+
+def test_the_drawn_mass_has_the_moment_of_inertia_of_the_bar():
+    """In place of the stem, whose stand-in an arm does not have."""
+    result = trial()
+    bar = bar_of(result.solution.numbers)
+    pieces = (np.arange(4000) + 0.5) / 4000 * (0.1 - 0.030)  # up to the bridge of the fork
+    mass = bar.material.density * 0.028 * 0.024 * np.sum(pieces**2) * pieces[0] * 2.0 / 0.1**2
+    masses = dict(moving_masses(result.solution)[0])
+    assert masses["arm"] == pytest.approx(mass, rel=1e-6)
+    assert "stem" not in masses
+
+
+# --- The bush of the pivot ----------------------------------------------------------------------
+FORCES = np.array([100.0, 100.0, 100.0, 2e3, 2e3, 2e3, 2e3, 2e3, 2e3, 0.0, 5e3])
+COUPLES = np.array([0.1, 0.5, 50.0, 0.0, 5.0, 8.0, 20.0, 30.0, 200.0, 10.0, 62.0])
+
+
+def bush(clearance):
+    bronze = Material(
+        name="bronze", E=110e9, nu=0.34, yield_strength=150e6, density=8800.0, source="made up"
+    )
+    return Guide(
+        length=0.025, diameter=0.02, wall=1.5e-3, friction=0.1, clearance=clearance,
+        material=bronze, stiffness=2e8,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("clearance", [0.0, 30e-6, 60e-6])
+def test_a_pin_in_its_bush_as_a_rigid_beam_on_knots(clearance):
+    """By the active set of the guides, at 401 knots; linear, triangular and on both edges."""
+    made, (unit, weight) = bush(clearance), lobatto(401)
+    line = BearingLine(
+        positions=0.0125 * (1.0 + unit), weights=0.0125 * weight,
+        foundation=np.full(401, made.foundation_modulus), play=np.full(401, 0.5 * clearance),
+        compliance=np.zeros((401, 401)), edges=np.array([0, 400]),
+    )  # fmt: skip
+    push, rigid = settle(line, FORCES, 0.0125 * FORCES + COUPLES)
+    pressed = pressed_bush(made, FORCES, COUPLES)
+    # the edge of a contact lies between two knots
+    np.testing.assert_allclose(pressed.tilt, rigid[1], rtol=2e-5, atol=1e-12)
+    load = np.abs(push / (0.0125 * weight)[:, None]).max(axis=0)
+    np.testing.assert_allclose(pressed.line_load, load, rtol=2e-5)
+
+
+def test_a_pin_in_its_bush_is_continuous_where_its_contact_changes():
+    made = bush(60e-6)
+    couples = np.linspace(0.0, 40.0, 4001)
+    pressed = pressed_bush(made, np.full(4001, 2e3), couples)
+    assert (np.diff(pressed.tilt) > 0.0).all() and (np.diff(pressed.line_load) > 0.0).all()
+    assert np.diff(pressed.tilt).max() < 20.0 * 60e-6 / 0.025 / 4001 * 40.0
+    still = pressed_bush(made, np.zeros(1), np.zeros(1))
+    assert still.tilt[0] == still.line_load[0] == 0.0
 
 
 # --- Loads of the sections ----------------------------------------------------------------------

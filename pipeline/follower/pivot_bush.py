@@ -1,0 +1,80 @@
+"""Rigid pin in an elastic bush with clearance under a force and a couple: tilt and line load."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.follower.guide_reactions import Guide
+
+_HALVINGS = 60  # of the tilt between its bounds, to round-off
+
+
+class PressedBush(NamedTuple):
+    """Tilt (...), rad, of a pin in its bush, and greatest line load there (...), N/m; both >= 0."""
+
+    tilt: Array
+    line_load: Array
+
+
+def pressed_bush(bush: Guide, force: Array, couple: Array) -> PressedBush:
+    """Tilt and greatest line load of a rigid pin in a bush.
+
+    The bush is an elastic foundation of the modulus k beyond half of its diametral clearance c, on
+    both sides. Force and couple are in one plane with the pin.
+
+    - C <= F l/6: the load is linear over the whole length, F/l + 6 C/l^2 at the end
+    - beyond: a triangle over a = 3 (l/2 - C/F), with 2 F/a at the end
+    - once the tilt has used the clearance: triangles over a and b at both ends, on either side
+
+    Parameters
+    ----------
+    force, couple : array (...)   F, N, in the middle of the bush, and C, N m; >= 0
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), sec. 4.3: elastic foundation.
+    """
+    push, turn = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (force, couple)))
+    length, modulus, play = bush.length, bush.foundation_modulus, bush.clearance
+    full = 6.0 * turn <= push * length
+    loaded = np.where(push > 0.0, push, 1.0)
+    reach = np.where(push > 0.0, 3.0 * (0.5 * length - turn / loaded), 0.0)
+    reach = np.where(full | (reach > 0.0), np.where(full, length, reach), 0.0)
+    some = np.where(reach > 0.0, reach, 1.0)
+    greatest = np.where(full, push / length + 6.0 * turn / length**2, 2.0 * push / some)
+    tilt = np.where(full, 12.0 * turn / length**3, greatest / some) / modulus
+    both = ~full & ((reach == 0.0) | (tilt * length - greatest / modulus > play))
+    tilt, greatest = tilt.copy(), greatest.copy()
+    if both.any():
+        tilt[both], greatest[both] = _between_edges(bush, push[both], turn[both])
+    return PressedBush(tilt, greatest)
+
+
+def _between_edges(bush: Guide, force: Array, couple: Array) -> tuple[Array, Array]:
+    """Tilt and greatest line load of a pin that touches both sides of its bush (m,)."""
+    length, modulus, play = bush.length, bush.foundation_modulus, bush.clearance
+
+    def ends(tilt: Array) -> tuple[Array, Array]:
+        """Lengths in contact on the side of the force, and on the other."""
+        total, apart = length - play / tilt, 2.0 * force / (modulus * tilt)
+        return 0.5 * (total + apart / total), 0.5 * (total - apart / total)
+
+    def carried(tilt: Array) -> Array:
+        parts = (each**2 * (0.5 * length - each / 3.0) for each in ends(tilt))
+        return np.asarray(0.5 * modulus * tilt * sum(parts))
+
+    # with one end alone (l - c/tilt)^2 = 2 F/(k tilt); without clearance 12 C/(k l^3)
+    dent = force / (modulus * length)
+    low = (play + dent + np.sqrt(dent * (dent + 2.0 * play))) / length
+    high = low + play / length + 12.0 * couple / (modulus * length**3)
+    while (short := carried(high) < couple).any():
+        high = np.where(short, 2.0 * high, high)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        less = carried(middle) < couple
+        low, high = np.where(less, middle, low), np.where(less, high, middle)
+    tilt = 0.5 * (low + high)
+    return tilt, modulus * tilt * ends(tilt)[0]
