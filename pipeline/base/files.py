@@ -340,7 +340,7 @@ def read_json(path: Path) -> Any:
     Raises
     ------
     ResultError
-        If it is none, or other programs may read it otherwise: a key that stands twice, a number
+        If it is not JSON, or other programs may read it otherwise: a repeated key, a number
         beyond 64 bits or the range of a float, half of a surrogate pair.
     """
     text = read_text(path)

@@ -93,6 +93,7 @@ class _Percent(ProgressColumn):
 
 class _Remaining(ProgressColumn):
     def render(self, task: Task) -> Text:
+        """Remaining time of a stage as text, from its share so far; empty while that is unknown."""
         part = share(task)
         if not part:
             return Text("")
@@ -130,6 +131,7 @@ class Bars:
         self._bars.stop()
 
     def stage(self, name: str) -> None:
+        """Begin a stage with a bar of its own; the one before is printed as done."""
         if self._task is not None:
             self._bars.remove_task(self._task)
             self._console.print(f"{self._name} done", highlight=False, markup=False)

@@ -285,7 +285,7 @@ def _require_digits(text: str) -> None:
 
 
 def _number(cell: str) -> float:
-    """Number of a cell; NaN if it is none."""
+    """Number of a cell; NaN if it is no number."""
     try:
         _require_digits(cell)
         return float(cell)

@@ -120,7 +120,7 @@ _ACCEPTED = {
 
 @lru_cache(maxsize=512)
 def _unit(text: str) -> _Unit:
-    """Unit of a text such as ``kN/m`` or ``mm^2``; ValueError if it is none."""
+    """Unit of a text such as ``kN/m`` or ``mm^2``; ValueError if it is no unit."""
     if text in _ALONE:
         return _ALONE[text]
     text = _POWER.sub("^", text)

@@ -89,6 +89,9 @@ class _Process(SpawnProcess):
 
     @staticmethod
     def _Popen(process_obj: BaseProcess) -> Popen:  # noqa: N802 - name of multiprocessing
+        """Start the process without the script that this process runs, and without its working
+        folder on the import path.
+        """
         script = vars(sys.modules["__main__"])
         hidden = script.copy()
         script.pop("__file__", None)

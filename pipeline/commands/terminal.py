@@ -51,6 +51,9 @@ class _Output(_Console):
     """Console that wraps a text between words in a file; a terminal wraps it itself."""
 
     def print(self, *objects: Any, **options: Any) -> None:
+        """Print; where the output is no terminal, texts are broken into lines of
+        `WIDTH` columns.
+        """
         if self.is_terminal:
             super().print(*objects, **options)
             return

@@ -315,6 +315,9 @@ class _Free:
     """A body without supports, in plane stress; its loads are put in equilibrium first."""
 
     def __init__(self, mesh: BodyMesh, body: RotatingBody, outside: str) -> None:
+        """Elastic body in plane stress on three soft springs against rigid motion, at nodes of the
+        boundary `outside`, with its mass matrix.
+        """
         from skfem import ElementTriP2
         from skfem.models.poisson import mass
 

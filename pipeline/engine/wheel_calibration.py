@@ -143,6 +143,7 @@ class Calibrator:
 
     @property
     def _turning(self) -> Inertia:
+        """Inertia of crank and running gear over the crank angle of a cycle, kg m2."""
         if self.running_gear is None:
             return Inertia.constant_only(self.inertia, SAMPLES)
         varying = self.running_gear.reciprocating_inertia(uniform_cycle(SAMPLES))

@@ -317,7 +317,7 @@ class _Evaluation:
         return formula.value(self.trees[name], rounded)
 
     def _with_digits(self) -> Sheet:
-        """Sheet with the numbers shown to `digits`."""
+        """Sheet of the check, evaluated with its numbers rounded to `digits`."""
         unit = self.record["unit"]
         demand = float(np.asarray(self._defined("")).item())
         last = self.steps.pop("")._replace(shown=units.shown(demand, unit, DIGITS[0]))

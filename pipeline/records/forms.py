@@ -88,7 +88,8 @@ _FORMS: dict[type, tuple[Sequence[str], Sequence[Condition]]] = {}
 def form(
     *, written: Sequence[str] = (), conditions: Sequence[Condition] = ()
 ) -> Callable[[Kind], Kind]:
-    """Declare a `TypedDict` as a form: closed, its keys described by their docstrings.
+    """Class decorator that declares a `TypedDict` as the form of a record: without other keys, each
+    key described by the docstring below it in the JSON Schema.
 
     Parameters
     ----------

@@ -83,6 +83,9 @@ class FieldFile:
         self, file: h5py.File, times: ArrayLike, blocks: Mapping[str, MeshBlock],
         fields: Mapping[str, int], notes: Notes,
     ) -> None:  # fmt: skip
+        """Create the groups of an empty file: a block per mesh with room for the fields at each
+        time, and the notes of each step.
+        """
         self._times = np.asarray(times, dtype=float)
         self._blocks = blocks
         root = _group(file, "VTKHDF", "MultiBlockDataSet")

@@ -30,7 +30,7 @@ SAME = 1e-6
 """Relative difference, of the greatest value of a column, that rounding may make."""
 _REPRODUCED = 1e-9  # relative difference of numbers that are equal
 _ON_A_DRAWING = 1e-6
-"""Difference of a coordinate, mm, that is none."""
+"""Difference of a coordinate, mm, that does not count."""
 _OF_A_FIELD = 2.0**-14
 """Relative difference of the values of a field, whose mantissas are cut to 15 bits."""
 _RESIDUAL = "residual"
@@ -304,7 +304,7 @@ def text_difference(one: str, two: str, absolute: float = _REPRODUCED) -> str:
 
     Parameters
     ----------
-    absolute : float   difference of two numbers that is none; besides `SAME` of the number
+    absolute : float   difference of two numbers that does not count; besides `SAME` of the number
     """
     parts, others = _NUMBER.split(one), _NUMBER.split(two)
     for place, (a, b) in enumerate(zip_longest(parts, others, fillvalue="")):
@@ -461,7 +461,7 @@ def record_differences(
 
     Parameters
     ----------
-    share : float         relative difference of two numbers that is none
+    share : float         relative difference of two numbers that does not count
     left_out : sequence   keys that are not compared, anywhere
     """
     if isinstance(one, Mapping) and isinstance(two, Mapping):
@@ -493,7 +493,7 @@ def record_differences(
 
 
 def _allowed(name: str, greatest: float, share: float = SAME) -> float:
-    """Difference of numbers of a name that is none.
+    """Difference of numbers of a name that does not count.
 
     A residual is itself a rounding error; an angle is one of the whole turn.
     """

@@ -101,7 +101,7 @@ def sign(folder: Path, private: Ed25519PrivateKey, role: str, name: str, date: s
     Raises
     ------
     InputError
-        If role or name is none.
+        If the role is not one of `ROLES` or the name is not valid.
     ResultError
         If the role is signed already, a signature is of another record, or another process writes
         into the run.
@@ -266,6 +266,7 @@ def _statement(payload: bytes, digest: str) -> dict[str, str]:
 
 
 def _is_date(text: str) -> bool:
+    """Whether a text is a time in UTC such as ``2026-01-31T12:00:00Z``."""
     try:
         datetime.strptime(text, "%Y-%m-%dT%H:%M:%SZ")
     except ValueError:
@@ -289,7 +290,7 @@ def _closed(value: Any, what: str, keys: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _decoded(text: Any, what: str) -> bytes:
-    """Bytes of a base64 text; refused in the words `what` if it is none."""
+    """Bytes of a base64 text; refused in the words `what` if it is not base64."""
     try:
         if not isinstance(text, str):
             raise ValueError

@@ -95,6 +95,9 @@ class Search:
     """
 
     def __init__(self, problem: Problem, extra: Array | None = None) -> None:
+        """Set up the cam angles, the start and the scales of the unknowns; `extra`: further cam
+        angles of the limits, rad.
+        """
         self.problem = problem
         theta = uniform_turn(problem.points)
         self.extra = np.zeros(0) if extra is None else extra

@@ -53,6 +53,9 @@ class HarmonicTorque(MachineTorque):
     """one harmonic of the torque"""
 
     def __post_init__(self) -> None:
+        """Refuse orders that are stated twice or make no whole number of waves in the cycle, and a
+        constant torque.
+        """
         super().__post_init__()
         if not 1 <= len(self.harmonics) <= HARMONICS_MAX:
             limit = f"from 1 to {HARMONICS_MAX} tables"

@@ -37,6 +37,7 @@ class Period:
     ratio: float
 
     def __post_init__(self) -> None:
+        """Refuse a cam turn that does not hold a whole number of machine cycles."""
         if not 0.0 < self.angle < inf:
             raise InputError("torque.cycle", self.angle, "> 0 rad")
         if not 0.0 < self.ratio < inf:

@@ -115,6 +115,9 @@ class PressTorque:
     force: Array
 
     def __post_init__(self) -> None:
+        """Refuse a force table that does not ascend in height, leaves the stroke or has a negative
+        force.
+        """
         height, force = finite("torque.height", self.height), finite("torque.force", self.force)
         stroke = self.press.linkage.stroke
         if height.shape != force.shape or height.ndim != 1 or height.size < 2:

@@ -97,6 +97,7 @@ class PressureTorque:
     crank_side: tuple[Trace | None, ...]
 
     def __post_init__(self) -> None:
+        """Refuse traces of another cycle, and pressures that are not absolute."""
         for trace in filter(None, (*self.head, *self.crank_side)):
             name = f"{trace.source}, {trace.column}"
             if not np.isclose(trace.period, self.cycle, rtol=_WHOLE, atol=0.0):

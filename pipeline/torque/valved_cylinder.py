@@ -97,6 +97,7 @@ class CompressorCylinder(_ValvedCylinder):
     """exponent n of p V^n while both valves are shut"""
 
     def __post_init__(self) -> None:
+        """Refuse a discharge pressure that compression into the clearance does not reach."""
         super().__post_init__()
         reached = self.suction_pressure * (1.0 + 1.0 / self.clearance) ** self.exponent
         if not self.discharge_pressure < reached:
@@ -130,6 +131,9 @@ class PumpCylinder(_ValvedCylinder):
     defaults: ClassVar = {"bulk_modulus": "incompressible"}
 
     def __post_init__(self) -> None:
+        """Refuse a discharge pressure that a whole stroke, compressing the liquid into the
+        clearance, does not reach.
+        """
         super().__post_init__()
         if self.bulk_modulus is None:
             return

@@ -279,6 +279,9 @@ class StressRecovery:
     """
 
     def __init__(self, body: ElasticBody, elements: ArrayLike) -> None:
+        """Assemble the operators from displacement to stress at the points of integration, and from
+        there to the nodes; `elements`: their numbers.
+        """
         from skfem import Basis, ElementTriP2, ElementVector
 
         ix = np.asarray(elements, dtype=int)

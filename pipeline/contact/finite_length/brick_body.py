@@ -262,6 +262,9 @@ class _Section:
     """Nodes of the planes across y: `planar` on element faces, `between` on the edges along y."""
 
     def __init__(self, grid: BrickGrid) -> None:
+        """Number the nodes on the lattice of half edges across y, and the unknowns that
+        are free.
+        """
         self.grid = grid
         self.x, self.z = grid.x, grid.z
         nx, nz = grid.x.size - 1, grid.z.size - 1
@@ -343,6 +346,9 @@ class _SlabStiffness:
     """Stiffness of a slab of one element along y: polynomial of its thickness; E = 1."""
 
     def __init__(self, section: _Section, poisson: float) -> None:
+        """Assemble the parts of the stiffness in proportion to the thickness, independent of it,
+        and to its inverse.
+        """
         self._section = section
         lame, shear = lame_parameters(1.0, poisson)
         unknowns = section.unknowns_of_elements()

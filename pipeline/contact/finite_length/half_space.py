@@ -215,6 +215,9 @@ class _Pairs:
     """
 
     def __init__(self, edges: Array, sign: float, shift: float = 0.0) -> None:
+        """From the edges of the cells, m, the sign, 1 or -1, and the shift, m, of the second cell
+        of a pair.
+        """
         first, second = _rising(edges.size)
         apart = np.abs(edges[first] - sign * edges[second] - shift)
         self.edges, among = np.unique(apart, return_inverse=True)

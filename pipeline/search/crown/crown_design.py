@@ -391,7 +391,7 @@ def crown(
 
 
 def _kind(text: str) -> CrownKind:
-    """The text as a kind of crown; InputError if it is none."""
+    """The text as a kind of crown; InputError if it is not one."""
     for kind in KINDS:
         if kind == text:
             return kind

@@ -87,9 +87,9 @@ def failures_of(trial: Trial) -> tuple[Failure, ...]:
 
 def _worst_corners(trial: Trial, one: Check) -> tuple[str, ...]:
     """Names of the `_CORNERS` tolerance corners with the worst demands of a check, the governing
-    one first; of all corners where the worst demands are equal or infinite.
+    one first.
 
-    Every corner where the worst demands are equal or infinite: another one may then govern.
+    All corners where the worst demands are equal or infinite: another one may then govern.
     """
     sign = -1.0 if one.sense == "at_most" else 1.0
     solved = [each for each in trial.corners if one.id in each.demands]

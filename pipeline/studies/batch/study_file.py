@@ -74,6 +74,9 @@ class Normal(Section):
 
     @model_validator(mode="after")
     def _has_one_width(self) -> Self:
+        """The distribution itself; InputError unless exactly one of standard deviation and
+        tolerance is stated.
+        """
         if (self.std is None) == (self.tolerance is None):
             count = "neither" if self.std is None else "both"
             raise InputError("std, tolerance", count, "exactly one of the two")
@@ -128,6 +131,9 @@ class Factor(Section):
 
     @model_validator(mode="after")
     def _has_one_entry(self) -> Self:
+        """The factor itself; InputError unless exactly one kind of values or distribution is
+        stated.
+        """
         if len(self._given) != 1:
             kinds = "list, grid, range, normal, uniform, triangular"
             raise InputError(self.key, f"{len(self._given)} entries", f"exactly one of: {kinds}")
@@ -153,6 +159,9 @@ class Sampling(Section):
 
     @model_validator(mode="after")
     def _has_a_count(self) -> Self:
+        """The sampling itself; InputError for a count with a grid or list, and for none with
+        another method.
+        """
         discrete = self.method in ("grid", "list")
         if discrete != (self.count is None):
             word = "missing" if self.count is None else self.count
