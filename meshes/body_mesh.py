@@ -248,9 +248,15 @@ def block_mesh(width: float, depth: float, sizing: ElementSize) -> BodyMesh:
 
 
 def face_mesh(
-    width: float, thickness: float, stem_diameter: float, sizing: ElementSize
+    width: float,
+    thickness: float,
+    stem_diameter: float,
+    sizing: ElementSize,
+    radius: float | None = None,
 ) -> BodyMesh:
-    """Mesh of the block of a flat face, the stem's cross-section as a boundary of its back.
+    """Mesh of the block of a face, the stem's cross-section as a boundary of its back.
+
+    Its top touches y = 0 at the origin; radius: of a curved top, m, None of a flat one.
 
     Returns
     -------
@@ -261,7 +267,8 @@ def face_mesh(
     Raises
     ------
     InputError
-        If a length is not positive, or the contact is not on the top.
+        If a length is not positive, a curved top is wider than its circle or deeper than the block,
+        or the contact is not on the top.
     """
     positive("follower.face.width", width, "m")
     positive("follower.face.thickness", thickness, "m")
@@ -274,31 +281,57 @@ def face_mesh(
         for name, start, end in zip(names, corners[:-1], corners[1:], strict=True)
         if start != end
     ]
-    return _rectangle(width, thickness, back, sizing)
+    if radius is not None and not half <= radius:
+        raise InputError("follower.face.width", width, f"<= {2.0 * radius:g} m, twice the radius")
+    if not (sunk := float(sagitta(half, radius))) < thickness:
+        raise InputError("follower.face.thickness", thickness, f"> {sunk:g} m, of the curved face")
+    return _rectangle(width, thickness, back, sizing, radius)
+
+
+def sagitta(x: ArrayLike, radius: float | None) -> Array:
+    """Depth (...), m, of a round surface below its tangent at a distance x, m; 0 of a flat one."""
+    if radius is None:
+        return np.zeros(np.shape(x))
+    square = np.square(x)
+    return np.asarray(square / (radius + np.sqrt(radius**2 - square)))
 
 
 def _rectangle(
-    width: float, depth: float, back: list[OutlinePiece], sizing: ElementSize
+    width: float,
+    depth: float,
+    back: list[OutlinePiece],
+    sizing: ElementSize,
+    radius: float | None = None,
 ) -> BodyMesh:
     """Mesh of the rectangle [-width/2, width/2] x [-depth, 0], m; `back` are the pieces of its
     lower edge from left to right, named as boundaries.
 
-    A contact point in `sizing` must be on the upper edge, which is refined beside it.
+    A contact point in `sizing` must be on the upper edge, which is refined beside it; `radius`: of
+    a curved upper edge, see `face_mesh`.
     """
     half = 0.5 * width
     zone = None
     if sizing.contact_point is not None:
         x, y = sizing.contact_point
-        if not (abs(x) < half and abs(y) <= 1e-9 * width):
+        if not (abs(x) < half and abs(y + sagitta(x, radius)) <= 1e-9 * width):
             raise InputError("sizing.contact_point", f"({x:g}, {y:g})", "on the top of the block")
-        zone = _zone(sizing, half - x)
-    a, b, c, d = np.array([[-half, -depth], [half, -depth], [half, 0.0], [-half, 0.0]])
+        along = half - x
+        if radius is not None:
+            along = radius * (np.arcsin(half / radius) - np.arcsin(x / radius))
+        zone = _zone(sizing, float(along))
+    sunk = float(sagitta(half, radius))
+    a, b, c, d = np.array([[-half, -depth], [half, -depth], [half, -sunk], [-half, -sunk]])
     size = sizing.field().capped(0.5 * min(width, depth))
     for piece in back:  # a shoulder shorter than the elements beside it would make slivers
         middle = piece.at(np.array([0.5 * piece.length]))
         if piece.length < float(size(middle)[0]):
             size = size.with_spot(middle[:, 0], piece.length, piece.length)
-    loop = [*back, line("right", b, c), line("top", c, d, zone), line("left", d, a)]
+    top = line("top", c, d, zone)
+    if radius is not None:
+        turned = float(np.arcsin(half / radius))
+        ends = 0.5 * np.pi - turned, 0.5 * np.pi + turned
+        top = arc("top", radius, *ends, centre=(0.0, -radius), zone=zone)
+    loop = [*back, line("right", b, c), top, line("left", d, a)]
     return _body(triangulate(_discretised([loop], size), size))
 
 

@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[1]
 REFINED = {"contact_force_margin", "contact_at_overspeed", "jump", "jump_speed"}
 """Checks of the contact force between the solved angles, compared at the place of the check."""
 
-OF_ROLLER = tuple(each for each in CONSTRAINTS if each.needs != "face")
+OF_ROLLER = tuple(each for each in CONSTRAINTS if "face" not in each.needs)
 """Constraints of a cam under a roller."""
 KEPT = frozenset({
     "spring_travel", "pressure_angle", "curvature_ratio", "undercut", "concave_radius",

@@ -178,7 +178,8 @@ def with_examples(error: MissingKeysError, tables: Tables, folder: Path | None) 
     """
     written = Written(tables)
     missing = [key for key in error.keys if not is_stand_in(tables, key)]
-    if "roller" not in tables and written.value(("follower", "kind")) != "flat":
+    has_face = written.value(("follower", "face")) is not None
+    if "roller" not in tables and written.value(("follower", "kind")) != "flat" and not has_face:
         missing.append("roller")
     rows = {path: key for each in missing for path, key in _within(each)}
     for path, other in _SAME.items():

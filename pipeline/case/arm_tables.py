@@ -15,6 +15,7 @@ OSCILLATING = "oscillating"
 _PIVOT = "pivot"
 _NOT_THERE: tuple[TomlValue, ...] = ("guides", "stem")
 _START, _INERTIA = "follower.arm.start_angle", "follower.arm.inertia"
+_OFFSET = "follower.face.offset"
 
 
 def with_arm(tables: Tables) -> Tables:
@@ -61,7 +62,8 @@ def with_arm(tables: Tables) -> Tables:
     if "start_angle" in arm and isinstance(cam, dict):
         if "prime_radius" in cam:
             raise InputError(_START, str(arm["start_angle"]), "left out with cam.prime_radius")
-        tables = tables | {"cam": cam | {"prime_radius": units.format(_prime_radius(arm), "mm")}}
+        prime = units.format(_prime_radius(arm, follower.get("face")), "mm")
+        tables = tables | {"cam": cam | {"prime_radius": prime}}
     stated = {key: value for key, value in arm.items() if key not in FollowerArm.resolved}
     return tables | {"follower": follower | {"arm": stated}}
 
@@ -77,8 +79,14 @@ def _mass(arm: Tables) -> float:
     return inertia / length**2
 
 
-def _prime_radius(arm: Tables) -> float:
-    """Distance of the roller centre from the cam axis at the start angle, m."""
+def _prime_radius(arm: Tables, face: TomlValue | None) -> float:
+    """Distance of roller centre or flat face from the cam axis at the start angle, m.
+
+    Raises
+    ------
+    InputError
+        If the face is beyond the cam axis.
+    """
     start = units.parse(arm["start_angle"], "deg", _START)
     if not 0.0 < start < pi:
         raise InputError(_START, str(arm["start_angle"]), "> 0 and < 180 deg")
@@ -86,7 +94,14 @@ def _prime_radius(arm: Tables) -> float:
         units.parse(arm.get(key), "mm", f"follower.arm.{key}")
         for key in ("centre_distance", "length")
     )
-    return float(Arm(distance, length, 1.0).radius(start))
+    linkage = Arm(distance, length, 1.0)
+    if not isinstance(face, dict) or "offset" not in face:
+        return float(linkage.radius(start))
+    height = float(linkage.face_radius(start, units.parse(face["offset"], "mm", _OFFSET)))
+    if not height > 0.0:
+        limit = f"such that the face is > 0 mm over the cam axis, not {units.shown(height, 'mm')}"
+        raise InputError(_START, str(arm["start_angle"]), limit)
+    return height
 
 
 def _as_arcs(lift: Tables, arm: Tables) -> Tables:

@@ -264,7 +264,7 @@ class Case(Displayed, Section):
 
     @property
     def roller(self) -> Roller:
-        """Roller of the follower; refused for a flat face.
+        """Roller of the follower; refused for a face.
 
         Raises
         ------
@@ -272,8 +272,9 @@ class Case(Displayed, Section):
             If it has none.
         """
         if self.roller_given is None:
-            if self.follower.kind == "flat":
-                raise InputError("follower.kind", "flat", '"roller" for a value of the roller')
+            if self.follower.face is not None:
+                limit = "left out for a value of the roller"
+                raise InputError("follower.face", "a table", limit)
             raise InputError("roller", "missing", 'given with follower.kind = "roller"')
         return self.roller_given
 
@@ -311,7 +312,7 @@ class Case(Displayed, Section):
 
     @property
     def facing(self) -> FollowerKind:
-        """Roller or flat face that touches the cam."""
+        """Roller or face that touches the cam."""
         return self.roller if self.follower.face is None else self.follower.face
 
     def contour(self, lift: Lift) -> Contour:
@@ -335,7 +336,7 @@ class Case(Displayed, Section):
 
     @property
     def contact_radius(self) -> float:
-        """Roller radius, m; under a flat face the base radius."""
+        """Radius of the follower's surface, m; under a flat face the base radius."""
         return self.facing.contact_radius or self.base_circle
 
     @property

@@ -85,7 +85,7 @@ def completed(case: Case, folder: Path | None) -> Case:
     external_force(case)  # refuses a file without one
     if case.lift is not None and case.follower.face is not None:
         with refused_as_written(case):
-            case.follower.face.contour(given_lift(case), case.cam)  # refuses a face too narrow
+            case.contour(given_lift(case))  # refuses a face too narrow
     return case
 
 

@@ -191,10 +191,10 @@ def _start(case: Case) -> Iterator[Rule]:
     elif case.valve_train is not None:
         limit = 'left out unless lift.kind = "segments"'
         raise InputError("valve_train", "a table", limit)
-    if case.follower.kind != "flat":
+    if case.follower.face is None:
         _ = case.roller  # refuses a case without roller
     elif case.roller_given is not None:
-        raise InputError("roller", "a table", 'left out with follower.kind = "flat"')
+        raise InputError("roller", "a table", "left out with follower.face")
     yield from _period(case)
     engine = case.engine
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is None:
@@ -330,7 +330,7 @@ def _geometry(case: Case) -> Iterator[Rule]:
         "smaller than {cam.prime_radius}",
     )
     if case.follower.arm is not None:
-        yield from _arm()
+        yield from _arm(case)
     key = "limits.return_pressure_angle"
     yield _at_least(key, lambda at: at("limits.pressure_angle"), ">= {limits.pressure_angle}")
     yield from _ring(case)
@@ -437,13 +437,30 @@ def _ring(case: Case) -> Iterator[Rule]:
         yield _less("cam.keyway.depth", lambda at: surface(at) - at("cam.bore_radius"), limit)
 
 
-def _arm() -> Iterator[Rule]:
-    """An arm reaches the prime circle, and has no offset."""
+def _arm(case: Case) -> Iterator[Rule]:
+    """An arm reaches the prime circle, or its face the base circle, and has no offset."""
     distance, length = "follower.arm.centre_distance", "follower.arm.length"
+    yield _equal("cam.offset", _fixed(0.0), "0 mm with an arm")
+    face, plane = case.follower.face, "follower.face.offset"
+    if face is not None and face.radius is None:
+        limit = f"< {{}}, {{{distance}}} less {{{plane}}}"
+        yield _less("cam.prime_radius", lambda at: at(distance) - at(plane), limit)
+        return
+    if face is not None:
+        radius = "follower.face.radius"
+        yield _less(radius, lambda at: at("cam.prime_radius"), "< {cam.prime_radius}")
+        limit = "<= {}, twice {follower.face.radius}"
+        yield _at_most("follower.face.width", lambda at: 2.0 * at(radius), limit)
+
+        def sunk(at: At) -> Any:
+            square = at(radius) ** 2 - 0.25 * at("follower.face.width") ** 2
+            return at(radius) - np.sqrt(np.maximum(square, 0.0))
+
+        limit = "> {}, the depth of the curved {follower.face.width}"
+        yield _more("follower.face.thickness", sunk, limit)
     between = f"{{}}, {{{distance}}} and {{{length}}}"
     yield _more("cam.prime_radius", lambda at: abs(at(distance) - at(length)), f"> {between} apart")
     yield _less("cam.prime_radius", lambda at: at(distance) + at(length), f"< {between} together")
-    yield _equal("cam.offset", _fixed(0.0), "0 mm with an arm")
 
 
 def _key(case: Case) -> Iterator[Rule]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from camwright.geometry.arm_path import disc_lift
 from camwright.geometry.arrays import FULL_TURN
-from camwright.geometry.eccentric import Eccentric, face_lift
+from camwright.geometry.eccentric import Eccentric
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import NEGATIVE_TOLERANCE, Lift
 from camwright.geometry.lift_fit import (
@@ -67,11 +67,11 @@ def given_lift(case: LiftSource) -> Lift:
     if isinstance(section, LiftPoints):
         return lift_through(*_points(section))
     if isinstance(section, LiftEccentric):
-        if case.follower.kind == "flat":
-            return face_lift(section.eccentricity)
-        if case.follower.arm is not None:
-            arm = case.follower.arm.linkage
-            return disc_lift(section.eccentricity, case.cam.prime_radius, arm)
+        arm = case.follower.arm
+        if case.follower.face is not None:
+            return case.follower.face.disc_lift(section.eccentricity, case.cam, arm)
+        if arm is not None:
+            return disc_lift(section.eccentricity, case.cam.prime_radius, arm.linkage)
         return eccentric_of(case, section).lift()
     if section is None:
         raise InputError("lift", "missing", "given without an engine")

@@ -46,7 +46,7 @@ from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.arm_beam import ArmBar
 from camwright.pipeline.follower.camshaft_loads import Camshaft
-from camwright.pipeline.follower.flat_face import FlatFace
+from camwright.pipeline.follower.flat_face import FollowerFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.follower_stiffness import (
@@ -106,7 +106,7 @@ class Machine(Displayed):
     torque_reduction, speed_reduction : float   required of the ripple; None: none is required
     duty : float               share of the operating time; None: not known
     cam : CamBody
-    follower : FollowerKind    the part that touches the cam, roller or flat face
+    follower : FollowerKind    the part that touches the cam, roller or face
     cam_drops, follower_drops : TabulatedCrown   of their crowns by a table; None: of no table
     mass : float               that moves with the follower, kg, spring_mass of it of the spring
     viscous_damping : float    of the guides, N s/m
@@ -177,7 +177,7 @@ class Machine(Displayed):
 
     @property
     def roller(self) -> Roller:
-        """Roller of the follower; refused for a flat face.
+        """Roller of the follower; refused for a face.
 
         Raises
         ------
@@ -189,15 +189,15 @@ class Machine(Displayed):
         raise InputError("roller", "missing", "given for its checks")
 
     @property
-    def face(self) -> FlatFace:
-        """Flat face of the follower; refused for a roller.
+    def face(self) -> FollowerFace:
+        """Face of the follower; refused for a roller.
 
         Raises
         ------
         InputError
             If it is another.
         """
-        if isinstance(self.follower, FlatFace):
+        if isinstance(self.follower, FollowerFace):
             return self.follower
         raise InputError("follower.face", "missing", "given for its checks")
 

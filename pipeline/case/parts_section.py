@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from math import cos
 from typing import Annotated, ClassVar, Literal, Self
 
+import numpy as np
 from pydantic import model_validator
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.external_force import STANDARD_GRAVITY
@@ -21,7 +23,7 @@ from camwright.pipeline.case.section import (
     Table,
 )
 from camwright.pipeline.follower.arm import FollowerArm
-from camwright.pipeline.follower.flat_face import FlatFace
+from camwright.pipeline.follower.flat_face import FollowerFace
 
 
 class ValveTrain(Section):
@@ -33,7 +35,7 @@ class ValveTrain(Section):
 
 
 class Follower(Section):
-    """Translating follower with a roller or a flat face, or an oscillating one with a roller."""
+    """Translating or oscillating follower with a roller or a face."""
 
     defaults: ClassVar[Mapping[str, str]] = {
         "face": "the follower has a roller",
@@ -46,9 +48,9 @@ class Follower(Section):
     }
 
     kind: Annotated[Literal["roller", "flat", "oscillating"], Known("own choice")] = "roller"
-    """stem with a roller or a flat face, or oscillating arm with a roller"""
-    face: Annotated[Table[FlatFace] | None, Used("contour, contact, checks")] = None
-    """flat face of the follower"""
+    """stem with a roller or a flat face, or oscillating arm with a roller or a face"""
+    face: Annotated[Table[FollowerFace] | None, Used("contour, contact, checks")] = None
+    """face of the follower, flat or curved"""
     arm: Annotated[Table[FollowerArm] | None, Used("lift, contour, cycle")] = None
     """arm of an oscillating follower on its pivot"""
     mass: Annotated[Mass, Known("weighed, or drawing", "610 g")]
@@ -97,9 +99,26 @@ class Follower(Section):
     def _has_its_face(self) -> Self:
         if self.kind == "flat" and self.face is None:
             raise InputError("follower.face", "missing", 'given with follower.kind = "flat"')
-        if self.kind != "flat" and self.face is not None:
+        if self.kind == "roller" and self.face is not None:
             limit = 'left out, or follower.kind = "flat"'
             raise InputError("follower.face", "a table", limit)
+        return self
+
+    @model_validator(mode="after")
+    def _has_a_face_of_its_kind(self) -> Self:
+        if self.face is None:
+            return self
+        shape = {name: getattr(self.face, name) for name in ("offset", "radius")}
+        for name, value in shape.items():
+            if self.kind == "flat" and value is not None:
+                limit = 'left out, or follower.kind = "oscillating"'
+                raise InputError(f"follower.face.{name}", units.shown(value, "mm"), limit)
+        if self.kind == "oscillating" and None not in shape.values():
+            value = units.shown(shape["offset"], "mm")
+            raise InputError("follower.face.offset", value, "left out with follower.face.radius")
+        if self.kind == "oscillating" and not any(each is not None for each in shape.values()):
+            limit = "given for a flat face along the arm, or follower.face.radius for a curved one"
+            raise InputError("follower.face.offset", "missing", limit)
         return self
 
     @model_validator(mode="after")
@@ -122,6 +141,18 @@ class Follower(Section):
             limit = "left out with follower.external_force_file"
             raise InputError("follower.external_force", value, limit)
         return self
+
+    def arm_angle(self, lift: Array, prime_radius: float) -> Array | None:
+        """Angle at the pivot from the line to the cam axis to the arm (...), rad; None of a stem.
+
+        Parameters
+        ----------
+        lift : array (...)   m
+        """
+        if self.arm is None:
+            return None
+        offset = None if self.face is None else self.face.offset
+        return np.asarray(self.arm.start(prime_radius, offset) + lift / self.arm.length)
 
     @property
     def gravity_along_axis(self) -> float:

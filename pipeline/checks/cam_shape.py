@@ -39,7 +39,7 @@ from camwright.pipeline.checks.check import (
 )
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative, roller_of
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative, round_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 
@@ -136,7 +136,7 @@ def angle_on_return(cam: LoadedCam) -> Array:
 
 
 def _angle(cam: LoadedCam, slope: Array) -> Array:
-    path = roller_of(cam.motion)
+    path = round_of(cam.motion)
     return magnitude(np.arctan((slope - path.travel_offset) / path.height))
 
 
@@ -186,7 +186,7 @@ def _wall_left(cam: LoadedCam, limit: float) -> Array | None:
     reason="Side force, guide friction and jamming grow with the tangent of the angle.",
     method="greatest |atan((s' - e)/d)| of the pitch curve, refined between samples",
     lift_can_help=True,
-    needs="roller",
+    needs="round",
     load_cases=NONE,
     levers=(*levers.SHAPE, *levers.SPRING),
     page="Cam",
@@ -218,7 +218,7 @@ curvature_ratio = check(
     reason="Near a ratio of 1 the convex cam surface becomes an edge.",
     method="least radius of curvature of the convex pitch curve, refined between samples",
     lift_can_help=True,
-    needs="roller",
+    needs="round",
     load_cases=NONE,
     levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
     page="Cam",
@@ -308,21 +308,21 @@ def second_contact(solution: Solution) -> Demand:
     id="concave_radius",
     title="Minimum concave radius",
     tier=Tier.SCREENING,
-    formula="min(r - 1/kappa_p) >= 1.1 R; the concave radius of the contour: r: roller radius,"
-    " kappa_p: curvature of the pitch curve, negative in a hollow, R: limits.tool_radius or"
+    formula="min(r - 1/kappa_p) >= 1.1 R; the concave radius of the contour: r: radius of roller or"
+    " face, kappa_p: curvature of the pitch curve, negative in a hollow, R: limits.tool_radius or"
     " workshop.tool_radius",
-    symbols={"r": "roller.radius", "kappa_p": "pitch_curvature"},
+    symbols={"r": "surface_radius", "kappa_p": "pitch_curvature"},
     reason="A larger wheel or cutter cannot make the contour.",
     method="least concave pitch radius plus the roller radius, refined between samples",
     lift_can_help=True,
-    needs="roller",
+    needs="round",
     load_cases=NONE,
     levers=(levers.TOOL, *levers.SHAPE),
     page="Cam",
 ).measured(
     "contour",
     worst="least",
-    value=lambda worst, numbers: numbers["roller.radius"] - 1.0 / np.minimum(worst, -_TINY),
+    value=lambda worst, numbers: numbers["follower.surface"] - 1.0 / np.minimum(worst, -_TINY),
     allowed=_tool_allowed,
     applies=lambda radius, _: ~(np.asarray(radius) >= 1.0 / _TINY),
     deviation=1e-4,

@@ -57,6 +57,8 @@ Page = Literal[
     "Camshaft",
 ]
 """Parts of the mechanism in the order of the flow of force; "": of evidence."""
+Kind = Literal["", "roller", "face", "round", "swung_face", "stem", "arm"]
+"""Needed of a check: roller, face, round surface of either, face of an arm, stem, arm; "": none."""
 EVERY = "all, standstill and over-speed included"
 BY_DUTY = (
     "by load_case.duty, 1/L = sum q_i/L_i with q_i the shares; without a duty the worst load case"
@@ -189,7 +191,7 @@ class Kept(NamedTuple):
     unit: str = ""
     falls: float = 1.0
     unloaded: bool = False
-    needs: Literal["", "roller", "face"] = ""
+    needs: Kind = ""
 
 
 class Stroke(NamedTuple):
@@ -300,7 +302,7 @@ class Declaration:
                                fails by it or is not evaluated
     moved_by_tolerance : bool  its demand differs at a tolerance corner
     error : str                origin of the error bar of the demand
-    needs : str                kind of follower, or what carries it, stem or arm; "": any
+    needs : str                kind of follower, see `Kind`; "": any
     part : str                 part of the scope that it judges; "": cam or follower
     if_limited : bool          it is made only where the case sets its limit
     within : tuple             parts and subjects of the scope, without all of which it is not
@@ -345,7 +347,7 @@ class Declaration:
     fails_from: Tier
     moved_by_tolerance: bool
     error: Error
-    needs: Literal["", "roller", "face", "stem", "arm"]
+    needs: Kind
     part: PartName | Literal[""]
     within: tuple[ScopeName, ...]
     if_limited: bool
@@ -404,7 +406,7 @@ class Declaration:
 
     def concerns(self, machine: Machine) -> bool:
         """Whether a machine has the kind of follower and describes the part of the check."""
-        if self.needs not in ("", machine.follower.word, machine.carrier):
+        if self.needs not in {"", machine.carrier, *machine.follower.kinds}:
             return False
         if self.if_limited and self.limit is not None and machine.limits[self.limit] is None:
             return False
@@ -467,7 +469,7 @@ def check(
     fails_from: Tier | None = None,
     moved_by_tolerance: bool = True,
     error: Error = "sampling",
-    needs: Literal["", "roller", "face", "stem", "arm"] = "",
+    needs: Kind = "",
     part: PartName | Literal[""] = "",
     within: tuple[ScopeName, ...] = (),
     if_limited: bool = False,

@@ -1,4 +1,4 @@
-"""Checks of a flat face sliding on the cam: width, PV value, temperature of the contact."""
+"""Checks of a face sliding on the cam: width, PV value, temperature, self-locking of an arm."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
-from camwright.pipeline.case.limits import SURFACE_TEMPERATURE
+from camwright.pipeline.case.limits import JAM_INDEX, SURFACE_TEMPERATURE
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import value_groups as given
-from camwright.pipeline.checks.check import STATED, Demand, Kept, check, of_key
+from camwright.pipeline.checks.check import NONE, STATED, Demand, Kept, check, of_key
 from camwright.pipeline.checks.contact_strength import line_pressure
 from camwright.pipeline.checks.extremes import cycle_of, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, no_friction
@@ -43,13 +43,14 @@ _FLASH = {
     tier=Tier.SCREENING,
     unit="mm",
     source=Source("contact inside the face, Norton (2009) ch. 7", confirmed=True),
-    method="twice the sum of |s' - e| and contact half-width, greatest over the turn",
+    method="twice the sum of the distance of the contact from the middle of the face and contact"
+    " half-width, greatest over the turn",
     lift_can_help=True,
     needs="face",
-    kept_as="width of the flat face",
-    formula="2 (|s' - e| + a) <= w; s': slope of the lift, e: cam.offset, a: half-width of the"
-    " contact, w: follower.face.width",
-    symbols={"s'": "lift_slope", "e": "cam.offset", "a": "half_width_fe"},
+    kept_as="width of the face",
+    formula="2 (|x| + a) <= w; x: place of the contact from the middle of the face, s' - e on a"
+    " stem, a: half-width of the contact, w: follower.face.width",
+    symbols={"x": "face_contact_offset", "a": "half_width_fe"},
     reason="beyond the face the contact runs on its edge",
     levers=(levers.one("follower.face.width"), *levers.GENTLER),
     page="Flat face",
@@ -57,6 +58,43 @@ _FLASH = {
 def face_width(cam: LoadedCam) -> Array:
     """Required face width, contact half-width included, m."""
     return 2.0 * (magnitude(face_of(cam.motion).on_face) + cam.half_width)
+
+
+def _stated(demand: Demand, _: Solution) -> Demand:
+    return demand if demand.value is None else replace(demand, stated={"x": demand.value})
+
+
+@check(
+    JAM_INDEX,
+    id="self_locking",
+    title="Self-locking of the face on its arm",
+    method="greatest moment of the friction of the face about the pivot over that of its normal"
+    " force, friction of the pivot left out, refined between samples",
+    tier=Tier.SCREENING,
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    needs="swung_face",
+    formula="x <= j; x: greatest M_f/M_n, M_f: moment of the friction of the face about the pivot,"
+    " M_n: of its normal force, j: limits.jam_index; flat face: mu f/q, mu: friction of the face,"
+    " f: its offset, q: distance of the contact from the pivot along it; curved one:"
+    " mu (tan alpha + r/(l cos alpha)), alpha: pressure angle, r: its radius, l: length of the arm;"
+    " f and r negative where the arm swings outwards against the cam",
+    symbols={"x": STATED},
+    reason="At 1 the friction holds what the cam lifts, and cam or arm breaks.",
+    values=("follower.face.friction",),
+    load_cases=NONE,
+    levers=levers.GENTLER,
+    page="Flat face",
+).measured(
+    "contour",
+    needed=("follower.face.friction",),
+    remark=_stated,
+    deviation=1e-4,
+    kept=Kept(),
+)
+def self_locking(cam: LoadedCam) -> Array:
+    """Moment of the friction of a face about the pivot over that of its normal force."""
+    return np.asarray(cam.motion.lock)
 
 
 def _of_its_source(demand: Demand, solution: Solution) -> Demand:
@@ -69,17 +107,17 @@ def _sliding(cam: LoadedCam) -> Array:
 
 
 @check(
-    title="PV value of the flat face",
+    title="PV value of the face",
     tier=Tier.SCREENING,
     unit="MPa m/s",
     source=Source("PV limit of the face", confirmed=True),
-    method="greatest pi/4 p0 w (r + s) over the turn",
+    method="greatest pi/4 p0 v over the turn",
     lift_can_help=True,
     needs="face",
-    kept_as="PV of the flat face",
-    formula="pi/4 p0 omega (r + s) <= PV; p0: contact pressure, omega: speed of the cam, r: base"
-    " radius, s: lift, PV: follower.face.pv_limit",
-    symbols={"p0": "p0_fe", "omega": "cam.speed", "r": "cam.prime_radius", "s": "lift"},
+    kept_as="PV of the face",
+    formula="pi/4 p0 v <= PV; p0: contact pressure, v: sliding speed, omega (r + s) on a stem, PV:"
+    " follower.face.pv_limit",
+    symbols={"p0": "p0_fe", "v": "sliding_speed"},
     reason="a face slides at all angles, and beyond its PV limit it seizes or melts",
     values=(*given.CONTACT, "follower.face.pv_limit"),
     levers=(levers.one("follower.face.depth"), *levers.GENTLER),
@@ -111,9 +149,10 @@ def face_pv(cam: LoadedCam) -> Array:
     needs="face",
     formula="T_oil + 0.47 1.2 T_m + T_f <= T_b + c (T_s - T_b); c: (lambda - 0.4)/(1 - 0.4) within"
     " 0 and 1, T_m: mean of T_f over the turn, T_f: 1.11 mu w |u1 - u2| / ((B1 sqrt|u1| +"
-    " B2 sqrt|u2|) sqrt(2 a)), u1: omega (r + s + s''), u2: omega s'', mu: friction of the face,"
+    " B2 sqrt|u2|) sqrt(2 a)), u1, u2: speeds of the contact along cam and face, on a stem omega (r"
+    " + s + s'') and omega s'', mu: friction of the face,"
     " w: line load, B: root of conductivity times density times specific heat, a: half-width of"
-    " the contact, r: base radius, s: lift, T_oil: lubricant.temperature, T_s, T_b:"
+    " the contact, T_oil: lubricant.temperature, T_s, T_b:"
     " lubricant.scuffing_temperature, .boundary_temperature, lambda: film over roughness, as of"
     " film_ratio, at the same angle",
     symbols=_FLASH,

@@ -10,7 +10,7 @@ from camwright.pipeline.base.source import Source
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.case.scope_section import PART_WORDS, PartName
-from camwright.pipeline.checks.check import NONE, STATED, Declaration, Demand, Page, check
+from camwright.pipeline.checks.check import NONE, STATED, Declaration, Demand, Kind, Page, check
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.spring_kinds import SHAPES
 
@@ -21,7 +21,7 @@ Tables = Mapping[str, Part | Follower | None]
 def _data(
     name: PartName | Literal["cam", "follower", "roller", "face"],
     tables: Callable[[Case], Tables],
-    needs: Literal["", "roller", "face", "arm"] = "",
+    needs: Kind = "",
     described_by: tuple[str, ...] = (),
     spring: str = "",
     *,
@@ -32,7 +32,7 @@ def _data(
     described_by: tables or keys by which the case describes the part; spring: kind of spring
     with which a case can have it; "": any.
     """
-    words: str = name.replace("face", "flat face")
+    words: str = name
     coverable: PartName | None = None
     for part, text in PART_WORDS.items():
         if part == name:

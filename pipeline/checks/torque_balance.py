@@ -514,7 +514,7 @@ def _touching_slope(cycle: Cycle) -> Array:
 def _heat(cycle: Cycle) -> float:
     """Friction heat of a turn, J; of the guides, from the pressures in their bores."""
     loads, slope = cycle.loads, _touching_slope(cycle)
-    dragged = np.abs(loads.viscous_force * slope) + loads.sliding_torque
+    dragged = np.abs(loads.viscous_force * slope) + loads.rubbed
     rubbed = (cycle.parts.heat_a + cycle.parts.heat_b) / cycle.cam_speed
     return FULL_TURN / len(slope) * float(np.sum(rubbed + dragged))
 

@@ -1,4 +1,4 @@
-"""Body of the follower in the contact: roller, or block of a flat face."""
+"""Body of the follower in the contact: roller, or block of a face."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
-from camwright.meshes.body_mesh import BodyMesh, face_mesh, roller_mesh
+from camwright.meshes.body_mesh import BodyMesh, face_mesh, roller_mesh, sagitta
 from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, Springs
 
@@ -101,16 +101,18 @@ class RollerBody:
 
 @dataclass(frozen=True)
 class FaceBody:
-    """Block of a flat face, centred on the stem, its back held over the stem's cross-section.
+    """Block of a face, its back held in the middle: over the cross-section of a stem, or whole.
 
     The frame has its origin in the middle of the face, y towards the cam and x along the face.
-    width along the face in the plane of motion, thickness along the stem, m.
+    width along the face in the plane of motion, thickness along the stem, stem_diameter: width held
+    at the back, radius: of a curved face, None of a flat one, m.
     """
 
     width: float
     thickness: float
     stem_diameter: float
     material: Elastic
+    radius: float | None = None
     name: str = "face"
     part: str = "flat face"
     surface: str = "top"
@@ -127,21 +129,29 @@ class FaceBody:
 
     def coarse_mesh(self) -> BodyMesh:
         size = min(self.thickness / _EDGES_ACROSS_FACE, self.width / _EDGES_ALONG_FACE)
-        return face_mesh(self.width, self.thickness, self.stem_diameter, ElementSize(far_size=size))
+        sizing = ElementSize(far_size=size)
+        return face_mesh(self.width, self.thickness, self.stem_diameter, sizing, self.radius)
 
     def contacts(self, contour: Contour, theta: Array, /) -> tuple[Array, Array]:
         """Contact at its place along the face."""
         along = np.asarray(contour.pitch.slide(theta).on_face)
-        nothing, one = np.zeros_like(along), np.ones_like(along)
-        return np.stack([along, nothing]), np.stack([nothing, one])
+        if self.radius is None:
+            nothing, one = np.zeros_like(along), np.ones_like(along)
+            return np.stack([along, nothing]), np.stack([nothing, one])
+        sine = along / self.radius
+        normal = np.stack([sine, np.sqrt(1.0 - sine**2)])
+        return np.stack([along, -sagitta(along, self.radius)]), normal
 
     def mesh_at(self, contour: Contour, theta: float, sizing: ElementSize) -> BodyMesh:
         """Mesh of the face in the cam frame at cam angle `theta`, rad, refined at the contact."""
         arm = float(contour.pitch.slide(theta).on_face)
-        here = replace(sizing, contact_point=np.array([arm, 0.0]))
-        mesh = face_mesh(self.width, self.thickness, self.stem_diameter, here)
-        middle = contour.points(theta) - arm * contour.tangent(theta)
+        here = replace(sizing, contact_point=np.array([arm, -float(sagitta(arm, self.radius))]))
+        mesh = face_mesh(self.width, self.thickness, self.stem_diameter, here, self.radius)
         travel = theta + float(contour.pitch.travel(theta))
+        middle = contour.points(theta) - arm * contour.tangent(theta)
+        if self.radius is not None:
+            outwards = np.array([np.cos(travel), np.sin(travel)])
+            middle = contour.pitch.points(theta) - self.radius * outwards
         return mesh.transformed(travel + 0.5 * np.pi, middle)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> None:

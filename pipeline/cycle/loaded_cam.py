@@ -77,6 +77,19 @@ def roller_of(path: Motion) -> RoundMotion:
     raise GeometryError("the follower of the cam is no roller")
 
 
+def round_of(path: Motion) -> RoundMotion:
+    """Kinematics of a round surface, of a roller or curved face; refused for a flat face.
+
+    Raises
+    ------
+    GeometryError
+        If it is that of a flat face.
+    """
+    if isinstance(path, RoundMotion):
+        return path
+    raise GeometryError("the follower of the cam is flat")
+
+
 def face_of(path: Motion) -> Sliding:
     """Kinematics of a face that slides; refused for a roller.
 

@@ -169,9 +169,17 @@ def _half_flat(numbers: Numbers) -> Value:
 
 
 def _round(numbers: Numbers) -> Value:
-    """Radius of roller or cheeks about the pin, the greater, m; 0 of a face."""
-    radius, height = numbers.get("roller.radius"), numbers.get("roller.fork.cheek_height")
-    return np.maximum(0.0 if radius is None else radius, 0.5 * (height or 0.0))
+    """Radius of roller or cheeks about the pin, the greater, or of a face, m; 0 of a flat one."""
+    height = numbers.get("roller.fork.cheek_height")
+    return np.maximum(numbers["follower.surface"], 0.5 * (height or 0.0))
+
+
+def _surface(numbers: Numbers) -> Value:
+    """Radius of the surface of roller or curved face, m; 0 of a flat face."""
+    radius = numbers.get("follower.face.radius")
+    if radius is None and numbers.get("follower.face.width") is None:
+        return numbers["roller.radius"]
+    return 0.0 if radius is None else radius
 
 
 def _size(numbers: Numbers) -> Value:
@@ -221,8 +229,8 @@ def _rotor_inertia(numbers: Numbers) -> Value | None:
 
 def base_radius(numbers: Numbers) -> Value:
     """Least radius of the contour at zero lift, m."""
-    prime, width = numbers["cam.prime_radius"], numbers.get("follower.face.width")
-    return prime - numbers["roller.radius"] if width is None else prime
+    least: Value = numbers["cam.prime_radius"] - numbers["follower.surface"]
+    return least
 
 
 def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
@@ -309,6 +317,7 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "follower.half_depth": _half_depth,
     "follower.half_flat": _half_flat,
     "follower.round": _round,
+    "follower.surface": _surface,
     "follower.size": _size,
     "cam.waviness": _waviness,
     "roller.rotor_inertia": _rotor_inertia,

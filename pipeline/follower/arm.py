@@ -6,10 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal
 
-import numpy as np
-
 from camwright.geometry.arm_path import Arm, ArmContour, ArmPath
-from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
@@ -24,10 +21,11 @@ from camwright.pipeline.follower.camshaft_loads import Notch, Surface
 class FollowerArm(Part):
     """Arm of an oscillating follower on a fixed pivot.
 
-    The lift is the arc of its roller centre, and forces, masses and springs are those reduced to
-    it: a moment about the pivot over the length, an inertia and an angular rate over its square.
-    The section of a straight arm is a rectangle; a fatigue notch factor holds for all stresses of
-    its place. The fatigue_bending of the material is that of a polished specimen.
+    The lift is the arc at its length, of the roller centre or the middle of a face, and forces,
+    masses and springs are those reduced to it: a moment about the pivot over the length, an inertia
+    and an angular rate over its square. The section of a straight arm is a rectangle; a fatigue
+    notch factor holds for all stresses of its place. The fatigue_bending of the material is that of
+    a polished specimen.
 
     Raises
     ------
@@ -60,7 +58,7 @@ class FollowerArm(Part):
     centre_distance: Annotated[Length, Known("drawing", "90 mm")]
     """distance of the pivot from the cam axis"""
     length: Annotated[Length, Known("drawing", "80 mm")]
-    """distance of the roller centre from the pivot"""
+    """distance of the roller centre, or of the middle of a face, from the pivot"""
     swing: Annotated[Literal["with", "against"], Known("drawing", "with")]
     """sense of the outward swing: with the rotation of the cam, or against it"""
     width: Annotated[Length | None, Known("drawing", "25 mm")] = None
@@ -118,9 +116,14 @@ class FollowerArm(Part):
         """Geometry of the arm."""
         return Arm(self.centre_distance, self.length, self.sense)
 
-    def angle(self, lift: Array, prime_radius: float) -> Array:
-        """Angle at the pivot from the line to the cam axis to the arm (...), rad, at a lift, m."""
-        return np.asarray(self.linkage.angle(prime_radius) + lift / self.length)
+    def start(self, prime_radius: float, offset: float | None = None) -> float:
+        """Angle at the pivot from the line to the cam axis to the arm at zero lift, rad.
+
+        offset: of a flat face, see `Arm.face_angle`; None: a roller or curved face
+        """
+        if offset is None:
+            return float(self.linkage.angle(prime_radius))
+        return float(self.linkage.face_angle(prime_radius, offset))
 
     def roller_contour(self, lift: Lift, prime_radius: float, roller_radius: float) -> Contour:
         """Cam contour under the roller of the arm.
@@ -130,6 +133,5 @@ class FollowerArm(Part):
         InputError
             If the arm does not reach the prime circle, or swings past a line of centres.
         """
-        arm = self.linkage
-        path = ArmPath(lift, arm, float(arm.angle(prime_radius)))
+        path = ArmPath(lift, self.linkage, self.start(prime_radius))
         return ArmContour(path, roller_radius)

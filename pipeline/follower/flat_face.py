@@ -1,18 +1,29 @@
-"""Flat-faced follower: dimensions, contact body, sliding on the cam."""
+"""Face of a follower: dimensions, cam contour, contact body, sliding on the cam."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import asin, sqrt
 from typing import Annotated, ClassVar
 
+from camwright.geometry.arm_face import (
+    ArmFaceContour,
+    ArmFacePath,
+    CurvedFaceContour,
+    CurvedFacePath,
+    face_disc_lift,
+)
+from camwright.geometry.arm_path import disc_lift
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
-from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
+from camwright.geometry.eccentric import face_lift
+from camwright.geometry.flat_face_contour import FacedContour, FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.material import MadeOf
 from camwright.pipeline.base.quantities import In, Known, Length, Part, TableSource, Used
 from camwright.pipeline.base.source import NO_SOURCE
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -25,8 +36,12 @@ from camwright.pipeline.follower.stem_beam import Stem
 
 
 @dataclass(frozen=True, kw_only=True)
-class FlatFace(Part):
-    """Flat face of a follower, perpendicular to the stem and centred on it."""
+class FollowerFace(Part):
+    """Face of a follower: flat, or curved at the end of an arm.
+
+    That of a stem is perpendicular to it and centred on it. A flat one of an arm lies along the arm
+    with its middle at the length of the arm; a curved one is round about the end of the arm.
+    """
 
     table: ClassVar[str] = "follower.face"
     word: ClassVar[str] = "face"
@@ -37,14 +52,22 @@ class FlatFace(Part):
     drag: ClassVar[None] = None
     defaults: ClassVar[Mapping[str, str]] = {
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
+        "offset": "the face is that of a stem, or a curved one",
+        "radius": "the face is flat",
     }
 
     width: Annotated[Length, Known("drawing", "30 mm")]
-    """length in the plane of motion"""
+    """length in the plane of motion; of a curved face its chord"""
     depth: Annotated[Length, Known("drawing", "10 mm")]
     """length along the cam axis"""
     thickness: Annotated[Length, Known("drawing", "6 mm")]
-    """thickness of the block along the stem"""
+    """thickness of the block along the stem, or in the direction of the swing"""
+    offset: Annotated[
+        float | None, In("mm", at_least=-1000, at_most=1000), Known("drawing", "0 mm")
+    ] = None
+    """distance of a flat face along an arm from its pivot, positive towards the cam"""
+    radius: Annotated[Length | None, Known("drawing", "20 mm")] = None
+    """radius of a curved face, whose centre is the end of the arm"""
     friction: Annotated[
         float | None, In(above=0, at_most=1), Known("textbooks: 0.05 to 0.12 oiled steel", 0.08)
     ] = None
@@ -77,9 +100,33 @@ class FlatFace(Part):
         return self.friction or 0.0
 
     @property
-    def contact_radius(self) -> None:
-        """None: the face is flat."""
-        return None
+    def contact_radius(self) -> float | None:
+        """Radius of a curved face, m; None of a flat one."""
+        return self.radius
+
+    @property
+    def kinds(self) -> frozenset[str]:
+        """See `FollowerKind`."""
+        curved = {"round"} if self.radius is not None else set()
+        return frozenset({"face", *curved, *({"swung_face"} if self.on_arm else ())})
+
+    @property
+    def on_arm(self) -> bool:
+        """Whether it is the face of an arm, not of a stem."""
+        return self.offset is not None or self.radius is not None
+
+    @property
+    def reference(self) -> str:
+        """See `FollowerKind`."""
+        return "middle of the face"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """See `FollowerKind`."""
+        offset, radius = (each and shown(each, "mm") for each in (self.offset, self.radius))
+        if radius is not None:
+            return (f"face of radius {radius} about the end of the arm",)
+        return (f"face {offset or '0 mm'} from the pivot towards the cam",) if self.on_arm else ()
 
     @property
     def extent(self) -> float:
@@ -102,9 +149,19 @@ class FlatFace(Part):
         return ""
 
     @property
+    def _round_off(self) -> float:
+        """Area that the block of a curved face lacks to the rectangle, m^2."""
+        if self.radius is None:
+            return 0.0
+        half = min(0.5 * self.width, self.radius)
+        turned = self.radius * asin(half / self.radius)
+        return half * (2.0 * self.radius - sqrt(self.radius**2 - half**2)) - self.radius * turned
+
+    @property
     def moving(self) -> MovingParts:
         """Block of the face; see `FollowerKind`."""
-        mass = self.material.density * self.width * self.depth * self.thickness
+        area = self.width * self.thickness - self._round_off
+        mass = self.material.density * area * self.depth
         return MovingParts({"face": mass}, self.thickness, {})
 
     def ring(self, width: float, preload: float) -> None:
@@ -124,21 +181,43 @@ class FlatFace(Part):
     def rolling(self, contour: Contour, theta: Array, speed: float) -> None:
         """None: the face slides."""
 
-    def contour(
-        self,
-        lift: Lift,
-        cam: CamBody,
-        arm: FollowerArm | None = None,  # noqa: ARG002
-    ) -> Contour:
-        """Cam contour under the face, which no arm has; see `FollowerKind`."""
-        contour = FlatFaceContour(FacePath(lift, cam.prime_radius, cam.offset))
+    def contour(self, lift: Lift, cam: CamBody, arm: FollowerArm | None = None) -> Contour:
+        """Cam contour under the face; see `FollowerKind`."""
+        contour = self._contour(lift, cam, arm)
         contour.require_face(self.width)
         return contour
 
+    def _contour(self, lift: Lift, cam: CamBody, arm: FollowerArm | None) -> FacedContour:
+        if arm is None:
+            return FlatFaceContour(FacePath(lift, cam.prime_radius, cam.offset))
+        linkage, start = arm.linkage, arm.start(cam.prime_radius, self.offset)
+        if self.radius is not None:
+            return CurvedFaceContour.of(CurvedFacePath(lift, linkage, start, self.radius))
+        return ArmFaceContour(ArmFacePath(lift, linkage, start, self.offset or 0.0))
+
+    def disc_lift(self, eccentricity: float, cam: CamBody, arm: FollowerArm | None) -> Lift:
+        """Lift on an eccentric disc, zero at cam angle 0.
+
+        Raises
+        ------
+        InputError
+            If the eccentricity is not positive, or an arm does not reach the disc.
+        """
+        if arm is None:
+            return face_lift(eccentricity)
+        if self.offset is None:
+            return disc_lift(eccentricity, cam.prime_radius, arm.linkage)
+        return face_disc_lift(eccentricity, cam.prime_radius, arm.linkage, self.offset)
+
     def body(self, width: float, stem: Stem, preload: float) -> FaceBody:  # noqa: ARG002
-        """Block of the face on its stem; see `FollowerKind`."""
+        """Block of the face on its stem, or held over its whole back by an arm.
+
+        See `FollowerKind`.
+        """
         elastic = Elastic(self.material.E, self.material.nu)
-        return FaceBody(self.width, self.thickness, stem.diameter, elastic)
+        held = self.width if self.on_arm else stem.diameter
+        part = "flat face" if self.radius is None else "curved face"
+        return FaceBody(self.width, self.thickness, held, elastic, self.radius, part=part)
 
     def motion(
         self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float

@@ -298,6 +298,11 @@ class Loads(Displayed):
         return np.asarray(self.friction_force_a + self.friction_force_b)
 
     @property
+    def rubbed(self) -> Array:
+        """Friction work of a face by the cam angle, N m."""
+        return np.asarray(self.sliding_torque + self.lock * self.axial_force * self.lift_slope)
+
+    @property
     def applied_work(self) -> float:
         """Work of the cam against weight and external force over a turn, J.
 
@@ -308,8 +313,7 @@ class Loads(Displayed):
     @property
     def friction_loss(self) -> float:
         """Friction loss of both guides and of a face over one cam turn, J."""
-        rubbing = self.friction_force * np.abs(self.lift_slope) + self.sliding_torque
-        rubbing = rubbing + self.lock * self.axial_force * self.lift_slope
+        rubbing = self.friction_force * np.abs(self.lift_slope) + self.rubbed
         return turn_integral(self.theta, rubbing + self.viscous_force * self.lift_slope)
 
 

@@ -1,4 +1,4 @@
-"""Protocol of follower types: roller and flat face."""
+"""Protocol of follower types: roller and face."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class ElasticParts(NamedTuple):
 
 
 class FollowerKind(Protocol):
-    """Interface of the part that touches the cam: roller or flat face.
+    """Interface of the part that touches the cam: roller or face.
 
     `word`: its name in files and texts; `table`: in the case file; `width_key`: key of its width
     along the line of contact; `line_width`: maximum width of the line contact, m; `friction`:
@@ -112,6 +112,21 @@ class FollowerKind(Protocol):
     @property
     def side_friction(self) -> float:
         """Friction coefficient of the side force on the stem; 0 for a roller."""
+        ...
+
+    @property
+    def kinds(self) -> frozenset[str]:
+        """Words of the checks that it has: roller or face, and round with a round surface."""
+        ...
+
+    @property
+    def reference(self) -> str:
+        """Its reference point, in words."""
+        ...
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes on the drawing of the cam, of what the contour alone does not tell."""
         ...
 
     @property

@@ -103,6 +103,21 @@ class Roller(Part):
         return 0.0
 
     @property
+    def kinds(self) -> frozenset[str]:
+        """See `FollowerKind`."""
+        return frozenset({"roller", "round"})
+
+    @property
+    def reference(self) -> str:
+        """See `FollowerKind`."""
+        return "roller centre"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """None: the roller has a drawing of its own; see `FollowerKind`."""
+        return ()
+
+    @property
     def contact_radius(self) -> float:
         """Radius of the surface, m."""
         return self.radius

@@ -25,7 +25,7 @@ from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.checks.check import BOUNDLESS, STATED, Declaration
 from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.checks.registry import DECLARED
-from camwright.pipeline.cycle.loaded_cam import roller_of
+from camwright.pipeline.cycle.loaded_cam import round_of
 from camwright.pipeline.cycle.numbers import Numbers, fitted_ring, greatest_interference
 from camwright.pipeline.cycle.solved_cam import ContourCam, in_load_case, numbers_of
 from camwright.pipeline.records.check_record import CheckRecord
@@ -57,9 +57,10 @@ FIGURES: Mapping[str, tuple[str, _Figure]] = {
     "lift_d2": ("mm/rad^2", lambda cam: cam.jet.lift_d2),
     "lift_highest": ("mm", lambda cam: cam.highest),
     "pitch_height": ("mm", lambda cam: cam.contour.require_roller().pitch.height_base),
-    "pitch_curvature": ("1/mm", lambda cam: roller_of(cam.motion).path_curvature),
-    "pitch_curvature_slope": ("1/mm", lambda cam: roller_of(cam.motion).path_curvature_slope),
-    "pitch_speed": ("mm/rad", lambda cam: roller_of(cam.motion).path_speed),
+    "surface_radius": ("mm", lambda cam: round_of(cam.motion).size),
+    "pitch_curvature": ("1/mm", lambda cam: round_of(cam.motion).path_curvature),
+    "pitch_curvature_slope": ("1/mm", lambda cam: round_of(cam.motion).path_curvature_slope),
+    "pitch_speed": ("mm/rad", lambda cam: round_of(cam.motion).path_speed),
     "contour_speed": ("mm/rad", lambda cam: cam.motion.contour_speed),
     "contour_radius": ("mm", lambda cam: cam.motion.contour_radius),
     "contour_radius_greatest": ("mm", lambda cam: cam.contour.radius_max().value),

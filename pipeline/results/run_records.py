@@ -110,7 +110,7 @@ def drawn_angles(case: Case) -> Array:
 
 def lift_columns(case: Case, lift: Lift) -> dict[Column, Array]:
     """Columns of ``2_lift.csv``: cam angle, lift and its derivatives, angle of an arm."""
-    theta, arm = drawn_angles(case), case.follower.arm
+    theta = drawn_angles(case)
     columns = {
         CAM_ANGLE: theta,
         CRANK_ANGLE: case.mechanism.gear_ratio * theta,
@@ -119,9 +119,9 @@ def lift_columns(case: Case, lift: Lift) -> dict[Column, Array]:
         Column("lift_d2", "mm/rad^2", "Second derivative of the lift by cam angle"): lift(theta, 2),
         Column("lift_d3", "mm/rad^3", "Third derivative of the lift by cam angle"): lift(theta, 3),
     }
-    if arm is not None:
+    angle = case.follower.arm_angle(lift(theta), case.cam.prime_radius)
+    if angle is not None:
         words = "Angle at the pivot from the line to the cam axis to the arm"
-        angle = arm.angle(lift(theta), case.cam.prime_radius)
         columns[Column("arm_angle", "deg", words)] = angle
     return columns
 

@@ -180,14 +180,15 @@ def notes_of(case: Case) -> Iterator[str]:
         f" ISO 1101) to datum {size.datum}: axis of the bore"
         + ("" if size.keyway_width is None else ", middle plane of the keyway")
     )
-    arm = case.follower.arm
-    if arm is not None:
-        start = float(arm.angle(np.zeros(()), case.cam.prime_radius))
+    arm, start = case.follower.arm, case.follower.arm_angle(np.zeros(()), case.cam.prime_radius)
+    if arm is not None and start is not None:
         lengths = (
             f"pivot {shown(arm.centre_distance, 'mm')} from the cam axis, {shown(arm.length, 'mm')}"
         )
-        swing = f"arm at {shown(start, 'deg', 6)} to the cam axis at zero lift, swings outwards"
-        yield f"{lengths} to the roller centre; {swing} {arm.swing} the rotation of the cam"
+        swing = f"arm at {shown(float(start), 'deg', 6)} to the cam axis at zero lift"
+        ways = f"swings outwards {arm.swing} the rotation of the cam"
+        yield f"{lengths} to the {case.facing.reference}; {swing}, {ways}"
+    yield from case.facing.notes
     yield ", ".join(filter(None, (f"material {stated.material or size.material}", size.hardness)))
     yield "cam angles grow counter-clockwise from the marked line; the cam turns clockwise"
 

@@ -37,7 +37,7 @@ from camwright.pipeline.cycle.numbers import Numbers
 # which each is solved.
 _KEYS = (
     *("cam.prime_radius", "cam.width", "roller.radius", "roller.width", "roller.crown.radius"),
-    *("cam.crown.radius", "follower.face.depth"),
+    *("cam.crown.radius", "follower.face.depth", "follower.face.radius"),
 )
 _STRAIGHT = ("cam.width", "roller.width", "follower.face.depth")
 _SHAPES = 16
@@ -228,15 +228,14 @@ def _tilt(designs: DesignValues, shaft: Array) -> LineTilt:
     camshaft, rad.
     """
     machine = designs.machine
-    follower, radius = machine.follower, machine.follower.contact_radius
-    sizes = designs.value("roller.radius") if radius is not None else 0.0
+    follower = machine.follower
     ends = 0.0 if follower.end is None else 2.0 * follower.end.size
     width = None if follower.slides else designs.value(follower.width_key) - ends
     return line_tilt(
         shaft,
         parallelism=designs.value(f"limits.{AXIS_PARALLELISM.id}"),
         run_out=designs.value(f"limits.{CAM_RUN_OUT.id}"),
-        base_radius=designs.value("cam.prime_radius") - sizes,
+        base_radius=designs.value("cam.prime_radius") - designs.numbers["follower.surface"],
         clearance=designs.value(f"limits.{ROLLER_CLEARANCE.id}"),
         bearing_length=width,
         guides=machine.guides.tilt_at(_spacing(designs)),

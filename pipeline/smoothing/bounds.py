@@ -129,7 +129,7 @@ def _concave_radius(ratings: Ratings, one: AnyConstraint, value: float) -> Bound
     """Bound of the concave radius as one on the tool radius R: the utilisation -kappa (a R - r)
     grows with R. None where the roller is no smaller.
     """
-    room = value - float(ratings.numbers["roller.radius"])
+    room = value - float(ratings.numbers["follower.surface"])
     if room <= 0.0:
         return None
     slope = -TOOL_ALLOWANCE / in_unit(room, one.kept.unit)

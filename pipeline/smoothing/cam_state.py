@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Generic, Literal, NamedTuple, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ from camwright.pipeline.case.limits import (
     RETURN_PRESSURE_ANGLE,
     AnyLimit,
 )
-from camwright.pipeline.checks.check import Declaration, Kept, Stroke
+from camwright.pipeline.checks.check import Declaration, Kept, Kind, Stroke
 from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.loaded_cam import (
@@ -327,7 +327,7 @@ class Constraint(Generic[State]):
     utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
     row: AnyLimit | None = None
     kept: Kept = field(default=Kept(), repr=False)
-    needs: Literal["", "roller", "face", "stem", "arm"] = ""
+    needs: Kind = ""
     stroke: str = ""
 
     @property
@@ -337,7 +337,7 @@ class Constraint(Generic[State]):
 
     def value(self, ratings: Ratings) -> float | None:
         """Limit, SI; None: not constrained."""
-        return ratings.bounds.get(self.key) if self.needs in ("", ratings.follower) else None
+        return ratings.bounds.get(self.key) if self.needs in {"", *ratings.kinds} else None
 
 
 def where_applies(applies: Value, use: Array) -> Array:

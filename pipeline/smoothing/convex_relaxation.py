@@ -118,7 +118,7 @@ def _program(search: Search) -> Cones:
         for side in (1.0, -1.0):
             program.at_most(side * torque - wide * sigma, 0.0)
         program.square_at_most(sigma, growth, 1.0)
-    elif steepest is not None:
+    elif steepest is not None and ratings.tilting:
         back = ratings.bounds.get(RETURN_PRESSURE_ANGLE.id, steepest)
         stretch = variables.closing / variables.rate
         height = (variables.prime_radius - stretch) * sigma + stretch * growth

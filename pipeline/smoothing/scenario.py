@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Literal
 
 import numpy as np
 
@@ -87,14 +86,19 @@ class Ratings:
         return replace(self, bounds=others | least, by={**self.by, **by})
 
     @property
-    def follower(self) -> Literal["roller", "face"]:
-        """Kind of follower."""
-        return "roller" if self.numbers.get("follower.face.width") is None else "face"
+    def kinds(self) -> frozenset[str]:
+        """Words of the checks that the follower has; see `FollowerKind`."""
+        if self.numbers.get("follower.face.width") is None:
+            return frozenset({"roller", "round"})
+        shapes = {"radius": {"round", "swung_face"}, "offset": {"swung_face"}}
+        stated = (words for name, words in shapes.items()
+                  if self.numbers.get(f"follower.face.{name}") is not None)  # fmt: skip
+        return frozenset({"face"}.union(*stated))
 
     @property
     def tilting(self) -> float:
-        """Tangent of the normal over lift slope: 1 for a roller, 0 for a flat face."""
-        return float(self.follower == "roller")
+        """Tangent of the normal over lift slope: 1 for a round surface, 0 for a flat face."""
+        return float("round" in self.kinds)
 
     @property
     def offset(self) -> float:
@@ -103,9 +107,11 @@ class Ratings:
 
     @property
     def slope_max(self) -> float | None:
-        """Lift per radian at the edge of a face, m; None: a roller."""
+        """Lift per radian at the edge of the face of a stem, m; None: of no such face."""
         width = self.bounds.get(face_width.id)
-        return None if width is None else 0.5 * width - abs(self.offset)
+        if width is None or self.numbers.get("follower.arm.length") is not None:
+            return None
+        return 0.5 * width - abs(self.offset)
 
 
 _FACTORS = (

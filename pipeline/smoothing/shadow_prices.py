@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced, value_of
+from camwright.pipeline.checks.check import Kind
 from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.flat_face_sliding import face_pv
 from camwright.pipeline.records.run_summary import MachinePriceRecord, PriceRecord
@@ -53,7 +53,7 @@ class MachineNumber:
     keys: tuple[str, ...]
     less: tuple[str, ...] = ()
     free: str = ""
-    needs: Literal["", "roller", "face"] = ""
+    needs: Kind = ""
 
     def value(self, case: Case) -> float:
         """Value in a case, SI."""
@@ -144,7 +144,7 @@ def machine_prices(
     records: list[MachinePriceRecord] = []
     for number in NUMBERS:
         derived = {f"spring.{name}" for name in case.spring.derived}
-        if number.needs not in ("", problem.ratings.follower) or number.key in derived:
+        if number.needs not in {"", *problem.ratings.kinds} or number.key in derived:
             continue
         value = number.value(case)
         if number.free in problem.freed or value <= 0.0:

@@ -125,6 +125,24 @@ def sliding() -> float:
     return float(np.max(0.25 * np.pi * (800.0 + 100.0 * made.WAVE) * speed))
 
 
+def self_locking() -> float:
+    """Friction 0.1 times 8 mm over the distance of the contact from the pivot.
+
+    The contact is where two lines of the face cross, 2e-4 rad of the cam apart.
+    """
+    theta, step = np.linspace(0.0, 2.0 * np.pi, 3601), 1e-4
+    lines = []
+    for at in (theta - step, theta + step):
+        lift = 0.5 * made.STROKE * (1.0 - np.cos(at))
+        arm = np.arcsin((made.BASE + 0.008) / 0.09) + lift / 0.08
+        normal = at + 0.5 * np.pi - arm
+        lines.append((np.cos(normal), np.sin(normal), 0.09 * np.sin(arm) - 0.008))
+    (a, b, e), (c, d, f) = lines
+    x, y = (e * d - b * f) / (a * d - b * c), (a * f - e * c) / (a * d - b * c)
+    away = np.hypot(x - 0.09 * np.cos(theta), y - 0.09 * np.sin(theta))
+    return float(np.max(0.1 * 0.008 / np.sqrt(away**2 - 0.008**2)))
+
+
 def bulk_temperature() -> float:
     """Oil at 80 degC and 0.47 1.2 of the mean flash temperature, degC."""
     return float(80.0 + 0.47 * 1.2 * flash_temperature().mean())

@@ -13,6 +13,7 @@ _ROLLER = "verification/test_roller_audit.py"
 _IMPACT = "verification/test_gear_impact.py"
 _SHAFT = "verification/test_camshaft_audit.py"
 _SPRING = "verification/test_spring_audit.py"
+_SWUNG = "unit/test_swung_face_case.py"
 _SYNTHESIS = "unit/test_solution_verification.py"
 _RUN = "end_to_end/test_run.py"
 _SHAPE = "unit/test_numerics_recomputed.py"
@@ -116,6 +117,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_CONTACT, "test_two_rules_for_one_card_that_differ_are_flagged"): ("endurance_rules",),
     (_CONTACT, "test_axial_offset_beyond_the_difference_of_widths_fails"): ("roller_overlap",),
     (_CONTACT, "test_width_and_pv_of_the_face"): ("face_width", "face_pv"),
+    (_SWUNG, "test_self_locking_by_moments_about_the_pivot"): ("self_locking",),
     (_CONTACT, "test_temperature_of_the_sliding_face"): (
         "contact_temperature", "bulk_temperature",
     ),

@@ -6,9 +6,11 @@ import numpy as np
 from check_tools import by_limit, limited, loaded, tried
 from trial_variants import (
     NAN,
+    UnknownLift,
     cycle_with,
     faced,
     oiled,
+    swung,
     unknown,
     with_benchmark,
     with_bore,
@@ -240,6 +242,15 @@ tried(
     2.0 * (5.0 + 0.1),
     "twice half the stroke and a half-width of 0.1",
     base=faced,
+)
+by_limit(
+    "self_locking",
+    "jam_index",
+    lambda: swung(lift=UnknownLift(made.THETA, NAN, np.nan)),
+    by_hand.self_locking(),
+    "mu f/q at the crossing of two lines of the face",
+    base=swung,
+    missing=lambda: swung(friction=None),
 )
 tried(
     "face_pv",

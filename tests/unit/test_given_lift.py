@@ -155,7 +155,7 @@ def test_flat_face_takes_the_place_of_the_roller():
     assert found.facing is found.follower.face
     assert found.facing.side_friction == 0.08
     with pytest.raises(
-        InputError, match=r'follower\.kind = flat, must be "roller" for a value of the roller'
+        InputError, match=r"follower\.face = a table, must be left out for a value of the roller"
     ):
         _ = found.roller
     assert parse_case(found.to_toml()) == found

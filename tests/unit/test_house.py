@@ -412,7 +412,7 @@ def _name(node: ast.AST) -> str:
 
 FOLLOWERS = Kinds(
     classes=frozenset({
-        "Roller", "FlatFace", "RollerMotion", "FaceMotion", "RollerContour", "FlatFaceContour",
+        "Roller", "FollowerFace", "RollerMotion", "FaceMotion", "RollerContour", "FlatFaceContour",
         "PitchCurve", "FacePath", "ArmPath", "ArmContour", "ArmMotion", "RoundMotion",
         "ArmFacePath", "ArmFaceContour", "ArmFaceMotion", "CurvedFacePath", "CurvedFaceContour",
         "CurvedFaceMotion", "PlaneMotion", "Sliding",
@@ -442,7 +442,6 @@ ASK_FOR_A_KIND = {
         "pipeline.search.sizes.shapes": "chooses the shapes of the kind",
         "pipeline.search.sizes.size_chart": "chooses the panels of the kind",
         "pipeline.search.sizes.sizing": "narrows the shapes to those with an open roller",
-        "pipeline.smoothing.scenario": "numbers of a problem have no follower of their own",
         "reports.arrangement_data": _DRAWS,
         "reports.drawing.arrangement": _DRAWS,
     },

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from swung_face import face_text
 from test_gas_spring import LIMITS as GAS_LIMITS
 from test_gas_spring import TABLE as GAS_TABLE
 from test_gas_spring import gas_case
@@ -22,7 +23,7 @@ from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.lift import Jet
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import CHECKS, DECLARED
@@ -40,18 +41,21 @@ CASE = {
        for kind, name in (("roller", "gx120-redesign"), ("face", "gx120-flat-face"))},
     "gas spring": gas_case(table=f"{GAS_TABLE}{GAS_LIMITS}"),
     "torsion spring": torsion_case(),
+    **{f"{kind} face of an arm": parse_case(face_text(kind)) for kind in ("flat", "curved")},
 }  # fmt: skip
-"""Machines; of each part with a spring of its own the checks of that spring alone."""
+"""Machines; with a spring or a face of its own its checks alone."""
 SLENDER = {"spring.design.end_factor": 2.0}  # a stable spring does not buckle at any lift
 SHAFT = {"camshaft.gear.machine_shaft_diameter": 0.016}  # none ends at its pinion, without a check
 NUMBERS = {name: numbers_of(case, machines(case)) | SLENDER | SHAFT for name, case in CASE.items()}
 OF_SPRINGS = {"gas spring": "gas_spring", "torsion spring": "torsion_spring"}
+OF_FACES = {f"{kind} face of an arm": "swung_face" for kind in ("flat", "curved")}
 MEASURED = [
     pytest.param(one, name, id=f"{one.id}, {name}")
     for one in CHECKS
     if one.measured is not None
     for name, case in CASE.items()
     if OF_SPRINGS.get(name, one.part) == one.part and one.concerns(machines(case)[0])
+    if OF_FACES.get(name, one.needs) == one.needs
 ]
 BY_ANGLE = [each for each in MEASURED if each.values[0].measured.reduce != "case"]
 
@@ -137,7 +141,7 @@ def slender(case: Case) -> Case:
     return case.model_copy(update={"spring": spring})
 
 
-@pytest.mark.parametrize("name", CASE)
+@pytest.mark.parametrize("name", [name for name in CASE if name not in OF_FACES])
 def test_a_check_at_maximum_lift_is_at_its_limit_at_the_greatest_lift_allowed(name: str) -> None:
     """What the synthesis keeps of a spring, by bisection on the measure of its check."""
     case = slender(CASE[name])

@@ -33,7 +33,7 @@ from camwright.pipeline.engine.trigger_wheel import TriggerWheel
 from camwright.pipeline.engine.wheel_calibration import WheelReference
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
-from camwright.pipeline.follower.flat_face import FlatFace
+from camwright.pipeline.follower.flat_face import FollowerFace
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 from camwright.pipeline.torque.harmonic_torque import Harmonic, HarmonicTorque
@@ -87,7 +87,7 @@ def every_part() -> dict[type[Part], Part]:
     rest = (
         steel,
         AxialCrown(kind="circular", radius=0.5),
-        FlatFace(width=0.02, depth=0.01, thickness=0.005, material=steel),
+        FollowerFace(width=0.02, depth=0.01, thickness=0.005, material=steel),
         Crankshaft(inertia=0.01),
         GasSpring(pressure=3e6, area=1e-4, volume=5e-6),
         TorsionSpring(moment=1.0, angular_rate=20.0, arm=0.04),

@@ -7,6 +7,7 @@ from typing import Any
 import made_trial as made
 import numpy as np
 
+from camwright.geometry.arm_face import ArmFaceContour, ArmFacePath
 from camwright.geometry.arrays import freeze
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.interference import SecondContact
@@ -365,6 +366,29 @@ def faced(cycle: Cycle | None = None, **values: Any) -> Solution:
         case=made.changed(made.face_case(), follower=made.changed(follower, face=face)),
         contour=made.face_contour(),
         cycles=(cycle or made.cycle(made.face_contour()),),
+    )
+
+
+class _Unchecked(ArmFacePath):
+    """A path that takes an unknown lift."""
+
+    def __post_init__(self) -> None:
+        pass
+
+
+def swung(*, lift: Lift | None = None, **values: Any) -> Solution:
+    """The solution with a flat face on an arm, 8 mm from the pivot towards the cam."""
+    follower = made.face_case().follower
+    arm = FollowerArm(centre_distance=0.09, length=0.08, swing="with", source=follower.face.source)
+    face = made.changed(follower.face, **{"offset": 0.008, **values})
+    plain = faced()
+    path = _Unchecked(
+        lift or made.contour().pitch.lift, arm.linkage, arm.start(made.BASE, 0.008), 0.008
+    )
+    return made.changed_solution(
+        plain,
+        case=made.changed(plain.case, follower=made.changed(follower, arm=arm, face=face)),
+        contour=ArmFaceContour(path),
     )
 
 

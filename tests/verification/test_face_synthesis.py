@@ -55,7 +55,7 @@ from camwright.pipeline.smoothing.shadow_prices import prices
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 CASES = Path(__file__).parents[2] / "cases"
-OF_FACE = frozenset(each.check for each in CONSTRAINTS if each.needs != "roller")
+OF_FACE = frozenset(each.check for each in CONSTRAINTS if each.needs in ("", "face", "stem"))
 FREED = {"rate": (1e4, 2e5), "preload": (100.0, 900.0), "prime_radius": (0.03, 0.07)}
 EVERY = rated(
     roller_radius=0.0, face=(0.05, 0.06, 2e9), offset=0.002, travel=0.03, undercut_factor=0.3,

@@ -34,7 +34,7 @@ NAMES = [
     (follower, each.name)
     for follower in PATHS
     for each in CONSTRAINTS
-    if each.needs in ("", "face" if follower == "face" else "roller")
+    if each.needs in ("", *(("face",) if follower == "face" else ("roller", "round")))
 ]
 
 

@@ -1,0 +1,201 @@
+"""Cases with a flat or curved face on an arm: keys, refusals, preview, screening, synthesis."""
+
+import re
+from functools import cache
+
+import numpy as np
+import pytest
+from swung_face import face_text
+
+from camwright.geometry.arm_face import ArmFacePath, CurvedFacePath
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.case_values import replaced
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.workshop_files import notes_of
+from camwright.pipeline.screening.design_screening import screen_designs
+from camwright.pipeline.screening.screened_checks import SCREENED
+
+KINDS = ("flat", "curved")
+
+
+@cache
+def previewed(kind, swing="with"):
+    return preview_case(parse_case(face_text(kind, swing=swing)), corners=swing == "against")
+
+
+def failed(trial):
+    judged = [each for each in trial.checks if each.must_have and not each.judged_at]
+    return {each.id for each in judged if each.status != "pass"}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_case_has_the_contour_of_its_face(kind):
+    case = parse_case(face_text(kind))
+    path = case.contour(given_lift(case)).pitch
+    if kind == "flat":
+        assert isinstance(path, ArmFacePath)
+        # the height of the face over the cam axis is the base radius
+        assert path.start == pytest.approx(np.arcsin(0.045 / 0.110), rel=1e-12)
+    else:
+        assert isinstance(path, CurvedFacePath)
+        assert path.radius == pytest.approx(0.0235)
+    assert case.base_circle == pytest.approx(0.040 if kind == "flat" else 0.0365)
+    again = parse_case(case.to_toml())
+    assert again.to_toml() == case.to_toml()
+    assert again.follower.face == case.follower.face
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_start_angle_gives_the_prime_radius(kind):
+    path = parse_case(face_text(kind)).contour(given_lift(parse_case(face_text(kind)))).pitch
+    start = f'"{np.degrees(path.start):.12g} deg"'
+    whole = re.sub(r"prime_radius = .*\n", "", face_text(kind))
+    whole = whole.replace('swing = "with"', f'swing = "with"\nstart_angle = {start}')
+    known = 0.040 if kind == "flat" else 0.060
+    assert parse_case(whole).cam.prime_radius == pytest.approx(known, rel=1e-11)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("swing", ["with", "against"])
+def test_an_eccentric_disc_is_the_cam(kind, swing):
+    whole = face_text(kind, swing=swing)
+    start, end = whole.index("[lift]"), whole.index("[spring]")
+    whole = whole[:start] + '[lift]\nkind = "eccentric"\neccentricity = "4 mm"\n\n' + whole[end:]
+    case = parse_case(whole)
+    contour = case.contour(given_lift(case))
+    x, y = contour.points(np.linspace(0.0, 6.0, 25))
+    middle = contour.centroid()
+    radius = case.base_circle + 0.004
+    np.testing.assert_allclose(np.hypot(x - middle[0], y - middle[1]), radius, rtol=0, atol=1e-8)
+    assert np.hypot(*middle) == pytest.approx(0.004, rel=1e-6)
+
+
+def changed(kind, old, new):
+    whole = face_text(kind)
+    assert old in whole
+    return whole.replace(old, new)
+
+
+@pytest.mark.parametrize(("kind", "old", "new", "message"), [
+    ("flat", 'offset = "5 mm"\n', "",
+     "follower.face.offset = missing, must be given for a flat face along the arm"),
+    ("flat", 'offset = "5 mm"', 'offset = "5 mm"\nradius = "20 mm"',
+     "follower.face.offset = 5 mm, must be left out with follower.face.radius"),
+    ("flat", 'offset = "5 mm"', 'offset = "5 N"', "follower.face.offset = 5 N"),
+    ("flat", 'offset = "5 mm"', 'offset = "nan mm"', "follower.face.offset = nan"),
+    ("flat", 'offset = "5 mm"', 'offset = "2000 mm"', "follower.face.offset = 2000 mm"),
+    ("flat", 'offset = "5 mm"', 'offset = "75 mm"', "cam.prime_radius = 40 mm, must be < 35 mm"),
+    ("flat", 'width = "44 mm"', 'width = "12 mm"',
+     "follower.face.width = 12 mm, must be > "),
+    ("flat", 'swing = "with"', 'swing = "with"\nstart_angle = "30 deg"', "left out"),
+    ("curved", 'radius = "23.5 mm"', 'radius = "0 mm"', "follower.face.radius = 0 mm"),
+    ("curved", 'radius = "23.5 mm"', 'radius = "61 mm"',
+     "follower.face.radius = 61 mm, must be < cam.prime_radius"),
+    ("curved", 'width = "24 mm"', 'width = "48 mm"', "follower.face.width = 48 mm, must be <= 47"),
+    ("curved", 'thickness = "10 mm"', 'thickness = "2 mm"',
+     "follower.face.thickness = 2 mm, must be > 3.2"),
+    ("curved", "[lubricant]", '[roller]\nradius = "20 mm"\n\n[lubricant]', "roller"),
+])  # fmt: skip
+def test_contradictions_are_refused(kind, old, new, message):
+    with pytest.raises(InputError) as refused:
+        parse_case(changed(kind, old, new))
+    assert message in str(refused.value)
+
+
+def test_a_start_angle_beyond_the_cam_axis_is_refused():
+    whole = re.sub(r"prime_radius = .*\n", "", face_text("flat"))
+    whole = whole.replace('swing = "with"', 'swing = "with"\nstart_angle = "1 deg"')
+    with pytest.raises(InputError, match=r"follower\.arm\.start_angle = 1 deg, must be such that"):
+        parse_case(whole)
+
+
+@pytest.mark.parametrize(("key", "value"), [("offset", "5 mm"), ("radius", "20 mm")])
+def test_a_stem_has_a_plain_face(key, value):
+    whole = face_text("flat").replace('offset = "5 mm"', f'{key} = "{value}"')
+    start, end = whole.index("[follower]"), whole.index("[follower.face]")
+    whole = whole[:start] + '[follower]\nkind = "flat"\nmass = "1.1 kg"\n\n' + whole[end:]
+    with pytest.raises(InputError) as refused:
+        parse_case(whole.replace('["arm"]', '["guides", "stem"]'))
+    limit = 'left out, or follower.kind = "oscillating"'
+    assert f"follower.face.{key} = {value}, must be {limit}" in str(refused.value)
+
+
+def test_the_drawing_states_arm_and_face():
+    lines = [each for kind in KINDS for each in notes_of(parse_case(face_text(kind)))]
+    assert "face 5 mm from the pivot towards the cam" in lines
+    assert "face of radius 23.5 mm about the end of the arm" in lines
+    assert sum("95 mm to the middle of the face; arm at" in each for each in lines) == 2
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_all_that_judges_a_face_judges_it_on_an_arm(kind):
+    trial = previewed(kind)
+    made = {each.id: each for each in trial.checks}
+    assert not failed(trial) - {"contact_temperature"}
+    judged = {"face_width", "face_pv", "contact_temperature", "bulk_temperature", "film_ratio",
+              "contact_pressure", "undercut", "second_contact", "self_locking"}  # fmt: skip
+    assert all(made[name].demand is not None for name in judged)
+    of_round = {"pressure_angle", "curvature_ratio"}
+    assert {name for name in of_round if name in made} == (of_round if kind == "curved" else set())
+    assert not {name for name in made if name.startswith(("guide_", "jam_", "roller_"))}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_self_locking_by_moments_about_the_pivot(kind):
+    """Of the friction along the contour over that of the normal, from points of the contour."""
+    trial = previewed(kind)
+    cam, theta, step = trial.contour, np.linspace(0.0, 2.0 * np.pi, 7201), 1e-5
+    pivot = 0.110 * np.stack([np.cos(theta), np.sin(theta)])
+    lever = cam.points(theta) - pivot
+    along = cam.points(theta + step) - cam.points(theta - step)
+    tangent = along / np.hypot(*along)
+    # the arm swings outwards clockwise: with the cam
+    normal = -(lever[0] * -tangent[0] - lever[1] * tangent[1])
+    rubbed = -(lever[0] * -tangent[1] - lever[1] * -tangent[0])
+    (one,) = (each for each in trial.checks if each.id == "self_locking")
+    assert one.demand == pytest.approx(float((-0.05 * rubbed / normal).max()), rel=1e-5)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_screening_judges_faces_as_their_previews(kind):
+    """Prime radius, rate, preload and friction as arrays, within the stated deviations."""
+    case = parse_case(face_text(kind)).with_positions(180)
+    base = case.cam.prime_radius
+    factors = {
+        "cam.prime_radius": np.array([base - 1e-3, base, base + 2e-3]),
+        "spring.rate": np.array([100e3, 102e3, 98e3]),
+        "spring.preload": np.array([900.0, 1000.0, 1100.0]),
+        "follower.face.friction": np.array([0.04, 0.05, 0.06]),
+    }
+    columns = screen_designs(case, factors)
+    compared = set()
+    for k in range(3):
+        own = replaced(case, {key: float(each[k]) for key, each in factors.items()})
+        known = {each.id: each for each in preview_case(own, corners=False).checks}
+        assert columns["message"][k] == ""
+        for screened in SCREENED:
+            one, column = known.get(screened.check), columns.get(f"{screened.check}.demand")
+            if one is None or one.demand is None or column is None or np.isnan(column[k]):
+                continue
+            limit = 0.0 if one.limit is None else in_unit(one.limit, one.unit)
+            demand = in_unit(one.demand, one.unit)
+            away = abs(float(column[k]) - demand) / max(abs(demand), abs(limit), 1e-12)
+            assert not away > screened.deviation, one.id
+            compared.add(one.id)
+    assert {"contact_pressure", "face_width", "face_pv", "self_locking", "undercut",
+            "contact_temperature", "bulk_temperature"} <= compared  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("swing", ["with", "against"])
+def test_a_torque_is_balanced_by_a_face_on_an_arm(kind, swing):
+    """The synthesis keeps all limits on the cam that the preview solves; sliding costs power."""
+    trial = preview_case(parse_case(face_text(kind, "cylinder", swing)), corners=False)
+    assert trial.synthesis is not None
+    assert failed(trial) <= {"friction_power", "contact_temperature"}
+    (ripple,) = (each for each in trial.checks if each.id == "torque_reduction")
+    assert ripple.demand > 0.3
