@@ -57,7 +57,7 @@ def inside(folder: Path, name: str, field: str) -> Path:
     Raises
     ------
     InputError
-        If the name is none of a file, or leads out of the folder, by a link too.
+        If it is no name of a file, or leads out of the folder, by a link too.
     """
     limit = "a relative path that stays in the case file's folder"
     path = Path(name)
@@ -102,7 +102,8 @@ def unplain(folder: Path) -> list[tuple[str, str]]:
 
 
 def require_plain(folder: Path, refused: type[ResultError] = ResultError) -> None:
-    """Refuse a folder that holds a link, pipe, socket or device at any depth; nothing is opened.
+    """Refuse, as `refused`, a folder that holds a link, pipe, socket or device at any depth;
+    nothing is opened.
 
     Raises
     ------

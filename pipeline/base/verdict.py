@@ -293,7 +293,7 @@ def failing(checks: Iterable[AnyRanked], fail_on: str) -> tuple[AnyRanked, ...]:
 
 
 def _counts(one: Ranked, fail_on: str) -> bool:
-    """Whether a check that does not pass decides the exit code at a level of `FAIL_ON`."""
+    """Whether a check decides the exit code by not passing, at a level of `FAIL_ON`."""
     if fail_on == "never" or one.status in ("pass", "waived"):
         return False
     if one.must_have or fail_on == "any":

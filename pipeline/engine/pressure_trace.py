@@ -461,7 +461,9 @@ def _cycles(
 
 
 def _unwrapped(angle: Array) -> Array:
-    """Angles that start again with each cycle, made continuous."""
+    """Angles (n,), rad, that start again with each cycle, made continuous by adding a cycle at each
+    step back.
+    """
     steps = np.diff(angle)
     spacing = float(np.median(steps))
     back = np.abs(steps + CYCLE_ANGLE - spacing) <= 1.5 * abs(spacing)

@@ -258,7 +258,10 @@ class SheetRun:
         return tuple(each["id"] for each in ranked[:most])
 
     def _holds(self, declared: Declaration) -> bool:
-        """Whether the formula holds for the case as it stands: its duty, its kind of a part."""
+        """Whether the formula of a check applies to the case as it stands: not where load cases
+        have duties that the formula would have to sum, nor to another kind of part than it is
+        stated for.
+        """
         by_duty = declared.measured is not None and declared.measured.reduce in BY_DUTY
         if by_duty and any(each.duty is not None for each in self.machines.values()):
             return False

@@ -108,7 +108,9 @@ class Designs:
 
     @KeptResult
     def lift(self) -> Array:
-        """Lift at equal cam angles (m or 1, N), m."""
+        """Lift at equal cam angles, m, (designs m, N), or (1, N) where all share it: as stated, or
+        by the energy that the spring stores against its force, dead weight included.
+        """
         source = self.source
         if source.lift is not None:
             return np.atleast_2d(source.lift)

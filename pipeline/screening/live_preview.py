@@ -693,7 +693,11 @@ class _Away(NamedTuple):
 def _parts(
     name: str, sample: _Sample, fit: SurfaceFit, rank: Mapping[int, Array], away: _Away
 ) -> list[LivePart]:
-    """Values of a quantity by load case, those that govern nowhere left out.
+    """Records of the surfaces of a quantity by load case, for those that govern at one design of
+    the sample at least.
+
+    rank : mapping   by load case, the values (m,) by which they are compared at each design: the
+    greatest governs; NaN never does
 
     Parameters
     ----------

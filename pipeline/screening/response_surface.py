@@ -162,7 +162,12 @@ class SurfaceFit:
         held: NDArray[np.bool_],
         inverse: Array,
     ) -> tuple[float, Surface]:
-        """Rank and surface on a scale; errors below `LEAST_ERROR` rank alike."""
+        """Rank and surface of values (m,) on the scale `name`, by least squares at the designs
+        `fitted` (m,).
+
+        Rank: greatest relative error at the designs `held` out (m,), times a margin; errors below
+        `LEAST_ERROR` rank alike. inverse: of the terms at the fitted designs.
+        """
         scale = SCALES[name]
         surface = Surface(name, inverse @ scale.to(values[fitted]), 0.0, share=name == "log")
         apart = np.abs(surface(self._terms[held]) - values[held])

@@ -36,7 +36,9 @@ class PressureShapes:
 
     @property
     def integrals(self) -> Array:
-        """Integral (n,) of each shape, m."""
+        """Integral (n,) of each linear shape over the coordinate, m; half shapes at the ends count
+        where `open_ends`.
+        """
         widths = np.diff(self.knots) / 2
         total = np.concatenate([[0.0], widths]) + np.concatenate([widths, [0.0]])
         return np.asarray(total if self.open_ends else total[1:-1])

@@ -315,9 +315,10 @@ def synthesised(study: PointStudy, point: Solved) -> Solved:
 
 
 def settled(study: PointStudy, point: Solved) -> Solved:
-    """Design of a synthesis previewed with rounded prime radius and preload.
+    """Design of a synthesis, its prime radius and preload rounded as in a drawing, solved again by
+    a preview.
 
-    The cam radius of the synthesis is that of the room and of the counterweight.
+    Room and counterweight are laid out for the cam radius of the synthesis.
     """
     record, design = point.figures, point.design
     prime = drawn_radius(1e-3 * record["prime_radius_mm"] - _ROUND_OFF, ceil)
@@ -360,7 +361,7 @@ def drafts(study: PointStudy, screened: Sequence[Candidate], workers: Crew) -> D
 def _with_offsets(
     study: PointStudy, chosen: Sequence[Candidate], points: list[Solved], workers: Crew
 ) -> Drafts:
-    """Drafts with the designs near to passing drafted again with an offset, if that improves the
+    """All drafts; those near to passing are replaced by drafts with an offset, if that improves the
     best one.
 
     chosen, points : screened designs and their drafts, in the same order.

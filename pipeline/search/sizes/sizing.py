@@ -372,9 +372,12 @@ class _SizeSearch:
         return self.judge.judged(Change.of(self._values(shape, spring)), _SCREENED, quick=True)
 
     def _fitted(self, shape: Shape, spring: ChosenSpring) -> tuple[Shape, Judgement]:
-        """A shape as drawn, its roller or face by the contact, and its screening.
+        """Shape with the dimensions that the case leaves open rounded up to those of a drawing, and
+        its screening.
 
-        Its radius keeps the limits at the profile tolerance, too, and has the digits of a drawing.
+        The base radius grows by the profile tolerance first, so that the part as made keeps the
+        limits. A roller or flat face follows from the contact of the solved cam: force and
+        curvature of the pitch curve, travel and width of the contact.
         """
         gaps = self.opened.gaps
         if PRIME in gaps:

@@ -235,7 +235,8 @@ class DesignSolver:
 
     @contextmanager
     def _begun(self, task: Task, row: int) -> Iterator[tuple[CaseRun, Trial]]:
-        """Run of one design in a folder that is deleted, and its checked trial.
+        """Context manager: run of one design in a folder that is deleted afterwards, and its
+        checked trial.
 
         Below CERTIFIED none of its files is written yet.
         """
