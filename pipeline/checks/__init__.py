@@ -25,6 +25,7 @@ In the order of the calculation:
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
 | `guide_wear`            | expansion and wear of the guides           | m                        |
 | `assembly`              | gaps between parts that pass one another   | m                        |
+| `arm_assembly`          | gaps of an arm and the boss of its pivot   | m                        |
 | `manufacture`           | space, waviness, chord error, phase        | m                        |
 | `solution_verification` | plane strain, meshes, certificate          | relative; half-widths    |
 | `error_bars`            | error bars of the demands                  | relative                 |

@@ -23,6 +23,7 @@ from camwright.pipeline.checks.cam_shape import contour_radius, lift
 from camwright.pipeline.checks.camshaft_strength import camshaft_of, gear_of
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.arm_bodies import swung_bodies, with_swing
 from camwright.pipeline.cycle.cam_balance import balance
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.machine_envelope import (
@@ -41,22 +42,22 @@ Gaps = Mapping[str, Value]
 """Gaps by the two parts beside them, m."""
 
 
-def _least(gaps: Gaps) -> Value:
+def least_of(gaps: Gaps) -> Value:
     """Least of the gaps (...); NaN if one is."""
     return reduce(np.minimum, gaps.values())
 
 
-def _one(value: Value) -> float:
+def one(value: Value) -> float:
     """Number of a machine."""
     return float(np.ravel(value)[0])
 
 
-def _narrowest(gaps: Gaps) -> str:
+def narrowest(gaps: Gaps) -> str:
     """Name of the least gap of a machine."""
-    return min(gaps, key=lambda name: _one(gaps[name]))
+    return min(gaps, key=lambda name: one(gaps[name]))
 
 
-def _between(one: tuple[Value, Value], other: tuple[Value, Value]) -> Value:
+def between(one: tuple[Value, Value], other: tuple[Value, Value]) -> Value:
     """Distance of the faces of two parts along the camshaft, m; negative where they overlap.
 
     Each by its middle and half of its length.
@@ -65,7 +66,7 @@ def _between(one: tuple[Value, Value], other: tuple[Value, Value]) -> Value:
     return apart
 
 
-def _aside(numbers: Numbers) -> Value:
+def aside(numbers: Numbers) -> Value:
     """Offset of the middle of the follower from that of the cam, m."""
     offset = numbers.get("roller.axial_offset")
     return 0.0 if offset is None else offset
@@ -76,7 +77,7 @@ def _on_the_shaft(numbers: Numbers) -> dict[str, tuple[Value, Value]]:
     case = numbers.known_case
     at, follower = camshaft_of(case).cam_position, case.facing
     name = follower.word if follower.parts.get("fork") is None else "fork"
-    half = numbers["follower.half_depth"] + _aside(numbers)
+    half = numbers["follower.half_depth"] + aside(numbers)
     return {"cam": (at, 0.5 * numbers["cam.width"]), name: (at, half)}
 
 
@@ -102,7 +103,7 @@ def _pairs_at_bearings(numbers: Numbers) -> dict[str, tuple[tuple[Value, Value],
 def _beside_bearings(numbers: Numbers) -> Gaps:
     """Gaps beside bearings of no width, m."""
     pairs = _pairs_at_bearings(numbers)
-    return {name: _between(part, (position, 0.0)) for name, (part, position) in pairs.items()}
+    return {name: between(part, (position, 0.0)) for name, (part, position) in pairs.items()}
 
 
 def _with_bearings(gap: Value, numbers: Numbers) -> Value:
@@ -127,9 +128,9 @@ def _of_bearings(demand: Demand, solution: Solution) -> Demand:
         how = f", bearings taken as {wide} wide, as their bore, an upper bound"
         if demand.allowed is not None and demand.value < demand.allowed:
             how, taken = ", even with bearings of no width", 0.0
-    nearest = _narrowest(_beside_bearings(solution.numbers))
+    nearest = narrowest(_beside_bearings(solution.numbers))
     (middle, half), position = _pairs_at_bearings(solution.numbers)[nearest]
-    stated = {"z_i": _one(middle), "z_b": position, "w_i": 2.0 * _one(half), "B": taken or 0.0}
+    stated = {"z_i": one(middle), "z_b": position, "w_i": 2.0 * one(half), "B": taken or 0.0}
     return replace(demand, at=None, note=f"{nearest}{how}", stated=stated)
 
 
@@ -152,14 +153,12 @@ def _of_bearings(demand: Demand, solution: Solution) -> Demand:
 ).measured("case", value=_with_bearings, remark=_of_bearings, deviation=1e-9)
 def bearing_gap(cam: LoadedCam) -> Array:
     """Least axial gap of a camshaft bearing, taken without width, to cam, gear or follower, m."""
-    return np.asarray(_least(_beside_bearings(cam.numbers)))
+    return np.asarray(least_of(_beside_bearings(cam.numbers)))
 
 
 def _beside_gear(numbers: Numbers) -> Gaps:
     gear = _gear(numbers)
-    return {
-        f"{name} to gear": _between(part, gear) for name, part in _on_the_shaft(numbers).items()
-    }
+    return {f"{name} to gear": between(part, gear) for name, part in _on_the_shaft(numbers).items()}
 
 
 def _named(gaps: Callable[[Numbers], Gaps]) -> Callable[[Demand, Solution], Demand]:
@@ -167,7 +166,7 @@ def _named(gaps: Callable[[Numbers], Gaps]) -> Callable[[Demand, Solution], Dema
 
     def remark(demand: Demand, solution: Solution) -> Demand:
         known = demand.value is not None
-        return replace(demand, at=None, note=_narrowest(gaps(solution.numbers)) if known else "")
+        return replace(demand, at=None, note=narrowest(gaps(solution.numbers)) if known else "")
 
     return remark
 
@@ -195,7 +194,7 @@ def _named(gaps: Callable[[Numbers], Gaps]) -> Callable[[Demand, Solution], Dema
 ).measured("case", remark=_named(_beside_gear), deviation=1e-9)
 def gear_gap(cam: LoadedCam) -> Array:
     """Least axial gap between gear or pinion and cam or follower, m."""
-    return np.asarray(_least(_beside_gear(cam.numbers)))
+    return np.asarray(least_of(_beside_gear(cam.numbers)))
 
 
 _RATIO = 1e-5  # of one written as a decimal number
@@ -301,15 +300,8 @@ def from_follower(numbers: Numbers, below: Value, aside: Value) -> Value:
 def _to_follower(numbers: Numbers, along: float, across: float) -> Value:
     """Distance of a point from the follower at its lowest, m; the worse side of an offset."""
     prime, offset = numbers["cam.prime_radius"], numbers["cam.offset"]
-    arm = None if numbers.case is None else numbers.case.follower.arm
-    if arm is not None:  # its roller at zero lift; the line to the pivot is the axis
-        centres, length = arm.centre_distance, arm.length
-        low = (prime**2 + centres**2 - length**2) / (2.0 * centres)
-        beside = arm.sense * np.sqrt(prime**2 - low**2)
-        away: Value = np.hypot(along - low, across + beside) - numbers["follower.round"]
-        return away
     below = np.maximum(np.sqrt(prime**2 - offset**2) - along, 0.0)
-    return _least(
+    return least_of(
         {
             side: from_follower(numbers, below, np.abs(across + sign * offset))
             for side, sign in (("left", 1.0), ("right", -1.0))
@@ -317,10 +309,16 @@ def _to_follower(numbers: Numbers, along: float, across: float) -> Value:
     )
 
 
-def _centre_distance(shaft: Camshaft) -> float:
+def centre_distance(shaft: Camshaft) -> float:
     """Distance of camshaft and machine shaft, m: pitch radii of gear and pinion."""
     gear = gear_of(shaft)
     return shaft.gear_radius * (1.0 + gear.pinion_teeth / gear.teeth)
+
+
+def machine_shaft_axis(shaft: Camshaft) -> tuple[float, float]:
+    """Place of the machine shaft along and across the follower axis, m, against the cam's turn."""
+    centre = centre_distance(shaft)
+    return centre * cos(shaft.mesh_angle), -centre * sin(shaft.mesh_angle)
 
 
 def room_beside_shaft(machine: Machine) -> float | None:
@@ -331,7 +329,7 @@ def room_beside_shaft(machine: Machine) -> float | None:
     diameter = shaft.gear.machine_shaft_diameter
     if not diameter:
         return None
-    return _centre_distance(shaft) - 0.5 * diameter - machine.limits[ASSEMBLY_GAP]
+    return centre_distance(shaft) - 0.5 * diameter - machine.limits[ASSEMBLY_GAP]
 
 
 _DIAMETER = "camshaft.gear.machine_shaft_diameter"
@@ -341,18 +339,20 @@ def _beside_shaft(tip: Value, numbers: Numbers) -> Gaps:
     """Distances of cam and follower from the axis of the machine shaft, m."""
     case = numbers.known_case
     shaft = camshaft_of(case)
-    centre = _centre_distance(shaft)
-    shaft_axis = centre * cos(shaft.mesh_angle), centre * sin(shaft.mesh_angle)
-    return {"cam": centre - tip, case.facing.word: _to_follower(numbers, *shaft_axis)}
+    axis, gaps = machine_shaft_axis(shaft), {"cam": centre_distance(shaft) - tip}
+    if case.follower.arm is None:
+        return gaps | {case.facing.word: _to_follower(numbers, *axis)}
+    swung = swung_bodies(numbers)
+    return gaps | {name: each.from_disc(*axis, 0.0) for name, each in swung.items()}
 
 
 def _with_shaft(tip: Value, numbers: Numbers) -> Value:
     """Least gap beside a machine shaft as stated, else by bounds of its radius, m."""
-    room, stated = _least(_beside_shaft(tip, numbers)), numbers.get(_DIAMETER)
+    room, stated = least_of(_beside_shaft(tip, numbers)), numbers.get(_DIAMETER)
     if stated is not None:
         return room - 0.5 * stated
     shaft = camshaft_of(numbers.known_case)
-    pinion = _centre_distance(shaft) - shaft.gear_radius
+    pinion = centre_distance(shaft) - shaft.gear_radius
     return decided(room - pinion, room, numbers.limit(ASSEMBLY_GAP))
 
 
@@ -360,24 +360,25 @@ def _of_shaft(demand: Demand, solution: Solution) -> Demand:
     numbers, limit = solution.numbers, solution.machine.limits[ASSEMBLY_GAP]
     shaft, tip = camshaft_of(solution.machine), solution.contour.radius_max().value
     stated = gear_of(shaft).machine_shaft_diameter
+    numbers = numbers | with_swing(solution.cams.values())
     gaps = _beside_shaft(tip, numbers)
     if demand.value is None or isnan(demand.value):
         if stated is not None or isnan(tip):
             return demand
-        most = shown(float(np.ravel(_least(gaps))[0]) - limit, "mm")
+        most = shown(float(np.ravel(least_of(gaps))[0]) - limit, "mm")
         note = f"at most a radius of {most}; 0 mm if it ends at its pinion"
         return replace(demand, missing=(_DIAMETER,), note=note)
-    centre = shown(_centre_distance(shaft), "mm")
+    centre = shown(centre_distance(shaft), "mm")
     how, thin = "", demand.value < limit
     if stated is None:
         how = ", even with a shaft of no diameter" if thin else ", the shaft as wide as its pinion"
-    words = f"{_narrowest(gaps)} to machine shaft, centre distance {centre}{how}"
+    words = f"{narrowest(gaps)} to machine shaft, centre distance {centre}{how}"
     radius = 0.5 * (stated or 0.0)
     if stated is None and not thin:
-        radius = _centre_distance(shaft) - shaft.gear_radius
+        radius = centre_distance(shaft) - shaft.gear_radius
     numbers_of_gap = {
-        "a": _centre_distance(shaft),
-        "b": _one(gaps[solution.case.facing.word]),
+        "a": centre_distance(shaft),
+        "b": min((one(gap) for name, gap in gaps.items() if name != "cam"), default=np.inf),
         "r": radius,
     }
     return replace(demand, at=None, note=words, stated=numbers_of_gap)
@@ -389,7 +390,8 @@ machine_shaft_gap = check(
     title="Gap between cam or {follower} and the machine shaft",
     tier=Tier.SCREENING,
     formula="min(a - max|P|, b) - r >= g; a: centre distance, gear and pinion radius, P: contour,"
-    " b: distance of the machine shaft, at camshaft.mesh_angle, from the follower at its lowest, r:"
+    " b: distance of the machine shaft, at camshaft.mesh_angle, from the follower at its lowest, of"
+    " an arm from arm, hub, fork and roller over the swing, r:"
     " half of camshaft.gear.machine_shaft_diameter, else at most the pinion radius, g:"
     " limits.assembly_gap; none where the diameter is 0, as the shaft ends at its pinion",
     symbols={
@@ -409,6 +411,7 @@ machine_shaft_gap = check(
     "contour",
     value=_with_shaft,
     applies=lambda _, numbers: np.array(numbers.get(_DIAMETER) != 0.0),
+    known=with_swing,
     remark=_of_shaft,
     deviation=1e-4,
 )(contour_radius)
@@ -437,7 +440,9 @@ def beside_counterweight(body: CounterweightBody, numbers: Numbers) -> Gaps:
     for number, bearing in enumerate((0.0, shaft.bearing_spacing), 1):
         at = bearing - shaft.cam_position
         gaps[f"bearing {number}"] = body.beyond(at - half, at + half)
-    deep = numbers["follower.half_depth"] + _aside(numbers)
+    deep = numbers["follower.half_depth"] + aside(numbers)
+    for each in swung_bodies(numbers).values():
+        deep = np.fmax(deep, each.beside[0] + each.beside[1])
     gaps[_lowest_part(numbers)] = body.under(deep, lowest_follower(numbers))
     if shaft.gear is None or not case.scope.covers("gear"):
         return gaps
@@ -445,13 +450,13 @@ def beside_counterweight(body: CounterweightBody, numbers: Numbers) -> Gaps:
     at = gear - shaft.cam_position
     gaps["gear"] = body.beyond(at - half, at + half)
     if diameter := shaft.gear.machine_shaft_diameter:
-        gaps["machine shaft"] = _centre_distance(shaft) - 0.5 * diameter - body.radius
+        gaps["machine shaft"] = centre_distance(shaft) - 0.5 * diameter - body.radius
     return gaps
 
 
 def counterweight_room(body: CounterweightBody, weight: Counterweight, numbers: Numbers) -> Value:
     """Least gap of a counterweight (...), m; NaN where it is too small and no size is stated."""
-    gap = _least(beside_counterweight(body, numbers))
+    gap = least_of(beside_counterweight(body, numbers))
     if weight.radius is not None and weight.width is not None:
         return gap
     return np.where(np.asarray(gap) >= numbers.limit(ASSEMBLY_GAP), gap, np.nan)
@@ -497,8 +502,8 @@ def counterweight_gap(solution: Solution) -> Demand | None:
         return None
     weight, _, body = bodies
     gaps = beside_counterweight(body, solution.numbers)
-    room = _one(counterweight_room(body, weight, solution.numbers))
-    sizes = tuple(shown(_one(each), "mm", 3) for each in (body.radius, body.width))
+    room = one(counterweight_room(body, weight, solution.numbers))
+    sizes = tuple(shown(one(each), "mm", 3) for each in (body.radius, body.width))
     taken = weight.radius is None or weight.width is None
     words = f"half ring of {sizes[0]} outer radius, {sizes[1]} wide" if taken else ""
     if isnan(room):
@@ -507,16 +512,16 @@ def counterweight_gap(solution: Solution) -> Demand | None:
         shaft = camshaft_of(solution.machine)
         if shaft.bearing_width is None and shaft.widest is None:
             missing = (*missing, "camshaft.bearing_width")
-        narrow = _narrowest(gaps) if body.width > 0.0 else "no room about the shaft"
+        narrow = narrowest(gaps) if body.width > 0.0 else "no room about the shaft"
         return Demand(None, limit, missing=missing, note=f"{words}: {narrow}")
-    apart = {name: _one(gap) for name, gap in gaps.items()}
+    apart = {name: one(gap) for name, gap in gaps.items()}
     stated = {
         "b": min(gap for name, gap in apart.items() if name.startswith("bearing")),
         "f": apart[_lowest_part(solution.numbers)],
         "c": apart.get("gear", np.inf),
         "m": apart.get("machine shaft", np.inf),
     }
-    note = f"{_narrowest(gaps)}{f'; taken as a {words}' if taken else ''}"
+    note = f"{narrowest(gaps)}{f'; taken as a {words}' if taken else ''}"
     return Demand(room, limit, note=note, stated=stated)
 
 
@@ -549,24 +554,24 @@ def counterweight_unbalance(solution: Solution) -> Demand | None:
     if bodies is None or bodies[0].width is None:
         return None
     _, product, body = bodies
-    capacity = _one(body.capacity)
+    capacity = one(body.capacity)
     stated = {
         "U": product,
         "rho": density_of_counterweight(solution.case),
-        "R": _one(body.radius),
+        "R": one(body.radius),
         "a": float(solution.numbers["cam.bore_radius"]),
-        "b": _one(body.beside),
+        "b": one(body.beside),
     }
     note = "" if capacity > 0.0 else "no room about the shaft"
     return Demand(product, capacity if capacity > 0.0 else 0.0, note=note, stated=stated)
 
 
-def _shaft_radius(numbers: Numbers) -> Value:
+def shaft_radius(numbers: Numbers) -> Value:
     """Greatest radius of the camshaft beside the cam, m; without a diameter that of the bore."""
     shaft, radius = numbers.known_case.camshaft, numbers["cam.bore_radius"]
     if shaft is None:
         return radius
-    half = numbers["follower.half_depth"] + _aside(numbers)
+    half = numbers["follower.half_depth"] + aside(numbers)
     radius = np.maximum(radius, 0.5 * (shaft.diameter or 0.0))
     for each in shaft.sections:
         beside = abs(each.position - shaft.cam_position) <= half
@@ -578,7 +583,7 @@ _HEIGHT, _LENGTH = "roller.fork.cheek_height", "roller.fork.cheek_length"
 
 
 def _of_thickness(demand: Demand, solution: Solution) -> Demand:
-    thick = shown(2.0 * float(np.ravel(_shaft_radius(solution.numbers))[0]), "mm")
+    thick = shown(2.0 * float(np.ravel(shaft_radius(solution.numbers))[0]), "mm")
     words = "" if demand.value is None else f"shaft taken as {thick} thick"
     return replace(demand, at=None, note=words)
 
@@ -608,22 +613,37 @@ def _of_thickness(demand: Demand, solution: Solution) -> Demand:
 def fork_shaft_gap(cam: LoadedCam) -> Array:
     """Least gap between the cheeks of the fork and the camshaft, m."""
     numbers = cam.numbers
-    return np.asarray(numbers["cam.prime_radius"] - 0.5 * numbers[_HEIGHT] - _shaft_radius(numbers))
+    return np.asarray(numbers["cam.prime_radius"] - 0.5 * numbers[_HEIGHT] - shaft_radius(numbers))
 
 
-def _in_fork(numbers: Numbers) -> Gaps:
-    """Gaps of cheeks and bridge from roller and cam, m."""
+def _inner_face(numbers: Numbers) -> float:
+    """Inner face of a cheek from the middle of the roller, m."""
     roller = numbers.known_case.roller
     pin, fork = roller.pin, roller.fork
     if pin is None or fork is None:
         raise InputError("roller.fork", "missing", "described with its pin for its checks")
-    inner, radius = fork.faces(pin)[0], numbers["roller.radius"]
-    aside = 0.5 * numbers["cam.width"] + _aside(numbers)
+    return fork.faces(pin)[0]
+
+
+def cheek_to_cam(numbers: Numbers) -> Value:
+    """Axial gap between a cheek and the cam, m.
+
+    Raises
+    ------
+    InputError
+        If the case has no fork or no pin.
+    """
+    return _inner_face(numbers) - 0.5 * numbers["cam.width"] - aside(numbers)
+
+
+def _in_fork(numbers: Numbers) -> Gaps:
+    """Gaps of cheeks and bridge from roller and cam, m."""
+    inner, radius = _inner_face(numbers), numbers["roller.radius"]
     beside_cam = 0.5 * numbers[_HEIGHT] > radius
     return {
         "cheek to roller": inner - 0.5 * numbers["roller.width"],
         "bridge to roller": numbers[_LENGTH] - radius,
-        "cheek to cam": np.where(beside_cam, inner - aside, np.inf),
+        "cheek to cam": np.where(beside_cam, cheek_to_cam(numbers), np.inf),
     }
 
 
@@ -655,7 +675,7 @@ def _in_fork(numbers: Numbers) -> Gaps:
 ).measured("case", needed=(Pin.table, _HEIGHT, _LENGTH), remark=_named(_in_fork), deviation=1e-9)
 def fork_gap(cam: LoadedCam) -> Array:
     """Least gap between the fork and roller or cam, m."""
-    return np.asarray(_least(_in_fork(cam.numbers)))
+    return np.asarray(least_of(_in_fork(cam.numbers)))
 
 
 def _layout(lift: Value, numbers: Numbers) -> StemLayout:
@@ -682,9 +702,9 @@ def _of_seat(demand: Demand, solution: Solution) -> Demand:
         how = f", taken as {shown(float(taken), 'mm')} thick, an upper bound"
         how = ", even of no thickness" if taken == 0.0 else how
     seat = layout.seated(taken, limit, height)
-    high, below = _one(seat.height), _one(layout.guide_a[1])
+    high, below = one(seat.height), one(layout.guide_a[1])
     where = f"moving seat at {shown(high, 'mm')}"
-    between = high <= _one(layout.guide_b[0]) and below < high
+    between = high <= one(layout.guide_b[0]) and below < high
     stated = {"s": high, "t": float(taken), "a": below} if between else {}
     return replace(demand, at=None, note=f"{where} at maximum lift{how}", stated=stated)
 
@@ -786,7 +806,7 @@ def _of_coil(demand: Demand, solution: Solution) -> Demand:
         lacks = tuple(key for key in _OF_COIL if numbers.get(key) is None)
         return replace(demand, at=None, missing=lacks or (_SEAT[0],))
     gaps = _beside_coil(solution.contour.lift.highest.value, numbers)
-    stem, guides = _one(gaps[0]), float(np.fmax(_one(gaps[1]), demand.value))
+    stem, guides = one(gaps[0]), float(np.fmax(one(gaps[1]), demand.value))
     note = f"coil to {'stem' if stem <= guides else 'guides'}"
     return replace(demand, at=None, note=note, stated={"a": stem, "b": guides})
 

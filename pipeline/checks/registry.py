@@ -14,6 +14,7 @@ from camwright.pipeline.base.verdict import in_order
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
+    arm_assembly,
     arm_strength,
     assembly,
     cam_shape,
@@ -65,6 +66,7 @@ MODULES: tuple[ModuleType, ...] = (
     flat_face_sliding,
     guide_wear,
     assembly,
+    arm_assembly,
     manufacture,
     solution_verification,
 )

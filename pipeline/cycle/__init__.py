@@ -7,8 +7,9 @@ In the order of the calculation:
 | `cam_balance`        | unbalance of the cam, counter-hole              | U, kg m; F, N          |
 | `contact_setup`      | cam and follower of a machine as a contact pair |                        |
 | `numbers`            | numbers of a machine by dotted key              | SI                     |
-| `machine_envelope`   | parts of the mechanism, envelope over the turn  | m                      |
 | `loaded_cam`         | motion, forces, guides, contact as arrays       | F_n, N; s, m; p0, Pa   |
+| `arm_bodies`         | parts of an arm over its swing                  | m; psi, rad            |
+| `machine_envelope`   | parts of the mechanism, envelope over the turn  | m                      |
 | `crank_speed`        | crank speed with and without cam, consistency   | omega, rad/s; J, kg m2 |
 | `turn`               | loads and guide reactions of a load case        | F_n, N; T, N m         |
 | `elastic_response`   | follower on its elastic stem, loss of contact   | F, N; delta, m         |

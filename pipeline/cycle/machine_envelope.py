@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from math import sqrt
 
 import numpy as np
@@ -14,6 +15,7 @@ from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import machine
+from camwright.pipeline.cycle.arm_bodies import swung_bodies
 from camwright.pipeline.cycle.loaded_cam import wire_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import Counterweight
@@ -56,9 +58,10 @@ def guide_outer(side: str, numbers: Numbers) -> Value:
 
 
 def lowest_follower(numbers: Numbers) -> Value:
-    """Least distance of the follower, with its fork, from the axis of the cam, m."""
+    """Least distance of the follower, with its fork or arm, from the axis of the cam, m."""
     lowest: Value = numbers["cam.prime_radius"] - numbers["follower.round"]
-    return lowest
+    swung = (each.from_disc(0.0, 0.0, 0.0) for each in swung_bodies(numbers).values())
+    return reduce(np.minimum, swung, lowest)
 
 
 def density_of_counterweight(case: Case) -> float:

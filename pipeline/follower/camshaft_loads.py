@@ -422,7 +422,7 @@ class Camshaft(Part):
     gear_radius: Annotated[Length, Known("gear drawing", "20 mm")]
     """pitch radius of the driving gear"""
     mesh_angle: Annotated[Angle, Known("drawing")] = pi
-    """direction of the gear mesh from the follower axis, counter-clockwise"""
+    """direction of the gear mesh from the follower axis, positive as the cam turns"""
     pressure_angle: Annotated[float, In("deg", at_least=0, below=45), Known("gear drawing")] = (
         pi / 9.0
     )

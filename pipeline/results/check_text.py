@@ -51,7 +51,7 @@ _LOAD_END = {
 
 def check_text(one: Declaration) -> CheckText:
     """Sentences on a check from its declaration."""
-    needs = f"; a {one.needs} only" if one.needs else ""
+    needs = f"; a {one.needs} only".replace("a arm", "an arm") if one.needs else ""
     part = f"; part `{one.part}`" if one.part else ""
     depth = f"Evaluated at the depth {one.tier.word} and deeper."
     if one.fails_from < one.tier:

@@ -12,6 +12,7 @@ from trial_variants import (
     geared,
     on_arm,
     reversing,
+    rolled,
     stiffened,
     struck,
     unknown,
@@ -181,6 +182,24 @@ tried(
     200.0,
     "as stated",
     weighted,
+)
+by_limit(
+    "arm_gap",
+    "assembly_gap",
+    lambda: rolled(depth=np.nan),
+    18.65,
+    "50 mm less half of 10 of the cheeks, and of 3.1 times 17 of a bearing in their plane",
+    base=rolled,
+    missing=lambda: rolled(depth=None),
+)
+by_limit(
+    "arm_cam_gap",
+    "assembly_gap",
+    lambda: rolled(depth=np.nan),
+    3.0,
+    "50 mm less 42 of the disc and half of 10 of the cheeks",
+    base=rolled,
+    missing=lambda: rolled(depth=None),
 )
 by_limit("gear_gap", "assembly_gap", None, 20.0, "20 + 15 mm less half of 10 and of 20")
 by_limit(

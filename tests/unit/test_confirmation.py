@@ -107,7 +107,8 @@ def test_relaxed_limits_stand_on_the_record_of_a_preview():
 
 
 DRAWN = {
-    "acceleration_step", "anti_rotation", "cam_radius", "chord_error", "concave_radius",
+    "acceleration_step", "anti_rotation", "arm_cam_gap", "arm_gap", "cam_radius",
+    "chord_error", "concave_radius",
     "bearing_gap", "curvature_rate", "curvature_ratio", "face_width", "fork_gap",
     "fork_shaft_gap", "gas_gap", "gear_gap", "machine_shaft_gap", "guide_gap", "guide_length",
     "key_corner", "minimum_wall",

@@ -42,6 +42,7 @@ MUST_HAVE = {
         "spring_travel",
     ),
     *("bearing_gap", "gear_gap", "machine_shaft_gap", "fork_shaft_gap", "fork_gap"),
+    *("arm_gap", "arm_cam_gap"),
     "tooth_count",
     "tooth_ratio",
     *("arm_fatigue_pivot", "arm_fatigue_roller", "arm_yield"),

@@ -392,6 +392,18 @@ def swung(*, lift: Lift | None = None, **values: Any) -> Solution:
     )
 
 
+def rolled(**values: Any) -> Solution:
+    """The solution with an arm of 87 mm that is square to the line of the cam axis at zero lift.
+
+    On a cam that lifts nothing: a disc of 42 mm.
+    """
+    sizes = {"depth": 0.010, "width": 0.012, "hub": 0.040} | values
+    length = 0.1 * float(np.cos(np.pi / 6.0))
+    arm = FollowerArm(centre_distance=0.1, length=length, swing="with", **sizes)
+    follower = made.changed(made.case().follower, kind="oscillating", arm=arm)
+    return made.solution(case=made.case(follower=follower), contour=made.ring())
+
+
 def cooled(**values: Any) -> Solution:
     """The solution with another cooling."""
     return with_part("cooling", **values)

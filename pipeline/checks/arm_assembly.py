@@ -1,0 +1,216 @@
+"""Checks of an arm's assembly: arm and hub beside cam, camshaft, gear, bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import reduce
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Value
+from camwright.pipeline.base import levers
+from camwright.pipeline.case.limits import ASSEMBLY_GAP
+from camwright.pipeline.checks.assembly import (
+    centre_distance,
+    cheek_to_cam,
+    machine_shaft_axis,
+    one,
+    shaft_radius,
+)
+from camwright.pipeline.checks.cam_shape import contour_radius
+from camwright.pipeline.checks.camshaft_strength import gear_of
+from camwright.pipeline.checks.check import NONE, STATED, Demand, check
+from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.arm_bodies import (
+    ARM_DEPTH,
+    ARM_WIDTH,
+    FORK,
+    HUB,
+    SwungBody,
+    swung_bodies,
+    with_swing,
+)
+from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.solution import Solution
+
+_BEARING = 3.1
+"""Outer diameter of ball bearings of the series 02 and 03 over their bore from 12 mm, at most."""
+_WORDS = {"arm": "arm", HUB: "hub", FORK: "fork"}
+
+
+class _Disc(NamedTuple):
+    """Part about an axis at u and v: radius, m; middle and half width along
+    the camshaft from the middle of the cam, None: all along it."""
+
+    axis: tuple[Value, Value]
+    radius: Value
+    ends: tuple[Value, Value] | None
+
+
+class _Pair(NamedTuple):
+    """Gaps of two parts, m: in the plane, half of one and radius of the other, and axial."""
+
+    plane: Value
+    sizes: tuple[Value, Value]
+    axial: Value
+
+    def gap(self, limit: Value) -> Value:
+        """Greater of both gaps; NaN where one that is not known can decide it."""
+        apart = np.fmax(self.plane, self.axial)
+        return np.where(apart >= limit, apart, np.maximum(self.plane, self.axial))
+
+
+def _discs(tip: Value, numbers: Numbers) -> dict[str, _Disc]:
+    """Parts about the camshaft and its pinion; the cam by its maximum radius."""
+    case, centre = numbers.known_case, (0.0, 0.0)
+    discs = {
+        "cam": _Disc(centre, tip, (0.0, 0.5 * numbers["cam.width"])),
+        "camshaft": _Disc(centre, shaft_radius(numbers), None),
+    }
+    shaft = case.camshaft
+    if shaft is None:
+        return discs
+    wide = shaft.bearing_width if shaft.bearing_width is not None else shaft.widest
+    for number, at in enumerate((0.0, shaft.bearing_spacing), 1):
+        if shaft.widest is not None and wide is not None:
+            ends = at - shaft.cam_position, 0.5 * wide
+            discs[f"bearing {number}"] = _Disc(centre, 0.5 * _BEARING * shaft.widest, ends)
+    if shaft.gear is not None and case.scope.covers("gear"):
+        gear = gear_of(shaft)
+        module = 2.0 * shaft.gear_radius / gear.teeth
+        ends = shaft.gear_position - shaft.cam_position, 0.5 * gear.width
+        pinion = centre_distance(shaft) - shaft.gear_radius + module
+        discs["gear"] = _Disc(centre, shaft.gear_radius + module, ends)
+        discs["pinion"] = _Disc(machine_shaft_axis(shaft), pinion, ends)
+    return discs
+
+
+def _pairs(tip: Value, numbers: Numbers) -> Iterator[tuple[str, _Pair]]:
+    """Arm, fork and hub with each part about the camshaft, but arm and fork with the cam."""
+    bodies = swung_bodies(numbers)
+    for name, disc in _discs(tip, numbers).items():
+        for which, words in _WORDS.items():
+            if which in bodies and not (name == "cam" and which != HUB):
+                yield f"{words} to {name}", _pair(bodies[which], disc)
+
+
+def _pair(body: SwungBody, disc: _Disc) -> _Pair:
+    plane = body.from_disc(*disc.axis, disc.radius)
+    axial = -np.inf if disc.ends is None else body.beyond(disc.ends)
+    return _Pair(plane, (body.half, disc.radius), axial)
+
+
+def _least(tip: Value, numbers: Numbers) -> Value:
+    """Least gap of an arm about the camshaft, m; NaN where a width that is not stated decides."""
+    limit = numbers.limit(ASSEMBLY_GAP)
+    gaps = (each.gap(limit) for _, each in _pairs(tip, numbers))
+    least: Value = reduce(np.minimum, gaps) + 0.0 * tip
+    return least
+
+
+def _stated(pair: _Pair) -> dict[str, float]:
+    """Numbers of the formula; without an axial gap that in the plane."""
+    plane, half, radius = one(pair.plane), *map(one, pair.sizes)
+    axial = one(pair.axial)
+    stated = {"d": plane + half + radius, "h": half, "r": radius}
+    return stated | {"a": axial if np.isfinite(axial) else plane}
+
+
+def _in_words(demand: Demand, solution: Solution) -> Demand:
+    numbers = solution.numbers | with_swing(solution.cams.values())
+    if demand.missing:
+        return replace(demand, at=None)
+    if demand.value is None or np.isnan(demand.value):
+        lacks = (ARM_WIDTH,) if numbers.get(ARM_WIDTH) is None else ()
+        return replace(demand, at=None, missing=lacks)
+    tip, limit = solution.contour.radius_max().value, numbers.limit(ASSEMBLY_GAP)
+    pairs = dict(_pairs(tip, numbers))
+    name = min(pairs, key=lambda each: one(pairs[each].gap(limit)))
+    return replace(demand, at=None, note=name, stated=_stated(pairs[name]))
+
+
+_LEVERS = (
+    levers.one("follower.arm.hub", -1, 2.0),
+    levers.one("follower.arm.depth", -1, 2.0),
+    levers.one("follower.arm.width", -1, 2.0),
+)
+
+arm_gap = check(
+    ASSEMBLY_GAP,
+    id="arm_gap",
+    title="Gap between arm or hub and camshaft, bearings, gear or cam tip",
+    tier=Tier.SCREENING,
+    formula="max(d - h - r, a) >= g; of the nearest pair: d: least distance over the swing of the"
+    " centre line of arm or cheeks, or of the pivot, from the axis of camshaft, bearing, gear or"
+    " pinion, and of the pivot from that of the cam, h: half of follower.arm.depth, of the height"
+    " of the cheeks or of follower.arm.hub, r: radius of the other, max|P| of the cam, a:"
+    " axial gap of the two, that in the plane for the camshaft, g: limits.assembly_gap",
+    symbols=dict.fromkeys("dhra", f"{STATED} [mm]"),
+    reason="An arm or hub within camshaft, bearing, gear or cam cannot be assembled.",
+    method="straight arm and cheeks with round ends over the swing from discs about the camshaft,"
+    " bearings at most 3.1 times as large as their bore, or faces along the camshaft",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    needs="arm",
+    part="arm",
+    load_cases=NONE,
+    levers=_LEVERS,
+    page="Follower",
+).measured(
+    "contour",
+    value=_least,
+    needed=(ARM_DEPTH,),
+    known=with_swing,
+    remark=_in_words,
+    deviation=1e-4,
+)(contour_radius)
+
+
+@check(
+    ASSEMBLY_GAP,
+    title="Gap between arm and cam over the turn",
+    formula="max(d - h, a) >= g; of arm or cheeks, the nearer: d: least distance of their centre"
+    " line, from the pivot to the bridge of the fork or the roller centre, from the contour over"
+    " the turn, h: half of follower.arm.depth or of the height of the cheeks, a: axial gap from the"
+    " cam, of the inner faces of the cheeks, g: limits.assembly_gap",
+    symbols=dict.fromkeys("dha", f"{STATED} [mm]"),
+    reason="A lobe of the cam that strikes the arm, between roller and pivot, stops it.",
+    method="straight arm and cheeks with round ends from the contour, refined over contour and"
+    " turn; not of a face, whose arm is above it",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    needs="arm",
+    part="arm",
+    load_cases=NONE,
+    levers=(_LEVERS[1], levers.PRIME, *levers.GENTLER),
+    page="Follower",
+)
+def arm_cam_gap(solution: Solution) -> Demand | None:
+    """Least gap between arm or fork and cam over the turn, m; None of a face."""
+    numbers, limit = solution.numbers, solution.machine.limits[ASSEMBLY_GAP]
+    if solution.machine.follower.slides:
+        return None
+    bodies, half = swung_bodies(numbers), 0.5 * numbers["cam.width"]
+    if "arm" not in bodies:
+        return Demand(None, limit, missing=(ARM_DEPTH,))
+    pairs, angles = dict[str, _Pair](), dict[str, float]()
+    if solution.machine.follower.parts.get("pin") is None:
+        bodies.pop(FORK, None)  # what it lacks is told by the check of its data
+    for name in ("arm", FORK):
+        if name in bodies:
+            body = bodies[name]
+            nearest = body.bar.from_contour(solution.contour, float(body.bar.low))
+            beside = body.beyond((0.0, half)) if name == "arm" else cheek_to_cam(numbers)
+            pairs[name] = _Pair(nearest.value - body.half, (body.half, 0.0), beside)
+            angles[name] = float(np.mod(nearest.theta, FULL_TURN))
+    gaps = {name: one(pair.gap(limit)) for name, pair in pairs.items()}
+    if any(map(np.isnan, gaps.values())):
+        return Demand(None, limit, missing=(ARM_WIDTH,))
+    name = min(gaps, key=gaps.__getitem__)
+    stated = {key: value for key, value in _stated(pairs[name]).items() if key != "r"}
+    in_plane = pairs[name].plane >= pairs[name].axial
+    at = Extreme(np.nan, "", angles[name]) if in_plane else None
+    return Demand(gaps[name], limit, at, note=f"{_WORDS[name]} to cam", stated=stated)

@@ -1,0 +1,136 @@
+"""Arm and hub of its pivot beside cam, camshaft, gear and machine shaft, against outlines."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from camwright.geometry.arrays import Array, uniform_turn
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case, with_values
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.template import first_case
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import Solution, solution
+
+BY_ID = {declared.id: declared for declared in CHECKS}
+SIZES: dict[str, float | str] = {
+    "follower.arm.depth": "24 mm", "follower.arm.width": "28 mm",
+    "follower.arm.hub": "44 mm", "follower.arm.material": "c45",
+    "follower.arm.pivot_notch": 2.0, "follower.arm.roller_notch": 2.0,
+}  # fmt: skip
+
+
+@cache
+def plain() -> Case:
+    text = first_case("swing", "arm").text
+    return parse_case(text.replace('not_covered = ["arm"]', 'not_covered = ["pivot"]'))
+
+
+def sized(**values: str) -> Case:
+    changed = {key.replace("__", "."): value for key, value in values.items()}
+    return with_values(plain(), SIZES | changed)
+
+
+def solved(case: Case) -> Solution:
+    return solution(case, case.contour(given_lift(case)), Tier.PREVIEW, torques={}, positions=36)
+
+
+def judged(name: str, of: Solution) -> Check:
+    made = BY_ID[name](of)
+    assert made is not None
+    assert made.demand is not None
+    return made
+
+
+def turned(points: Array, angle: float) -> Array:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]]) @ points
+
+
+def away(points: Array, one: Array, other: Array) -> float:
+    """Least distance of points (2, n) from a line between two points."""
+    along = (other - one).reshape(2, 1)
+    off = points.reshape(2, -1) - one.reshape(2, 1)
+    share = np.clip((off * along).sum(axis=0) / max((along**2).sum(), 1e-30), 0.0, 1.0)
+    return float(np.hypot(*(off - share * along)).min())
+
+
+@pytest.mark.parametrize(("swing", "mesh", "cheeks", "gear", "width"), [
+    ("with", 180.0, 22.0, 60.0, 28.0),
+    ("against", 60.0, 36.0, 60.0, 28.0),
+    ("with", -50.0, 22.0, 38.0, 70.0),
+    ("against", 35.0, 60.0, 70.0, 28.0),
+])  # fmt: skip
+def test_gaps_of_an_arm_by_polygons_over_the_turn(
+    swing: str, mesh: float, cheeks: float, gear: float, width: float
+) -> None:
+    """arm_gap, arm_cam_gap, machine_shaft_gap and counterweight_gap within 1 um.
+
+    The cam turns clockwise below a pivot on the x axis; the roller centre is that of the pitch
+    curve, turned back, and the arm the line from there to the pivot. Corners of the polygon are
+    0.04 mm apart: of a gap over 2 mm, 0.2 um. Axial: parts as boxes along the camshaft.
+    """
+    case = sized(
+        follower__arm__swing=swing, camshaft__mesh_angle=f"{mesh} deg",
+        roller__fork__cheek_height=f"{cheeks} mm", camshaft__gear_radius=f"{gear} mm",
+        camshaft__counterweight__radius="25 mm", camshaft__counterweight__width="19 mm",
+        follower__arm__width=f"{width} mm",
+    )  # fmt: skip
+    of = solved(case)
+    pivot, mm = np.array([0.110, 0.0]), 1e-3
+    contour, tip = of.contour.polygon(7200), of.contour.radius_max().value
+    # from the pivot's line as the cam turns, clockwise
+    centre = 1.5e-3 * gear * np.array([np.cos(np.radians(mesh)), -np.sin(np.radians(mesh))])
+    origin, module = np.zeros(2), 2.0 * gear / 40
+    # name: axis, radius and ends along the camshaft, mm from the middle of the cam
+    parts = {
+        "shaft": (origin, 15.0, -1e9, 1e9), "gear": (origin, gear + module, -70.0, -50.0),
+        "pinion": (centre, 0.5 * gear + module, -70.0, -50.0),
+        "bearing 1": (origin, 46.5, -43.0, -27.0), "bearing 2": (origin, 46.5, 27.0, 43.0),
+    }  # fmt: skip
+    gaps = dict[str, list[float]]()
+
+    def put(name: str, plane: float, axial: float) -> None:
+        gaps.setdefault(name, []).append(max(plane, axial))
+
+    def at(theta: float) -> None:
+        place = turned(of.contour.pitch.points(np.array([theta])), -theta)[:, 0]
+        bridge = place + 0.26 * (pivot - place)
+        held = 11.5 + 2.5 + 0.3  # outer face of a cheek
+        # bodies: line, half depth, half width along the camshaft, mm
+        bodies = {
+            "arm": (pivot, bridge, 12.0, 0.5 * width + 0.3),
+            "hub": (pivot, pivot, 22.0, 0.5 * width + 0.3),
+            "fork": (bridge, place, 0.5 * cheeks, held),
+            "roller": (place, place, max(23.5, 0.5 * cheeks), held),
+        }  # fmt: skip
+        turning = turned(contour, -theta)
+        for name, (one, other, half, wide) in bodies.items():
+            if name in ("arm", "fork"):
+                clear = 9.0 if name == "fork" else -wide  # inner face of a cheek
+                put("cam", away(turning, one, other) - half * mm, mm * (clear - 7.75 - 0.3))
+            if name == "hub":
+                put("about", away(origin, one, other) - half * mm - tip, -1.0)
+            for axis, radius, low, high in parts.values() if name != "roller" else ():
+                axial = max(low - wide, -wide - high) if low > -1e8 else -1e9
+                put("about", away(axis, one, other) - (half + radius) * mm, mm * axial)
+            put("crank", away(centre, one, other) - (half + 8.0) * mm, -1.0)
+            put("weight", away(origin, one, other) - (half + 25.0) * mm, -1.0)
+        put("crank", away(centre, *2 * [origin]) - 8.0 * mm - tip, -1.0)
+
+    worst = judged("arm_cam_gap", of)
+    for theta in [*uniform_turn(72), *((worst.cam_angle or 0.0) + np.linspace(-0.02, 0.02, 21))]:
+        at(float(theta))
+    least = {name: min(of_name) for name, of_name in gaps.items()}
+    assert worst.demand == pytest.approx(least["cam"], abs=1e-6)
+    assert judged("arm_gap", of).demand == pytest.approx(least["about"], abs=1e-6)
+    assert judged("machine_shaft_gap", of).demand == pytest.approx(least["crank"], abs=1e-6)
+    # the counterweight is 4.4 mm from bearing 1 on its far side
+    assert judged("counterweight_gap", of).demand == pytest.approx(
+        min(least["weight"], 27e-3 - 9.5e-3), abs=1e-6
+    )
