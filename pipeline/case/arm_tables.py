@@ -7,13 +7,12 @@ from math import pi
 from camwright.geometry.arm_path import Arm
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
-from camwright.pipeline.case.scope_section import OF_ARM, is_stand_in
+from camwright.pipeline.case.scope_section import OF_ARM, OF_STEM, is_stand_in
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 from camwright.pipeline.follower.arm import FollowerArm
 
 OSCILLATING = "oscillating"
 _PIVOT = "pivot"
-_NOT_THERE: tuple[TomlValue, ...] = ("guides", "stem")
 _START, _INERTIA = "follower.arm.start_angle", "follower.arm.inertia"
 _OFFSET = "follower.face.offset"
 
@@ -23,16 +22,15 @@ def with_arm(tables: Tables) -> Tables:
     unchanged.
 
     A start angle is replaced by the prime radius that follows from it, a moment of inertia by the
-    mass, angles of swing in the lift by arcs of the roller centre. The parts that only a
-    translating follower has, stem and guides, enter `scope.not_covered`, which has to name the
-    pivot, or the arm and so the pivot.
+    mass, angles of swing in the lift by arcs of the roller centre. The scope is without stem and
+    guides, which only a translating follower has; one that leaves out the arm leaves out a pivot
+    that is not described.
 
     Raises
     ------
     InputError
-        If the case has guides, its scope does not leave out the pivot, or start angle or inertia
-        are wrong, or stated beside prime radius or mass; if another case leaves out an arm or its
-        pivot.
+        If the case has guides, or start angle or inertia are wrong, or stated beside prime radius
+        or mass; if another case leaves out an arm or its pivot, or is without stem or guides.
     """
     follower, scope = tables.get("follower"), tables.get("scope")
     left_out = scope.get("not_covered") if isinstance(scope, dict) else None
@@ -40,17 +38,19 @@ def with_arm(tables: Tables) -> Tables:
         if isinstance(left_out, list) and (named := [each for each in OF_ARM if each in left_out]):
             limit = f'without "{named[0]}", which follower.kind = "{OSCILLATING}" alone has'
             raise InputError("scope.not_covered", _shown(left_out), limit)
+        if isinstance(scope, dict) and scope.get("without"):
+            limit = f'left out: of follower.kind = "{OSCILLATING}" alone'
+            raise InputError("scope.without", "stated", limit)
         return tables
     if "guides" in tables and not is_stand_in(tables, "guides.a"):
         limit = f'left out with follower.kind = "{OSCILLATING}", which has [follower.arm]'
         raise InputError("guides", "a table", limit)
     arm, cam = follower.get("arm"), tables.get("cam")
-    if not isinstance(left_out, list) or not any(each in left_out for each in OF_ARM):
-        limit = f'with "{_PIVOT}": the pivot of the arm is not judged'
-        raise InputError("scope.not_covered", _shown(left_out), limit)
-    absent = _NOT_THERE if _PIVOT in follower else (*_NOT_THERE, _PIVOT)
-    names = [*left_out, *(each for each in absent if each not in left_out)]
-    tables = tables | {"scope": scope | {"not_covered": names}}  # type: ignore[operator]
+    stated = scope if isinstance(scope, dict) else {}
+    stated = stated | {"without": list(OF_STEM)}
+    if isinstance(left_out, list) and "arm" in left_out and _PIVOT not in {*follower, *left_out}:
+        stated = stated | {"not_covered": [*left_out, _PIVOT]}
+    tables = tables | {"scope": stated}
     if not isinstance(arm, dict):
         return tables
     if isinstance(lift := tables.get("lift"), dict):

@@ -32,9 +32,12 @@ def external_force(case: Case) -> ExternalForce:
 
 
 def dead_load(case: Case) -> float:
-    """Weight and mean external force, N, positive towards the cam."""
-    weight = case.follower.mass * case.follower.gravity_along_axis
-    return weight + external_force(case).mean
+    """Weight and mean external force, N, positive towards the cam; of an arm at zero lift."""
+    follower, mean = case.follower, external_force(case).mean
+    if follower.pivot is not None and follower.arm is not None:
+        pivot = follower.pivot.about(follower.arm, follower.mass, case.cam.prime_radius)
+        return float(pivot.applied(mean, pivot.travel(0.0)))
+    return follower.mass * follower.gravity_along_axis + mean
 
 
 def closing_preload(case: Case) -> float:

@@ -56,6 +56,8 @@ from camwright.pipeline.follower.follower_stiffness import (
 )
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.follower.guide_reactions import GuidePair
+from camwright.pipeline.follower.pivot import Pivot
+from camwright.pipeline.follower.pivot_forces import FRICTION, ArmPivot
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem
@@ -126,6 +128,7 @@ class Machine(Displayed):
                                stated, where the parts alone are needed
     arm : FollowerArm          that carries the follower; None: the stem in its guides does, which
                                an arm has without mass, friction and clearance
+    pivot : Pivot              of the arm, whose friction is then that of `friction`; None: left out
     """
 
     load_case: str
@@ -159,6 +162,7 @@ class Machine(Displayed):
     scope: Scope
     torque: Torque | None = field(default=None, compare=False)
     arm: FollowerArm | None = None
+    pivot: Pivot | None = None
 
     @property
     def crank_speed(self) -> float:
@@ -213,6 +217,7 @@ class Machine(Displayed):
             "camshaft_bearings": shaft and (shaft.bearing_rating or shaft.bearing_static_rating),
             "key": self.cam.keyway,
             "gear": shaft and shaft.gear,
+            "pivot": self.pivot,
         }
         return described.get(part) is not None
 
@@ -381,19 +386,39 @@ class Machine(Displayed):
         return float(np.sqrt(stiffness / self.mass_without_spring))
 
     @property
+    def friction_keys(self) -> tuple[str, str]:
+        """Dotted keys of the two coefficients of `friction`."""
+        return ("guides.a.friction" if self.pivot is None else FRICTION), "guides.b.friction"
+
+    @property
+    def guide_friction(self) -> FrictionRange:
+        """Friction of both guides: none of those in place of an arm's pivot."""
+        return self.friction if self.pivot is None else FrictionRange(*((0.0, 0.0),) * 3)
+
+    @property
+    def arm_pivot(self) -> ArmPivot | None:
+        """Pivot of the arm with what acts about it; None without one."""
+        if self.arm is None or self.pivot is None:
+            return None
+        pivot = self.pivot.about(self.arm, self.mass, self.cam.prime_radius)
+        return replace(pivot, friction=self.friction.nominal[0])
+
+    @property
     def system(self) -> FollowerSystem:
         """Spring, mass, friction and external force of the follower."""
+        guided = self.guide_friction.nominal
         return FollowerSystem(
             mass=self.mass,
             spring=self.spring,
             guide_spacing=self.guides.spacing,
             overhang_at_max_lift=self.overhang_at_max_lift,
-            friction_a=self.friction.nominal[0],
-            friction_b=self.friction.nominal[1],
+            friction_a=guided[0],
+            friction_b=guided[1],
             gravity_along_axis=self.gravity_along_axis,
             external=self.external,
             viscous_damping=self.viscous_damping,
             face_friction=self.follower.side_friction,
+            pivot=self.arm_pivot,
         )
 
     @property
@@ -412,6 +437,7 @@ class Machine(Displayed):
             mass=self.mass * corner.mass,
             spring=replace(spring, rate=rate, preload=preload),
             friction=self.friction.scaled(corner.friction_a, corner.friction_b),
+            pivot=self.pivot and self.pivot.with_mass(corner.mass),
             crankshaft=shaft and replace(shaft, inertia=shaft.inertia * corner.inertia),
         )
 
@@ -478,7 +504,7 @@ def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machin
         stiffness=follower.stiffness,
         damping_ratio=follower.damping_ratio,
         guides=guides,
-        friction=FrictionRange.of(guides, case.tolerances.friction),
+        friction=friction_range(case),
         spring=spring if state.preload is None else replace(spring, preload=state.preload),
         camshaft=case.camshaft,
         crankshaft=case.crankshaft,
@@ -488,7 +514,16 @@ def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machin
         scope=case.scope,
         torque=torque,
         arm=follower.arm,
+        pivot=follower.pivot,
     )
+
+
+def friction_range(case: Case) -> FrictionRange:
+    """Friction of both guides; of an arm that of its pivot, and none."""
+    pivot, tolerance = case.follower.pivot, case.tolerances.friction
+    if pivot is None:
+        return FrictionRange.of(case.guides.a, case.guides.b, tolerance)
+    return FrictionRange.of(pivot.bearing, case.guides.b, tolerance)
 
 
 def _drops(case: Case, crown: AxialCrown | None) -> TabulatedCrown | None:

@@ -24,6 +24,7 @@ from camwright.pipeline.case.section import (
 )
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.flat_face import FollowerFace
+from camwright.pipeline.follower.pivot import Pivot
 
 
 class ValveTrain(Section):
@@ -40,6 +41,7 @@ class Follower(Section):
     defaults: ClassVar[Mapping[str, str]] = {
         "face": "the follower has a roller",
         "arm": "the follower translates",
+        "pivot": "the pivot of an arm is left out",
         "stem_length": "the stem is long",
         "stiffness": "bearing, pin, fork, stem or arm, and camshaft in series",
         "external_force": "0 N, without a file",
@@ -53,6 +55,8 @@ class Follower(Section):
     """face of the follower, flat or curved"""
     arm: Annotated[Table[FollowerArm] | None, Used("lift, contour, cycle")] = None
     """arm of an oscillating follower on its pivot"""
+    pivot: Annotated[Table[Pivot] | None, Used("cycle, checks of the pivot")] = None
+    """pivot of the arm"""
     mass: Annotated[Mass, Known("weighed, or drawing", "610 g")]
     """mass of all that moves with the follower, with its share of the spring; of an arm the moment
     of inertia about its pivot over the square of its length"""
@@ -123,10 +127,12 @@ class Follower(Section):
 
     @model_validator(mode="after")
     def _has_its_arm(self) -> Self:
+        if self.pivot is not None and self.arm is None:
+            raise InputError("follower.pivot", "a table", "left out, or given with follower.arm")
         if (self.kind == "oscillating") == (self.arm is not None):
             if self.arm is not None and self.gravity_angle is not None:
                 stated = units.shown(self.gravity_angle, "deg")
-                limit = "left out with an arm, whose weight turns with it"
+                limit = "left out with an arm: see follower.pivot.gravity_angle"
                 raise InputError("follower.gravity_angle", stated, limit)
             return self
         if self.arm is None:

@@ -20,10 +20,10 @@ from camwright.pipeline.follower.spring_kinds import SHAPES, SpringPart
 from camwright.pipeline.records.run_summary import ScopeRecord
 
 PartName = Literal[
-    "roller_bearing", "pin", "fork", "arm", "spring", SpringPart, "guides",
+    "roller_bearing", "pin", "fork", "arm", "pivot", "spring", SpringPart, "guides",
     "camshaft", "camshaft_bearings", "key", "gear",
 ]  # fmt: skip
-Subject = Literal["stem", "bore", "line_ends", "friction", "requirements", "pivot"]
+Subject = Literal["stem", "bore", "line_ends", "friction", "requirements"]
 """What is left out besides parts: data that a part which is judged would need as well."""
 ScopeName = PartName | Subject
 PART_WORDS: dict[PartName, str] = {
@@ -34,6 +34,7 @@ PART_WORDS: dict[PartName, str] = {
     "spring": "spring design",
     **{each.part: each.part.replace("_", " ") for each in SHAPES.values()},
     "guides": "guides",
+    "pivot": "pivot of the arm",
     "camshaft": "camshaft",
     "camshaft_bearings": "camshaft bearings",
     "key": "key",
@@ -46,7 +47,6 @@ SUBJECT_WORDS: dict[Subject, str] = {
     "line_ends": "ends of the line of contact",
     "friction": "friction, film and finish of the contact",
     "requirements": "life, over-speed and room",
-    "pivot": "pivot of the arm",
 }
 SCOPE_WORDS: Mapping[ScopeName, str] = MappingProxyType(
     dict((*PART_WORDS.items(), *SUBJECT_WORDS.items()))
@@ -65,6 +65,7 @@ _KEYS: dict[ScopeName, tuple[str, ...]] = {
     "spring": ("spring.design", "spring.travel_max"),
     **{each.part: (each.table,) for each in SHAPES.values()},
     "guides": ("guides", "follower.overhang_at_max_lift", "follower.anti_rotation"),
+    "pivot": ("follower.pivot",),
     "camshaft": ("camshaft",),
     "key": ("cam.keyway", "cam.key"),
     "gear": ("camshaft.gear",),
@@ -95,15 +96,20 @@ class Scope(Section):
         Text, Known("own responsibility", "signed off by the maker of the engine")
     ] = ""
     """why they are left out"""
+    without: Annotated[
+        tuple[ScopeName, ...],
+        Field(strict=False, max_length=2),
+        Known("entered by the reader of a case", ("guides", "stem")),
+    ] = ()
+    """parts that the follower does not have: stem and guides of an arm"""
 
     @property
     def statement(self) -> str:
         """Excluded parts with the reason, in one line; "" without any."""
-        missing = [] if self.covers("pivot") else OF_STEM
         parts = ", ".join(
             words
             for part, words in SCOPE_WORDS.items()
-            if not self.covers(part) and part not in missing
+            if part in self.not_covered and part not in self.without
         )
         reason = " ".join(self.reason.split())
         return f"Not covered by this sign-off: {parts}: {reason}" if parts else ""
@@ -118,13 +124,13 @@ class Scope(Section):
 
     def covers(self, part: ScopeName) -> bool:
         """Whether the sign-off covers a part or subject."""
-        return part not in self.not_covered
+        return part not in (*self.not_covered, *self.without)
 
     def leaves_out(self, key: str) -> bool:
         """Whether a key belongs to an excluded part and need not be stated."""
         return any(
             fnmatchcase(key, pattern) or fnmatchcase(key, f"{pattern}.*")
-            for part in self.not_covered
+            for part in (*self.not_covered, *self.without)
             for pattern in _KEYS.get(part, ())
         )
 
@@ -177,9 +183,10 @@ def with_stand_ins(tables: Tables) -> Tables:
     say that they are assumed.
     """
     scope = tables.get("scope")
-    left_out = scope.get("not_covered") if isinstance(scope, dict) else None
-    if not isinstance(left_out, list):
+    if not isinstance(scope, dict):
         return tables
+    listed = [scope.get(key, []) for key in ("not_covered", "without")]
+    left_out = [name for names in listed if isinstance(names, list) for name in names]
     whole = _StandIns(deepcopy(tables), {})
     follower, cam, wheel = (whole.table(name) for name in ("follower", "cam", "roller"))
     plate = whole.table("follower.face")

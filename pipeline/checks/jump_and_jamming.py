@@ -177,7 +177,7 @@ def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
     if demand.at is None or not demand.at.load_case:
         return demand
     cycle, k = row_of(solution.cycles, demand.at)
-    loads, (mu_a, mu_b) = cycle.parts.friction.greatest, cycle.machine.friction.greatest
+    loads, (mu_a, mu_b) = cycle.parts.friction.greatest, cycle.machine.guide_friction.greatest
     if not loads.lift_slope[k] > 0.0:
         return demand
     rubbed = (loads.friction_force_a[k], mu_a), (loads.friction_force_b[k], mu_b)

@@ -90,6 +90,18 @@ def _roller_bearing(case: Case) -> Tables:
     return {"roller.bearing": bearing, "roller.bearing.ring": bearing.ring}
 
 
+def _pivot(case: Case) -> Tables:
+    pivot = case.follower.pivot
+    if pivot is None:
+        return {}
+    table = pivot.table
+    return {
+        table: pivot,
+        f"{table}.bush": pivot.bush,
+        f"{table}.needle_bearing": pivot.needle_bearing,
+    }
+
+
 def _gear(case: Case) -> Tables:
     return {"camshaft.gear": None if case.camshaft is None else case.camshaft.gear}
 
@@ -135,6 +147,7 @@ data_shaped_springs = tuple(
 )
 """Of the springs that are not linear, by their kinds."""
 data_guides = _data("guides", _guides, page="Guides")
+data_pivot = _data("pivot", _pivot, "arm", described_by=("follower.pivot",), page="Follower")
 data_camshaft = _data(
     "camshaft",
     lambda case: {"camshaft": case.camshaft},

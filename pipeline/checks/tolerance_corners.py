@@ -21,7 +21,7 @@ from camwright.geometry.extrema import first_greatest
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.machine import Corner, Machine
+from camwright.pipeline.case.machine import Corner, Machine, friction_range
 from camwright.pipeline.checks.check import Check, Declaration, Demand
 from camwright.pipeline.checks.lost_loads import checks_on_sound_loads
 from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, checks_of
@@ -29,7 +29,6 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import solve_lengths
 from camwright.pipeline.cycle.solution import Solution, solved_turns
 from camwright.pipeline.cycle.turn import Turn, TurnInput, turns
-from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.records.corners_document import CornerRecord, CornersDocument
 
 NOMINAL = Corner("nominal")
@@ -204,7 +203,7 @@ def _plain(demands: Mapping[str, float]) -> dict[str, float | None]:
 def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
     """Bounds of the fields of `Corner` by tolerance; zero tolerances are left out."""
     tolerances, spring = case.tolerances, case.spring
-    friction = FrictionRange.of(case.guides, tolerances.friction)
+    friction = friction_range(case)
 
     def around(tolerance: float) -> tuple[float, float]:
         return 1.0 - tolerance, 1.0 + tolerance

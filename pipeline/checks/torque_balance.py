@@ -512,10 +512,11 @@ def _touching_slope(cycle: Cycle) -> Array:
 
 
 def _heat(cycle: Cycle) -> float:
-    """Friction heat of a turn, J; of the guides, from the pressures in their bores."""
+    """Friction heat of a turn, J; of guides, from the pressures in their bores, or of a pivot."""
     loads, slope = cycle.loads, _touching_slope(cycle)
     dragged = np.abs(loads.viscous_force * slope) + loads.rubbed
     rubbed = (cycle.parts.heat_a + cycle.parts.heat_b) / cycle.cam_speed
+    rubbed = rubbed + np.abs(loads.pivot_friction * slope)
     return FULL_TURN / len(slope) * float(np.sum(rubbed + dragged))
 
 

@@ -35,7 +35,7 @@ from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, shaft_of,
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.camshaft_loads import ShaftLoads
-from camwright.pipeline.follower.follower_forces import Loads, follower_loads
+from camwright.pipeline.follower.follower_forces import Loads, axial_of_surge, follower_loads
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions, guide_reactions
 from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
@@ -182,7 +182,8 @@ class Cycle(Tabled):
         surge = spring_surge(self.machine, loads.lift)
         if surge is None:
             return loads.normal_force
-        added = surge / (loads.share * loads.lever * np.cos(loads.pressure_angle))
+        axial = axial_of_surge(self.contour.pitch, self.machine.system, loads, surge)
+        added = axial / (loads.lever * np.cos(loads.pressure_angle))
         return np.asarray(np.maximum(loads.normal_force + added, 0.0))
 
     @property
@@ -486,6 +487,10 @@ class Cycle(Tabled):
         if contact.tier is not None:
             columns |= self.rolling.columns()
         columns |= self.parts.columns(self.elastic) | self.shares.columns()
+        if self.machine.pivot is not None:
+            load = Column("pivot_load", "N", "Load of the arm on its pivot")
+            rubs = Column("pivot_friction", "N", "Friction of the pivot, at the reference point")
+            columns |= {load: np.hypot(*loads.pivot_load), rubs: loads.pivot_friction}
         if self.machine.arm is None:
             return columns
         return {each: v for each, v in columns.items() if not each.name.startswith(_OF_GUIDES)}

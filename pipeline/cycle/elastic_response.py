@@ -50,13 +50,14 @@ def elastic_follower(machine: Machine, lift: Array | None = None) -> ElasticFoll
     Parameters
     ----------
     lift : array (n,)   at equal angles of a turn, m, at which a spring that is not linear differs
-                        from its tangent at zero lift; None: it is linear
+                        from its tangent at zero lift, and the weight of an arm from that there;
+                        None: neither does
     """
     load = machine.system.load
-    if lift is not None and machine.spring.shape is not None:
+    if lift is not None and (machine.spring.shape is not None or machine.system.pivot is not None):
         spring, theta = machine.spring, uniform_turn(lift.size)
         bent = spring.force(lift) - (spring.preload + spring.rate * lift)
-        load = ExternalForce(theta, load.at(theta) + bent)
+        load = ExternalForce(theta, machine.system.applied_force(theta, lift) + bent)
     return ElasticFollower.with_damping_ratio(
         machine.mass,
         machine.axial_stiffness,

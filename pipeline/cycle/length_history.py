@@ -452,7 +452,7 @@ def factor_at_pressure(pair: FinitePair, pressure: float, mean_length: float) ->
 
 def held_couple(machine: Machine, guides: GuideReactions) -> Array:
     """Couple (n,), N m, that guide friction can hold in the plane of stem and cam axis."""
-    friction_a, friction_b = machine.friction.greatest
+    friction_a, friction_b = machine.guide_friction.greatest
     held = np.minimum(friction_a * guides.rubbing_load_a, friction_b * guides.rubbing_load_b)
     return np.asarray(held * machine.guides.spacing)
 

@@ -7,7 +7,7 @@ of what enters as data.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -28,6 +28,14 @@ from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import gear_force
 from camwright.pipeline.follower.follower_forces import levers
+from camwright.pipeline.follower.pivot_forces import (
+    FRICTION,
+    ArmPivot,
+    PivotBalance,
+    Pressed,
+    Pull,
+    arm_pivot,
+)
 from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
 from camwright.pipeline.follower.spring import SpringWork, WoundWire
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise
@@ -43,13 +51,23 @@ def motion_of(jet: Jet, numbers: Numbers) -> Motion:
     return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, numbers["roller.radius"])
 
 
-def _on_an_arm(jet: Jet, numbers: Numbers) -> Motion:
-    """Motion of roller or face of an arm, whose start angle follows from the prime radius."""
+def _sense(numbers: Numbers) -> float:
+    """Sense of the outward swing of an arm."""
     stated = numbers.known_case.follower.arm
     if stated is None:
         raise InputError("follower.arm", "missing", "given for its motion")
+    return stated.sense
+
+
+def pivot_of(numbers: Numbers) -> ArmPivot | None:
+    """Pivot of the arm of a follower; None without one."""
+    return None if numbers.get(FRICTION) is None else arm_pivot(numbers.get, _sense(numbers))
+
+
+def _on_an_arm(jet: Jet, numbers: Numbers) -> Motion:
+    """Motion of roller or face of an arm, whose start angle follows from the prime radius."""
     distance, length = numbers["follower.arm.centre_distance"], numbers["follower.arm.length"]
-    arm, prime = Arm(distance, length, stated.sense), numbers["cam.prime_radius"]
+    arm, prime = Arm(distance, length, _sense(numbers)), numbers["cam.prime_radius"]
     if (offset := numbers.get("follower.face.offset")) is not None:
         return ArmFaceMotion(jet, arm, arm.face_angle(prime, offset), offset, _friction(numbers))
     start, radius = arm.angle(prime), numbers.get("follower.face.radius")
@@ -277,7 +295,63 @@ class LoadedCam:
     @cached_property
     def closing(self) -> Array:
         """Spring, weight and external force, N."""
+        if self.pivot is not None:
+            return self.spring_force + self.pivot.applied(self.external, self.motion.travel)
         return self.spring_force + (self.numbers["follower.mass"] * self.gravity + self.external)
+
+    @cached_property
+    def pivot(self) -> ArmPivot | None:
+        """Pivot of an arm with what acts about it; None without one."""
+        return pivot_of(self.numbers)
+
+    def _about(self, pivot: ArmPivot, added: Value = 0.0) -> PivotBalance:
+        """Equilibrium about a pivot with its friction, and an added force of the spring, N."""
+        speed, motion = self.speed, self.motion
+        acceleration = speed**2 * self.jet.lift_d2
+        spring = self.spring_force + added
+        pull = pivot.pull(spring, self.external, motion.travel, self.velocity, acceleration)
+        return self._balanced(pivot, self.required + added, pull)
+
+    def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
+        return pivot.balanced(required, Pressed.of(self.motion), pull, self.direction)
+
+    @cached_property
+    def pivoted(self) -> PivotBalance | None:
+        """Axial force, load and friction of the pivot; None without one."""
+        return None if self.pivot is None else self._about(self.pivot)
+
+    @cached_property
+    def pivoted_worst(self) -> PivotBalance | None:
+        """The same at the maximum friction of the pivot; None where that is not known."""
+        most = self.numbers.get(f"{FRICTION}_greatest")
+        if self.pivot is None or most is None:
+            return None
+        return self._about(replace(self.pivot, friction=most))
+
+    @property
+    def pivot_load(self) -> Array:
+        """Load of the pivot, N; NaN without one."""
+        return self._of_pivot(self.pivoted, "load")
+
+    @property
+    def pivot_heat(self) -> Array | None:
+        """Friction power of the pivot at maximum friction, W; None where not known."""
+        if self.pivoted_worst is None:
+            return None
+        return magnitude(self._of_pivot(self.pivoted_worst, "friction") * self.velocity)
+
+    @property
+    def pin_velocity(self) -> Array:
+        """Sliding speed of the arm on the pin of its pivot, m/s; NaN without one."""
+        pivot = self.pivot
+        if pivot is None:
+            return np.full_like(self.velocity, np.nan)
+        return self.velocity * (pivot.radius / pivot.length)
+
+    def _of_pivot(self, balanced: PivotBalance | None, name: str) -> Array:
+        if balanced is None:
+            return np.full_like(self.velocity, np.nan)
+        return np.asarray(getattr(balanced, name))
 
     def inertia_at(self, speed: Value) -> Array:
         """Inertia force at a cam speed, rad/s, N."""
@@ -302,7 +376,9 @@ class LoadedCam:
 
     @cached_property
     def jam(self) -> Array:
-        """Jam index: friction of the guides over the axial force."""
+        """Jam index: friction of guides or pivot over the axial force."""
+        if self.pivoted is not None:
+            return self.pivoted.jam_index
         numbers, rubbing = self.numbers, self.rubbing_share
         on_a, on_b = numbers["guides.a.friction"], numbers["guides.b.friction"]
         index: Array = on_a * rubbing.a + on_b * rubbing.b
@@ -315,7 +391,9 @@ class LoadedCam:
 
     @property
     def jam_worst(self) -> Array | None:
-        """Jam index at maximum guide friction; None where that is not known."""
+        """Jam index at maximum friction; None where that is not known."""
+        if self.pivot is not None:
+            return None if self.pivoted_worst is None else self.pivoted_worst.jam_index
         most = greatest_friction(self.numbers)
         if most is None:
             return None
@@ -330,7 +408,9 @@ class LoadedCam:
 
     @cached_property
     def axial(self) -> Array:
-        """Axial force, with implicit guide friction, N; see `follower_loads`."""
+        """Axial force, with implicit friction, N; see `follower_loads`."""
+        if self.pivoted is not None:
+            return self.pivoted.axial
         return self.required / self.share
 
     @cached_property
@@ -346,6 +426,8 @@ class LoadedCam:
     @cached_property
     def surged(self) -> Array:
         """Contact force with the surge of the spring, N."""
+        if self.pivot is not None:
+            return self._about(self.pivot, self.surge).axial * self.motion.gain
         return (self.axial + self.surge / self.share) * self.motion.gain
 
     @cached_property
@@ -355,7 +437,7 @@ class LoadedCam:
 
     @property
     def friction_work(self) -> Array:
-        """Friction power of guides, and of roller bearing or face, over the cam speed, N m."""
+        """Friction power of guides, pivot, roller bearing and face over the cam speed, N m."""
         guides = (self.axial - self.closing - self.inertia) * self.slope
         drag = 0.0 if self.drag is None else self.drag.bearing_torque(self.normal)
         contact = drag * magnitude(np.asarray(self.motion.rolling))

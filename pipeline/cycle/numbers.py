@@ -18,6 +18,7 @@ from camwright.pipeline.contact.shrink_fit import FittedRing, slip_torque
 from camwright.pipeline.contact.traction import ring_inertia
 from camwright.pipeline.follower.bearing_life import contamination_factor
 from camwright.pipeline.follower.guide_friction import friction_limits
+from camwright.pipeline.follower.pivot_forces import FRICTION
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +129,20 @@ class Numbers:
 def _greatest_friction(guide: str, numbers: Numbers) -> Value:
     """Maximum friction coefficient of a guide."""
     nominal, stated = numbers[f"{guide}.friction"], numbers.get(f"{guide}.friction_max")
+    return friction_limits(nominal, None, stated, numbers["tolerances.friction"])[1]
+
+
+def _of_pivot(name: str, numbers: Numbers) -> Value | None:
+    """Number of the bearing of a pivot, bush or needle bearing; None without one."""
+    bush = numbers.get(f"follower.pivot.bush.{name}")
+    return numbers.get(f"follower.pivot.needle_bearing.{name}") if bush is None else bush
+
+
+def _pivot_friction(numbers: Numbers) -> Value | None:
+    """Maximum friction coefficient of a pivot."""
+    nominal, stated = numbers.get(FRICTION), _of_pivot("friction_max", numbers)
+    if nominal is None:
+        return None
     return friction_limits(nominal, None, stated, numbers["tolerances.friction"])[1]
 
 
@@ -307,6 +322,10 @@ def _slip_torque(numbers: Numbers) -> Value | None:
 DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
     "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
+    FRICTION: partial(_of_pivot, "friction"),
+    f"{FRICTION}_greatest": _pivot_friction,
+    "follower.pivot.diameter": partial(_of_pivot, "diameter"),
+    "follower.pivot.bush.area": partial(_area, "follower.pivot.bush"),
     "guides.a.area": partial(_area, "guides.a"),
     "guides.b.area": partial(_area, "guides.b"),
     "cam.fit.least_pressure": _least_fit_pressure,

@@ -152,7 +152,7 @@ def part_loads(
     amplitude, mean, correction = _ring(machine, contour, loads, contact_width)
     motion = machine.follower.rolling(contour, loads.theta, machine.cam_speed)
     pair = machine.guides
-    nominal, worst = machine.friction.nominal, friction.greatest
+    nominal, worst = machine.guide_friction.nominal, friction.greatest
     return PartLoads(
         guide_edge_pressure_a=edge_pressure_of(machine, pair.a)(guide_lines[0]),
         guide_edge_pressure_b=edge_pressure_of(machine, pair.b)(guide_lines[1]),

@@ -46,16 +46,20 @@ def in_load_case(numbers: Numbers, machine: Machine) -> Numbers:
 def numbers_in(machine: Machine) -> dict[str, float | None]:
     """Numbers of a machine in its load case, without those of the spring."""
     nominal, greatest = machine.friction.nominal, machine.friction.greatest
+    friction = {
+        f"{key}{which}": value
+        for which, values in (("", nominal), ("_greatest", greatest))
+        for key, value in zip(machine.friction_keys, values, strict=True)
+    }
+    if machine.pivot is not None and machine.pivot.swinging_mass is not None:
+        friction["follower.pivot.swinging_mass"] = machine.pivot.swinging_mass
     return {
         "cam.speed": machine.cam_speed,
         "follower.mass": machine.mass,
         "follower.viscous_damping": machine.viscous_damping,
         "follower.overhang_at_max_lift": machine.overhang_at_max_lift,
         "guides.spacing": machine.guides.spacing,
-        "guides.a.friction": nominal[0],
-        "guides.b.friction": nominal[1],
-        "guides.a.friction_greatest": greatest[0],
-        "guides.b.friction_greatest": greatest[1],
+        **friction,
     }
 
 
@@ -110,6 +114,7 @@ class ForcesCam(ContourCam):
         """At the angles of `Cycle.loads_between`."""
         return cls(
             *_jet(cycle, numbers, loads := cycle.loads_between),
+            external=cycle.machine.external.at(loads.theta),
             contour=cycle.contour,
             loads=loads,
             least_spring_force=cycle.least_spring_force,
@@ -157,6 +162,10 @@ class ForcesCam(ContourCam):
         return self.loads.axial_force
 
     @property
+    def pivot_load(self) -> Array:
+        return np.hypot(*self.loads.pivot_load)
+
+    @property
     def normal(self) -> Array:
         return self.loads.normal_force
 
@@ -176,6 +185,7 @@ class SolvedCam(ForcesCam):
         """At the solved angles; numbers: of the solution."""
         return cls(
             *_jet(cycle, numbers, cycle.loads),
+            external=cycle.machine.external.at(cycle.loads.theta),
             contour=cycle.contour,
             loads=cycle.loads,
             least_spring_force=cycle.least_spring_force,
@@ -214,6 +224,11 @@ class SolvedCam(ForcesCam):
     @property
     def heat(self) -> OfGuides:
         return OfGuides(self.cycle.parts.heat_max_a, self.cycle.parts.heat_max_b)
+
+    @property
+    def pivot_heat(self) -> Array:
+        worst = self.cycle.parts.friction.greatest
+        return worst.pivot_friction * np.abs(worst.velocity)
 
     @property
     def p0(self) -> Array:

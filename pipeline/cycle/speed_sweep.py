@@ -17,6 +17,7 @@ from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.limits import OVERSPEED
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.follower.follower_forces import Rubbing, follower_loads
+from camwright.pipeline.follower.pivot_forces import Pressed, Pull
 from camwright.pipeline.follower.spring import (
     DynamicStiffness,
     HelicalSpring,
@@ -280,7 +281,9 @@ class _Follower:
 
     closing: spring, weight and external force; beside: less that of the linear spring of the rate
     at zero lift; inertia, viscous: per square and per first power of the cam speed; gain: normal
-    force over axial force without friction; arm: cam torque over that force, m.
+    force over axial force without friction; arm: cam torque over that force, m; with a pivot, whose
+    friction is no share of that force, over the axial force. pulls: on an arm, at rest and per
+    square of the speed.
     """
 
     machine: Machine
@@ -292,6 +295,9 @@ class _Follower:
     viscous: Array
     gain: Array
     arm: Array
+    pressed: Pressed
+    direction: Array
+    pulls: tuple[Pull, Pull] | None
 
     @classmethod
     def of(cls, machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> _Follower:
@@ -299,6 +305,15 @@ class _Follower:
         system = replace(machine.system, rubbing=rubbing)
         loads = follower_loads(pitch, system, 1.0, theta)
         share, slide = loads.share, pitch.slide(theta, system.face_friction)
+        pulls, pivot = None, system.pivot
+        if pivot is not None:
+            external, slope = system.external.at(theta), loads.lift_slope
+            resting = pivot.pull(loads.spring_force, external, loads.travel, 0.0, 0.0)
+            still = np.zeros(theta.size)
+            thrown = replace(pivot, gravity_angle=None).pull(
+                still, still, loads.travel, slope, loads.acceleration
+            )
+            pulls, share = (resting, thrown), np.ones(theta.size)
         return cls(
             machine=machine,
             resonant=_Resonant.of(machine.spring, machine.spring.design, pitch),
@@ -310,7 +325,20 @@ class _Follower:
             viscous=loads.viscous_force,
             gain=1.0 / (share * loads.lever * np.cos(loads.pressure_angle)),
             arm=(loads.lift_slope + slide.torque) / share,
+            pressed=Pressed.of(slide),
+            direction=np.sign(loads.lift_slope),
+            pulls=pulls,
         )
+
+    def _pivoted(self, push: Array, speed: Array, surge: Array) -> Array:
+        """Axial force (m, n) of a force without friction, at speeds (m, 1), rad/s; as it is."""
+        pivot = self.machine.system.pivot
+        if pivot is None or self.pulls is None:
+            return push
+        still, thrown = self.pulls
+        along = still.along + speed**2 * thrown.along - surge
+        pull = Pull(along, still.across + speed**2 * thrown.across)
+        return pivot.balanced(push, self.pressed, pull, self.direction).axial
 
     def extremes(self, cam_speed: Array) -> dict[str, Array]:
         """Arrays (m,) of `SpeedSweep` by name at cam speeds (m,), rad/s."""
@@ -322,6 +350,7 @@ class _Follower:
         if self.viscous.any():
             push += speed * self.viscous
         push += surge
+        push = self._pivoted(push, speed, surge)
         normal = push * self.gain
         torque = np.maximum(push, 0.0, out=push)
         torque *= self.arm

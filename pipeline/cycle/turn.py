@@ -126,7 +126,7 @@ def _followers_by_friction(machine: Machine) -> tuple[FollowerSystem, ...]:
     """
     friction, system = machine.friction, machine.system
     bounds = friction.least, friction.nominal, friction.greatest
-    return tuple(replace(system, friction_a=a, friction_b=b) for a, b in bounds)
+    return tuple(system.with_friction(*each) for each in bounds)
 
 
 @dataclass(eq=False)

@@ -7,6 +7,7 @@ In the order of the calculation:
 | `stem_beam`             | stem as a chain of beam elements           | E I, N m2; m/N        |
 | `spring_kinds`          | gas, torsion spring; lift from energy      | rho, m; p, Pa         |
 | `spring`                | helical spring, strength, buckling, surge  | k, N/m; P, N; tau, Pa |
+| `pivot_forces`          | moments about the pivot of an arm          | R, N; mu, -           |
 | `follower_forces`       | forces with guide friction                 | F_a, N; T, N m        |
 | `guide_contact`         | beam in bores with unilateral contact      | N; m                  |
 | `guide_reactions`       | reactions and pressures of two guides      | A, B, N; p, Pa        |
@@ -25,6 +26,7 @@ In the order of the calculation:
 | `pin_strength`          | bending, shear, pressure of the pin        | sigma, Pa             |
 | `flat_face_motion`      | sliding and entrainment speed of a face    | m/s; pv, Pa m/s       |
 | `arm`                   | arm of an oscillating follower             | c, l, m; psi, rad     |
+| `pivot`                 | bush or needle bearing of an arm's pivot   | kg; m; N m            |
 | `follower_kind`         | protocol of the kinds of follower          |                       |
 | `roller`                | roller: geometry, contact body, rolling    | r, m                  |
 | `flat_face`             | flat face: geometry, contact body, sliding | m                     |

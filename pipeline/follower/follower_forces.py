@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +14,7 @@ from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
+from camwright.pipeline.follower.pivot_forces import ArmPivot, Pressed, Pull
 from camwright.pipeline.follower.spring import Spring
 
 REST = 1e-9  # slope over stroke, 1/rad, up to which a spline is in a dwell
@@ -106,6 +107,7 @@ class FollowerSystem:
     face_friction : float           of a flat face sliding on the cam, >= 0; 0: a roller
     rubbing : Rubbing               of guides of finite length, see `guided_loads`; None: of
                                     point supports
+    pivot : ArmPivot                of an arm; None: of none, or of one without friction and weight
 
     Raises
     ------
@@ -124,6 +126,7 @@ class FollowerSystem:
     viscous_damping: float = 0.0
     face_friction: float = 0.0
     rubbing: Rubbing | None = None
+    pivot: ArmPivot | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.guide_spacing < np.inf:
@@ -144,19 +147,30 @@ class FollowerSystem:
         """Force (..., n) of the spring at a lift, N."""
         return self.spring.force(lift)
 
-    def applied_force(self, theta: Array) -> Array:
-        """Weight and external force at cam angles (n,), N, positive towards the cam."""
-        return self.load.at(theta)
+    def applied_force(self, theta: Array, lift: Array) -> Array:
+        """Weight and external force at cam angles and lifts (n,), N, positive towards the cam."""
+        if self.pivot is None:
+            return self.load.at(theta)
+        return self.pivot.applied(self.external.at(theta), self.pivot.travel(lift))
 
     @property
     def load(self) -> ExternalForce:
-        """Weight and external force over the cam angle."""
-        return self.external.plus(self.mass * self.gravity_along_axis)
+        """Weight and external force over the cam angle; of an arm at zero lift."""
+        if self.pivot is None:
+            return self.external.plus(self.mass * self.gravity_along_axis)
+        force = self.pivot.applied(self.external.force, self.pivot.travel(0.0))
+        return ExternalForce(self.external.theta, force)
 
     @property
     def dead_load(self) -> float:
-        """Weight and mean external force, N, positive towards the cam."""
+        """Weight and mean external force, N, positive towards the cam; of an arm at zero lift."""
         return self.load.mean
+
+    def with_friction(self, friction_a: float, friction_b: float) -> Self:
+        """With other coefficients of friction of the guides; of an arm the first of its pivot."""
+        if self.pivot is None:
+            return replace(self, friction_a=friction_a, friction_b=friction_b)
+        return replace(self, pivot=replace(self.pivot, friction=friction_a))
 
     def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
         """Rubbing load of guides A and B over axial force and side-load factor."""
@@ -181,7 +195,9 @@ class Loads(Displayed):
     of a face; `lock`: share that this friction takes of the axial force of an arm. `lever`: of the
     normal of a flat face over the length of the arm; `pressing`: contact force in the direction of
     the axial force over it. `travel`: that direction from the follower axis, counter-clockwise,
-    rad, of an arm; 0 of a stem.
+    rad, of an arm; 0 of a stem. `pivot_load` (2, n): of the arm on its pivot, along and across the
+    travel, and `pivot_friction` the moment of its friction over the length of the arm, a magnitude;
+    0 of a stem. With a pivot `jam_index` is that over the axial force.
     """
 
     theta: Array
@@ -214,6 +230,8 @@ class Loads(Displayed):
     lock: Array = field(default_factory=lambda: readonly(0.0))
     lever: Array = field(default_factory=lambda: readonly(1.0))
     pressing: Array = field(default_factory=lambda: readonly(1.0))
+    pivot_load: Array = field(default_factory=lambda: readonly(np.zeros((2, 1))))
+    pivot_friction: Array = field(default_factory=lambda: readonly(0.0))
 
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
@@ -229,8 +247,16 @@ class Loads(Displayed):
 
         That axis is the one of a stem, or runs from the cam axis to the pivot of an arm.
         """
+        return self._at_rest(self.axial_force * self.pressing, self.tangential_force)
+
+    @property
+    def pivot_reaction(self) -> Array:
+        """Force of the pivot on the arm (2, n), N, in the axes of `on_shaft`; 0 of a stem."""
+        return -self._at_rest(*self.pivot_load)
+
+    def _at_rest(self, along: Array, across: Array) -> Array:
+        """Force (2, n) in axes at rest, from that along and across the travel."""
         cos, sin = np.cos(self.travel), np.sin(self.travel)
-        along, across = self.axial_force * self.pressing, self.tangential_force
         return np.stack([along * cos + across * sin, across * cos - along * sin])
 
     @property
@@ -294,8 +320,8 @@ class Loads(Displayed):
 
     @property
     def friction_force(self) -> Array:
-        """Axial friction of both guides, N, >= 0."""
-        return np.asarray(self.friction_force_a + self.friction_force_b)
+        """Axial friction of both guides, or of the pivot of an arm, N, >= 0."""
+        return np.asarray(self.friction_force_a + self.friction_force_b + self.pivot_friction)
 
     @property
     def rubbed(self) -> Array:
@@ -312,7 +338,7 @@ class Loads(Displayed):
 
     @property
     def friction_loss(self) -> float:
-        """Friction loss of both guides and of a face over one cam turn, J."""
+        """Friction loss of guides or pivot and of a face over one cam turn, J."""
         rubbing = self.friction_force * np.abs(self.lift_slope) + self.rubbed
         return turn_integral(self.theta, rubbing + self.viscous_force * self.lift_slope)
 
@@ -339,6 +365,20 @@ def turn_integral(theta: Array, values: Array) -> float:
     if not (steps > 0.0).all():
         raise InputError("theta", float(theta[np.argmin(steps)]), "increasing within one turn")
     return float(np.sum(0.5 * (steps + np.roll(steps, 1)) * values))
+
+
+def axial_of_surge(
+    pitch: FollowerPath, system: FollowerSystem, loads: Loads, surge: Array
+) -> Array:
+    """Change of the axial force (n,), N, by a surge of the spring (n,), N."""
+    pivot = system.pivot
+    if pivot is None:
+        return np.asarray(surge / loads.share)
+    pressed = Pressed.of(pitch.slide(loads.theta, system.face_friction))
+    along, across = loads.pivot_load - loads.axial_force * np.stack([pressed.along, pressed.across])
+    pull, direction = Pull(along - surge, across), np.sign(loads.lift_slope)
+    whole_force = loads.required_force + surge
+    return pivot.balanced(whole_force, pressed, pull, direction).axial - loads.axial_force
 
 
 def share_left(lift_slope: Array, jam_index: Array, lock: Values | float = 0.0) -> Array:
@@ -388,6 +428,9 @@ def follower_loads(
     `jam_index` alone indicates the jam. Neglected: the couple of the friction forces about the stem
     axis, the weight across it, rolling friction.
 
+    The friction of the pivot of an arm depends on its whole load, see `ArmPivot.balanced`; where it
+    holds the arm off the cam on the return the contact is lost.
+
     Parameters
     ----------
     pitch : FollowerPath
@@ -418,7 +461,7 @@ def follower_loads(
     push, pressure_angle = Push.of(pitch, system, theta), pitch.pressure_angle(theta)
     rate, speed = finite("cam_acceleration", cam_acceleration), _forward(cam_speed, theta)
     acceleration = lift_d2 * speed**2 + slope * rate
-    spring_force, applied_force = system.spring_force(lift), system.applied_force(theta)
+    spring_force, applied_force = system.spring_force(lift), system.applied_force(theta, lift)
     inertia_force = system.mass * acceleration
     viscous_force = system.viscous_damping * slope * speed
     demand = spring_force + applied_force + inertia_force + viscous_force
@@ -429,11 +472,21 @@ def follower_loads(
     jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.side_factor
     slide = pitch.slide(theta, system.face_friction)
     axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index, slide.lock)
+    travel, pivot = pitch.travel(theta), system.pivot
+    pivot_load, pivot_friction = np.zeros((2, theta.size)), np.zeros(theta.size)
+    if pivot is not None:
+        pressed, external = Pressed.of(slide), system.external.at(theta)
+        pull = pivot.pull(spring_force, external, travel, slope * speed, acceleration)
+        held = pivot.clipped(demand, pressed, pull, np.sign(slope), JAM_FLOOR)
+        axial_force, jam_index, pivot_friction = held.axial, held.jam_index, held.friction
+        pivot_load = np.stack(pressed.total(axial_force, pull))
     side_load = axial_force * push.side_factor
     friction_a = system.friction_a * rubbing_a * side_load
     friction_b = system.friction_b * rubbing_b * side_load
     sliding = axial_force * slide.torque
-    friction_power = (friction_a + friction_b) * np.abs(slope) + viscous_force * slope + sliding
+    statics = system.friction_a * np.abs(on_points[0]) + system.friction_b * np.abs(on_points[1])
+    friction = friction_a + friction_b + pivot_friction
+    friction_power = friction * np.abs(slope) + viscous_force * slope + sliding
     friction_power = friction_power + slide.lock * axial_force * slope
     return Loads(
         theta=theta,
@@ -459,14 +512,15 @@ def follower_loads(
         viscous_force=viscous_force,
         rubbing_a=rubbing_a,
         rubbing_b=rubbing_b,
-        jam_index_statics=system.friction_a * np.abs(on_points[0])
-        + system.friction_b * np.abs(on_points[1]),
+        jam_index_statics=jam_index if pivot is not None else statics,
         end_moment=axial_force * push.arm,
         sliding_torque=sliding,
-        travel=pitch.travel(theta),
+        travel=travel,
         lock=np.asarray(slide.lock),
         lever=np.asarray(slide.lever),
         pressing=np.asarray(slide.pressing),
+        pivot_load=pivot_load,
+        pivot_friction=pivot_friction,
     )
 
 
@@ -483,13 +537,22 @@ def torque_on_cam(
     still = follower_loads(pitch, system, 0.0, theta)
     slope, lift_d2 = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
     closing = still.closing_force
-    share, arm = still.share, slope + pitch.slide(theta, system.face_friction).torque
+    slide = pitch.slide(theta, system.face_friction)
+    share, arm = still.share, slope + slide.torque
+    pressed, external = Pressed.of(slide), system.external.at(theta)
 
     def torque(speed: Array, cam_acceleration: Array) -> Array:
-        inertia_force = system.mass * (lift_d2 * speed**2 + slope * cam_acceleration)
+        acceleration = lift_d2 * speed**2 + slope * cam_acceleration
+        inertia_force = system.mass * acceleration
         viscous_force = system.viscous_damping * slope * speed
         demand = closing + inertia_force + viscous_force
-        return np.asarray(inertia_force * slope - np.maximum(demand, 0.0) / share * arm)
+        axial = np.maximum(demand, 0.0) / share
+        if system.pivot is not None:
+            pull = system.pivot.pull(
+                still.spring_force, external, still.travel, slope * speed, acceleration
+            )
+            axial = system.pivot.clipped(demand, pressed, pull, np.sign(slope), JAM_FLOOR).axial
+        return np.asarray(inertia_force * slope - axial * arm)
 
     return torque
 

@@ -291,8 +291,8 @@ def _residual(
     rubs = (
         system.friction_a * reactions.rubbing_load_a + system.friction_b * reactions.rubbing_load_b
     )
-    rubs = np.sign(loads.lift_slope) * rubs + loads.lock * loads.axial_force
-    miss = loads.axial_force - rubs - free
+    rubs = np.sign(loads.lift_slope) * (rubs + loads.pivot_friction)
+    miss = loads.axial_force - rubs - loads.lock * loads.axial_force - free
     bounded = loads.share <= JAM_FLOOR
     push = np.where(bounded, 0.0, loads.axial_force)
     return np.divide(np.abs(miss), push, out=np.zeros_like(miss), where=push > 0.0)

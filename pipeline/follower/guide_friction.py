@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, Value, finite
 from camwright.geometry.errors import InputError
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
-from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
+from camwright.pipeline.follower.guide_reactions import Guide
 
 # pv limits of nylon by lubrication, Pa m/s, of a manufacturer of bushes. Dry: 0.105 MPa m/s in
 # Mott, Machine Elements in Mechanical Design, table 16-1.
@@ -44,9 +45,20 @@ def friction_limits(
     return least, greatest
 
 
+class RubbedBearing(Protocol):
+    """Bearing with a coefficient of friction and its bounds; None: by the tolerance."""
+
+    @property
+    def friction(self) -> float: ...
+    @property
+    def friction_min(self) -> float | None: ...
+    @property
+    def friction_max(self) -> float | None: ...
+
+
 @dataclass(frozen=True)
 class FrictionRange:
-    """Friction coefficients of guides A and B: nominal, minimum and maximum.
+    """Friction coefficients of guides A and B, or of a pivot and none: nominal, minimum, maximum.
 
     Raises
     ------
@@ -67,14 +79,14 @@ class FrictionRange:
                 raise InputError(f"guides.{name}.friction", shown, limit)
 
     @classmethod
-    def of(cls, guides: GuidePair, tolerance: float) -> FrictionRange:
-        """From the bounds of the guides; a relative tolerance where a guide has none."""
+    def of(cls, on_a: RubbedBearing, on_b: RubbedBearing, tolerance: float) -> FrictionRange:
+        """From the bounds of two bearings; a relative tolerance where one has none."""
         a, b = (
             friction_limits(each.friction, each.friction_min, each.friction_max, tolerance)
-            for each in (guides.a, guides.b)
+            for each in (on_a, on_b)
         )
         return cls(
-            nominal=(guides.a.friction, guides.b.friction),
+            nominal=(on_a.friction, on_b.friction),
             least=(float(a[0]), float(b[0])),
             greatest=(float(a[1]), float(b[1])),
         )
@@ -135,7 +147,7 @@ def friction_bounds(
     """
 
     def loads(both: tuple[float, float]) -> Loads:
-        return solved(replace(system, friction_a=both[0], friction_b=both[1]))
+        return solved(system.with_friction(*both))
 
     return FrictionBounds(loads(friction.least), loads(friction.nominal), loads(friction.greatest))
 

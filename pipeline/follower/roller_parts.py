@@ -37,6 +37,8 @@ RadialLimit = Annotated[float, In("N", above=0, at_most=1e9)]
 Hours = Annotated[float, In("h", above=0, at_most=1e6)]
 
 
+DynamicRating = Annotated[Force, Meaning("dynamic rating")]
+StaticRating = Annotated[Force, Meaning("static rating")]
 BallCircle = Annotated[Length, Meaning("diameter of the circle of the ball centres")]
 
 
@@ -104,10 +106,8 @@ class Bearing(Part):
 
     name: Annotated[str, Known("bearing catalogue", "LR6204")]
     """designation of the bearing"""
-    C: Annotated[Force | None, Known("bearing catalogue", "14 kN")] = None
-    """dynamic rating"""
-    C0: Annotated[Force | None, Known("bearing catalogue", "7.8 kN")] = None
-    """static rating"""
+    C: Annotated[DynamicRating | None, Known("bearing catalogue", "14 kN")] = None
+    C0: Annotated[StaticRating | None, Known("bearing catalogue", "7.8 kN")] = None
     fatigue_load_limit: Annotated[RadialLimit | None, Known("bearing catalogue", "335 N")] = None
     """fatigue load limit P_u, ISO 281"""
     radial_limit: Annotated[RadialLimit | None, Known("catalogue of track rollers", "8.3 kN")] = (

@@ -504,8 +504,9 @@ class _Evaluation:
         theta = contour.lift.highest.theta if angle is None else math.radians(angle)
         at = np.array([theta])
         cam = ContourCam.at(contour, self._numbers, at, 3)
-        applied, least = self._machine.system.applied_force(at), contour.lift.lowest.value
-        return replace(cam, external=applied, least_lift=least)
+        system, least = self._machine.system, contour.lift.lowest.value
+        external, gravity = system.external.at(at), system.gravity_along_axis
+        return replace(cam, external=external, gravity=gravity, least_lift=least)
 
     @cached_property
     def _rows(self) -> Mapping[str, Array]:

@@ -23,7 +23,7 @@ from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.checks.torque_balance import NO_MEAN
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, face_of, motion_of
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, face_of, motion_of, pivot_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import keyway_cut, rotating_force
 from camwright.pipeline.follower.follower_forces import Push
@@ -116,6 +116,8 @@ class Designs:
             return np.atleast_2d(source.lift)
         machine, mass = self.machine, self.value("follower.mass")
         dead_load = mass * machine.gravity_along_axis + machine.external.mean
+        if (pivot := pivot_of(self.numbers)) is not None:
+            dead_load = pivot.applied(machine.external.mean, pivot.travel(0.0))
         rate, preload = self.value("spring.rate"), self.value("spring.preload") + dead_load
         if source.energy is not None:
             energy = source.energy[None, :]

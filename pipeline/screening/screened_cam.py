@@ -15,8 +15,15 @@ from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_sq
 from camwright.pipeline.contact.oil_film import LineFilm, lambda_ratio, minimum_film
 from camwright.pipeline.cycle.contact_heat import flash_rise
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, face_of
-from camwright.pipeline.follower.follower_forces import REST, LoadEnds, ends_of, share_left
+from camwright.pipeline.follower.follower_forces import (
+    JAM_FLOOR,
+    REST,
+    LoadEnds,
+    ends_of,
+    share_left,
+)
 from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany, bearing_under_couple
+from camwright.pipeline.follower.pivot_forces import ArmPivot, PivotBalance, Pressed, Pull
 from camwright.pipeline.screening.design_lengths import (
     DesignValues,
     LineFactors,
@@ -105,7 +112,10 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def axial(self) -> Array:
-        return self._free / self.share
+        return self._free / self.share if self.pivoted is None else self.pivoted.axial
+
+    def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
+        return pivot.clipped(required, Pressed.of(self.motion), pull, self.direction, JAM_FLOOR)
 
     @cached_property
     def rubbing_share(self) -> OfGuides:
@@ -117,7 +127,9 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def jam_worst(self) -> Array:
-        """Jam index (m, n) at the greatest friction of the guides, -."""
+        """Jam index (m, n) at the greatest friction of guides or pivot, -."""
+        if self.pivoted_worst is not None:
+            return self.pivoted_worst.jam_index
         keys = (f"guides.{side}.friction_greatest" for side in "ab")
         most = OfGuides(*(np.asarray(self.numbers[key]) for key in keys))
         rubbing = self._settled(most)
@@ -199,7 +211,8 @@ class ScreenedCam(LoadedCam):
     @cached_property
     def friction_loss(self) -> Array:
         """Friction loss of guides and face over a cam turn (m,), J."""
-        work = self.jam * self.axial * np.abs(self.slope) + self.axial * self.motion.sliding
+        rubbed = self.jam * self.axial if self.pivoted is None else self.pivoted.friction
+        work = rubbed * np.abs(self.slope) + self.axial * self.motion.sliding
         work = work + self.motion.lock * self.axial * self.slope
         return FULL_TURN * np.mean(work + self.viscous * self.slope, axis=-1)
 

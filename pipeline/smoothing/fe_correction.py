@@ -323,7 +323,7 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
     left : pairs         shares of pressure limit and line load of the guides; see `softening`
     """
     guides, contact, machine = cycle.guides, cycle.surface, cycle.machine
-    worst, friction = cycle.parts.friction.greatest, machine.friction.greatest
+    worst, friction = cycle.parts.friction.greatest, machine.guide_friction.greatest
     (line_a, line_b), (push_a, push_b) = cycle.guide_lines, cycle.guide_pushes
     surge, spacing = cycle.parts.surge_force, machine.guides.spacing
     of_guides = _Statics.of(cycle.loads, spacing, (guides.statics_a, guides.statics_b))

@@ -22,7 +22,6 @@ from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solved_cam import numbers_in
 from camwright.pipeline.engine.cylinder import CylinderEngine
-from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.smoothing.allowables import ratings_of
 from camwright.pipeline.smoothing.objective import KEYS, Objective, objective_of
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
@@ -167,7 +166,7 @@ def _scenarios(case: Case, machine: Machine) -> list[Scenario]:
     )
     if not case.smoothing.corners:
         return [nominal]
-    return [nominal, *_corners(case, nominal, machine.friction)]
+    return [nominal, *_corners(case, nominal, machine)]
 
 
 def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
@@ -203,17 +202,17 @@ def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
     return scenarios
 
 
-def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Scenario]:
+def _corners(case: Case, nominal: Scenario, machine: Machine) -> list[Scenario]:
     """Scenarios at all combinations of the tolerances of spring rate, preload and friction; those
     of mass and phase one at a time.
     """
-    spring, tolerances = case.spring, case.tolerances
+    spring, tolerances, friction = case.spring, case.tolerances, machine.friction
     # Both guides share their lubrication.
     frictions = dict.fromkeys((friction.least, friction.greatest))
     ends = list(product(_ends(spring.rate_tolerance), _ends(spring.preload_tolerance), frictions))
     corners = [
         replace(
-            nominal.at({"guides.a.friction": mu[0], "guides.b.friction": mu[1]}),
+            nominal.at(dict(zip(machine.friction_keys, mu, strict=True))),
             corner=number,
             name=f"{nominal.name}, k x {rate:g}, P x {preload:g}, mu {mu[0]:g} and {mu[1]:g}",
             rate_factor=rate,
@@ -222,9 +221,14 @@ def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Sce
         for number, (rate, preload, mu) in enumerate(ends, 1)
         if (rate, preload, mu) != (1.0, 1.0, friction.nominal)
     ]
+    masses = {
+        key: mass
+        for key in ("follower.mass", "follower.pivot.swinging_mass")
+        if (mass := nominal.numbers.get(key)) is not None
+    }
     single = [
         replace(
-            nominal.at({"follower.mass": share * nominal.numbers["follower.mass"]}),
+            nominal.at({key: share * mass for key, mass in masses.items()}),
             name=f"{nominal.name}, m x {share:g}",
         )
         for share in _ends(tolerances.mass)

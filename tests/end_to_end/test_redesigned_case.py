@@ -72,7 +72,7 @@ def test_cam_under_an_arm_keeps_every_limit_at_its_corners(tmp_path):
     open_or_failing = {each["id"] for each in final.checks if each["status"] != "pass"}
     assert not any(each["must_have"] for each in final.checks if each["id"] in open_or_failing)
     assert summary["verdict"] == "pass", summary["binding"]
-    assert case.scope.not_covered == ("arm", "guides", "stem")
+    assert case.scope.without == ("guides", "stem")
     checks = {each["id"]: each for each in final.checks}
     assert checks["contact_torque"]["status"] == checks["contact_work"]["status"] == "pass"
     assert not {name for name in checks if name.startswith(("guide_", "jam_", "mesh_reaction"))}

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from camwright.geometry.arm_path import ArmContour
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
@@ -65,6 +66,16 @@ FACE = {
     "source": "f",
 }
 
+ARM = {"centre_distance": "70 mm", "length": "60 mm", "swing": "with", "source": "a"}
+_SEAT = {"length": "20 mm", "diameter": "10 mm", "friction": 0.1, "friction_max": 0.2}
+BUSH = _SEAT | {
+    "clearance": "0.1 mm", "material": "nylon", "pressure_limit": "5 MPa", "wall": "2.5 mm",
+    "pv_limit": "0.6 MPa m/s", "wear_rate": "1e-8 mm^3/N/m", "housing_resistance": "2 K/W",
+    "speed_limit": "1 m/s", "source": "maker",
+}  # fmt: skip
+NEEDLES = _SEAT | {"C": "10 kN", "C0": "12 kN", "source": "maker"}
+PIVOT = {"pin_material": "steel", "ambient_temperature": "40 degC", "source": "p"}
+
 
 # --- the case --------------------------------------------------------------------------------
 
@@ -99,6 +110,20 @@ def face_case() -> Case:
     tables = tomllib.loads(CASE_FILE.read_text())
     del tables["roller"]
     tables["follower"] |= {"kind": "flat", "face": FACE}
+    return case_of(tables)
+
+
+@cache
+def arm_case(bearing: str = "bush") -> Case:
+    """The same case on an arm, whose pivot has a bush or a needle_bearing, in place of a stem."""
+    tables = tomllib.loads(CASE_FILE.read_text())
+    del tables["guides"]
+    seat = {"bush": BUSH, "needle_bearing": NEEDLES}[bearing]
+    tables["follower"] = {
+        "kind": "oscillating", "mass": "175 g", "spring_share": 0.2, "arm": ARM,
+        "pivot": PIVOT | {bearing: seat},
+    }  # fmt: skip
+    tables["scope"] = {"not_covered": ["arm"], "reason": "made up"}
     return case_of(tables)
 
 
@@ -143,6 +168,12 @@ def face_contour() -> FlatFaceContour:
     return FlatFaceContour(FacePath(contour().pitch.lift, BASE))
 
 
+@cache
+def arm_contour() -> Contour:
+    """The same lift under the roller of an arm."""
+    return arm_case().contour(contour().pitch.lift)
+
+
 def ring() -> Contour:
     """A cam that lifts nothing."""
     return contour(stroke=0.0)
@@ -169,6 +200,7 @@ def undercut() -> Contour:
 def computed(shape: Contour) -> Cycle:
     """The cycle of a contour by closed forms, as the product computes it."""
     own = face_case() if isinstance(shape, FlatFaceContour) else case()
+    own = arm_case() if isinstance(shape, ArmContour) else own
     return solving.solution(own, shape, Tier.PREVIEW, torques={}, positions=POSITIONS).cycles[0]
 
 
@@ -220,6 +252,7 @@ def cycle(
             cam_torque=driven + 2.0 * rub * np.abs(slope),
             jam_index=0.2 + 0.1 * WAVE,
             jam_index_statics=0.25 + 0.1 * WAVE,
+            pivot_load=np.stack([300.0 * WAVE, 400.0 * WAVE]),
         ),
         "contact": replace(
             base.contact,
@@ -321,20 +354,25 @@ def _rolling(base: Cycle) -> RollingHistory:
 def _parts(base: Cycle) -> PartLoads:
     parts = base.parts
     heat = 10.0 * np.abs(base.loads.velocity)  # of the 10 N in each guide
-    guides = base.machine.guides
-    hot_a, hot_b = (
-        heat
-        / (heat.mean() or 1.0)
-        * (330.0 - guides.ambient_temperature)
-        / thermal_resistance(guide)
-        for _, guide in guides.both
-    )  # of bushes at 330 K
+    guides, pivot = base.machine.guides, base.machine.pivot
+
+    def hot(place: Any, bush: Any) -> np.ndarray:
+        """Heat of a bush at 330 K."""
+        power = (330.0 - place.ambient_temperature) / thermal_resistance(bush)
+        return heat / (heat.mean() or 1.0) * power
+
+    hot_a, hot_b = (heat, heat) if pivot else (hot(guides, each) for _, each in guides.both)
+    speed = np.abs(base.loads.velocity)
+    rubs = (
+        np.divide(hot(pivot, pivot.bush), speed, out=0.0 * speed, where=speed > 0) if pivot else 0.0
+    )
     still = np.zeros(POSITIONS)
     roughest = replace(
         parts.friction.greatest,
         jam_index=0.3 + 0.1 * WAVE,
         friction_force_a=still,
         friction_force_b=still,
+        pivot_friction=rubs + still,
     )
     return put(
         parts,
@@ -435,6 +473,12 @@ def changed_solution(base: Solution, **values: Any) -> Solution:
         for each in bare.cycles
     )
     return replace(bare, machines=tuple(states.values()), cycles=cycles)
+
+
+def arm_solution(bearing: str = "bush", **values: Any) -> Solution:
+    """The same on an arm, whose pivot has a bush or a needle_bearing."""
+    own = {"case": arm_case(bearing), "contour": arm_contour(), "cycles": (cycle(arm_contour()),)}
+    return solution(**(own | values))
 
 
 def of_load_cases(*cycles: Cycle) -> Solution:

@@ -93,7 +93,8 @@ def guides(a=None, b=None):
 
 def test_range_is_that_of_the_guides_else_that_of_the_tolerance():
     """0.04 within 20 % is 0.032 to 0.048; guide B states 0.15 to 0.25 itself."""
-    found = FrictionRange.of(guides(b={"friction_min": 0.15, "friction_max": 0.25}), 0.2)
+    pair = guides(b={"friction_min": 0.15, "friction_max": 0.25})
+    found = FrictionRange.of(pair.a, pair.b, 0.2)
     assert found.nominal == NOMINAL
     assert found.least == pytest.approx((0.032, 0.15), rel=1e-12)
     assert found.greatest == pytest.approx((0.048, 0.25), rel=1e-12)

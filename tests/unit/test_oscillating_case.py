@@ -167,8 +167,6 @@ def test_the_sign_off_leaves_out_arm_and_pivot_alone():
 
 
 @pytest.mark.parametrize(("old", "new", "message"), [
-    ('not_covered = ["arm"]', 'not_covered = ["gear"]',
-     'scope.not_covered = gear, must be with "pivot"'),
     ('swing = "with"', 'swing = "with"\nstart_angle = "30 deg"',
      "follower.arm.start_angle = 30 deg, must be left out with cam.prime_radius"),
     ('swing = "with"', 'swing = "with"\ninertia = "0.011 kg m^2"',

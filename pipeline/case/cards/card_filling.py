@@ -163,6 +163,7 @@ def _places(case: Tables) -> Iterator[tuple[str, str, Tables]]:
         },
         "guides.a": "bushes",
         "guides.b": "bushes",
+        "follower.pivot.bush": "bushes",
         "lubricant": "oils",
         "spring.design": "wires",
         "spring.gas": "gas_springs",
@@ -170,7 +171,7 @@ def _places(case: Tables) -> Iterator[tuple[str, str, Tables]]:
     }
     for field, kind in kinds.items():
         table: TomlValue | None = case
-        for part in field.split(".", 1):
+        for part in field.split(".", 1 if field.startswith("materials.") else -1):
             table = table.get(part) if isinstance(table, dict) else None
         if isinstance(table, dict):
             yield field, kind, table

@@ -1,0 +1,256 @@
+"""Forces on an oscillating arm: moments about its pivot, the reaction there, and its friction.
+
+Vectors are along the travel of the reference point, outwards, and across it, clockwise from that,
+as the axial and the side force of the contact. All functions take arrays (..., n), real or complex.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from camwright.geometry.arm_path import Arm
+from camwright.geometry.arrays import Array, Value
+from camwright.geometry.pitch_curve import magnitude
+from camwright.pipeline.base.external_force import STANDARD_GRAVITY
+
+_QUARTER_TURN = 0.5 * np.pi
+_LEAST_FORCE = 1.0  # N, of a contact force that a jam index is over
+
+
+class Pull(NamedTuple):
+    """Force on the arm along and across the travel of its reference point, N."""
+
+    along: Array
+    across: Array
+
+
+class Slides(Protocol):
+    """Forces of a contact over its axial force, see `Motion` and `Slide`."""
+
+    @property
+    def pressing(self) -> Value: ...
+    @property
+    def side(self) -> Array: ...
+    @property
+    def lock(self) -> Value: ...
+
+
+class Pressed(NamedTuple):
+    """Contact force along and across the travel over the axial force of the contact.
+
+    share: of the axial force that the friction of a face leaves.
+    """
+
+    along: Array
+    across: Array
+    share: Value = 1.0
+
+    @classmethod
+    def of(cls, contact: Slides) -> Pressed:
+        """From the motion of the follower, or the forces of its contact."""
+        across = np.asarray(contact.side)
+        return cls(contact.pressing + 0.0 * across, across, 1.0 - contact.lock)
+
+    def total(self, axial: Array, pull: Pull) -> tuple[Array, Array]:
+        """Sum of the contact force, of an axial force, and a pull, N: the load of the pivot."""
+        return self.along * axial + pull.along, self.across * axial + pull.across
+
+
+class PivotBalance(NamedTuple):
+    """Equilibrium of the moments about the pivot, with its friction, (..., n), N.
+
+    axial: axial force of the contact; below 0 where the arm locks, or the cam would have to pull;
+    load: of the pivot, magnitude; friction: its moment over the length of the arm; jam_index: the
+    friction over the axial force, of at least 1 N.
+    """
+
+    axial: Array
+    load: Array
+    friction: Array
+    jam_index: Array
+
+
+@dataclass(frozen=True)
+class ArmPivot:
+    """Pivot of an arm with what acts about it; scalars or arrays (..., 1).
+
+    Parameters
+    ----------
+    length : float          l, pivot to the reference point, m
+    sense : float           w of the arm, see `Arm`
+    start : float           arm angle at zero lift, rad
+    radius : float          of the pin, m
+    friction : float        coefficient
+    mass : float            of all that swings, kg
+    mass_distance, mass_angle : float   of its centre, m from the pivot and rad from the arm,
+                            positive in the outward swing
+    gravity_angle : float   from the upward vertical to the line from the cam axis to the pivot, in
+                            the sense of rotation of the cam, rad; None: without weight
+    load_distance, load_angle : float   likewise, of the point at which the external force acts
+                            square to the line from the pivot
+    load_moment : float     external moment towards the cam, N m
+
+    References
+    ----------
+    Rothbart, Cam Design Handbook (2004), ch. 6: moments about the pivot of an oscillating follower.
+    """
+
+    length: Value
+    sense: float
+    start: Value
+    radius: Value
+    friction: Value
+    mass: Value
+    mass_distance: Value
+    mass_angle: Value
+    gravity_angle: Value | None
+    load_distance: Value
+    load_angle: Value
+    load_moment: Value
+
+    def applied(self, external: Value, travel: Value) -> Array:
+        """Weight, external force and moment reduced to the reference point, N, towards the cam.
+
+        Parameters
+        ----------
+        external : array (..., n)   external force, N
+        travel : array (..., n)     direction of travel, rad
+        """
+        moment = external * self.load_distance + self.load_moment
+        if self.gravity_angle is not None:
+            lever = self.mass_distance * np.cos(self._from_vertical(travel, self.mass_angle))
+            moment = moment + self.mass * STANDARD_GRAVITY * lever
+        return np.asarray(moment / self.length)
+
+    def travel(self, lift: Value) -> Value:
+        """Direction of travel at a lift, m, rad; see `Arm.travel`."""
+        return self.sense * (_QUARTER_TURN - self.start - lift / self.length)
+
+    def _from_vertical(self, travel: Value, beyond: Value) -> Value:
+        """Angle of the travel of a point beside the arm from the upward vertical, rad."""
+        vertical = 0.0 if self.gravity_angle is None else self.gravity_angle
+        return travel - self.sense * beyond - vertical
+
+    def pull(
+        self, spring: Value, external: Value, travel: Value, velocity: Value, acceleration: Value
+    ) -> Pull:
+        """All forces on the arm but those of contact and pivot, that of its inertia included.
+
+        The spring pulls at the reference point against its travel.
+
+        Parameters
+        ----------
+        spring, external : array (..., n)   forces, N
+        velocity, acceleration : array (..., n)   of the reference point, m/s and m/s2
+        """
+        cos, sin = np.cos(self.load_angle), self.sense * np.sin(self.load_angle)
+        along, across = -spring - external * cos, -external * sin
+        cos, sin = np.cos(self.mass_angle), np.sin(self.mass_angle)
+        radius = self.mass * self.mass_distance
+        turning, outward = acceleration / self.length, (velocity / self.length) ** 2
+        along = along - radius * (turning * cos - outward * sin)
+        across = across - self.sense * radius * (turning * sin + outward * cos)
+        if self.gravity_angle is not None:
+            weight = self.mass * STANDARD_GRAVITY
+            down = self._from_vertical(travel, 0.0)
+            along, across = along - weight * np.cos(down), across - weight * np.sin(down)
+        return Pull(along, across)
+
+    def balanced(
+        self, required: Array, pressed: Pressed, pull: Pull, direction: Value
+    ) -> PivotBalance:
+        """Axial force with implicit friction of the pivot.
+
+        With F the force without friction, g the contact force over the axial one, e the share that
+        the friction of a face leaves, Q the pull and k = mu r/l the axial force x fulfils
+        e x - F = d k |x g + Q|: squared, a quadratic equation whose root is on the side of F to
+        which the friction acts.
+
+        Parameters
+        ----------
+        required : array (..., n)    F, N
+        direction : array (..., n)   d, 1 on the rise, -1 on the return, 0 at rest
+        """
+        k = self.friction * self.radius / self.length
+        signed, left = direction * k, pressed.share
+        along, across = pressed.total(required, Pull(left * pull.along, left * pull.across))
+        twist = pressed.along * pull.across - pressed.across * pull.along
+        root = along**2 + across**2 - (signed * twist) ** 2
+        root = np.sqrt(np.where(np.real(root) > 0.0, root, 0.0 * root))
+        inwards = pressed.along * pull.along + pressed.across * pull.across
+        middle = left * required + signed**2 * inwards
+        size = pressed.along**2 + pressed.across**2
+        axial = (middle + signed * root) / (left**2 - signed**2 * size)
+        load = _size(pressed.total(axial, pull))
+        push = magnitude(axial)
+        held = np.where(np.real(push) < _LEAST_FORCE, _LEAST_FORCE, push)
+        return PivotBalance(axial, load, k * load, k * load / held)
+
+    def clipped(
+        self, required: Array, pressed: Pressed, pull: Pull, direction: Array, least: float
+    ) -> PivotBalance:
+        """As `balanced`, with the bounds of `Loads`; real arrays (..., n).
+
+        Without contact where no positive force is required, or the friction holds the arm off the
+        cam; of an arm that locks the required force over the `least` share.
+        """
+        free = self.balanced(required, pressed, pull, direction)
+        most, rises = required / least, direction > 0.0
+        # the root of an arm that locks is negative
+        locks = (free.axial < 0.0) & (rises | (pressed.share <= 0.0))
+        axial = np.where(locks | (free.axial > most), most, np.maximum(free.axial, 0.0))
+        axial = np.where(required > 0.0, axial, 0.0)
+        rubbed = np.abs(pressed.share * axial - required)
+        friction = np.where((axial > 0.0) & (direction != 0.0), rubbed, 0.0)
+        return PivotBalance(axial, _size(pressed.total(axial, pull)), friction, free.jam_index)
+
+
+def _size(vector: tuple[Array, Array]) -> Array:
+    """Size of a vector (..., n), real or complex."""
+    square = vector[0] ** 2 + vector[1] ** 2
+    some = np.real(square) > 0.0
+    return np.where(some, np.sqrt(np.where(some, square, 1.0)), 0.0 * square)
+
+
+FRICTION = "follower.pivot.friction"
+"""Key of the friction of the pivot, of a bush or a needle bearing."""
+
+
+def arm_pivot(at: Callable[[str], Value | None], sense: float) -> ArmPivot | None:
+    """Pivot from numbers by dotted key; None without its friction: it is not described.
+
+    Parameters
+    ----------
+    at : callable   dotted key -> number, SI; None where the case omits it
+    """
+
+    def stated(key: str, default: Value) -> Value:
+        value = at(key)
+        return default if value is None else value
+
+    def number(key: str) -> Value:
+        return stated(key, np.nan)
+
+    friction = at(FRICTION)
+    if friction is None:
+        return None
+    length = number("follower.arm.length")
+    arm = Arm(number("follower.arm.centre_distance"), length, sense)
+    return ArmPivot(
+        length=length,
+        sense=sense,
+        start=arm.angle(number("cam.prime_radius")),
+        radius=0.5 * number("follower.pivot.diameter"),
+        friction=friction,
+        mass=stated("follower.pivot.swinging_mass", number("follower.mass")),
+        mass_distance=stated("follower.pivot.mass_distance", length),
+        mass_angle=stated("follower.pivot.mass_angle", 0.0),
+        gravity_angle=at("follower.pivot.gravity_angle"),
+        load_distance=stated("follower.pivot.load_distance", length),
+        load_angle=stated("follower.pivot.load_angle", 0.0),
+        load_moment=stated("follower.pivot.load_moment", 0.0),
+    )
