@@ -54,6 +54,7 @@ from camwright.pipeline.follower.follower_stiffness import (
     shaft_compliance,
     stem_compliance_along,
 )
+from camwright.pipeline.follower.follower_tilt import ArmTilt, FollowerTilt, StemTilt
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.pivot import Pivot
@@ -235,6 +236,12 @@ class Machine(Displayed):
     def arm_bar(self) -> ArmBar | None:
         """Arm as a beam; None of a stem, and of an arm that is not described."""
         return ArmBar.of(self.arm, self.follower, self.mass)
+
+    @property
+    def tilting(self) -> FollowerTilt:
+        """Tilt of the follower across the plane of the cam."""
+        bar = self.arm_bar
+        return StemTilt(self.stem, self.guides) if bar is None else ArmTilt(bar, None)
 
     @property
     def contact_width(self) -> float:

@@ -27,6 +27,7 @@ from camwright.pipeline.checks.check import (
 from camwright.pipeline.checks.demands import NORMAL_FORCE
 from camwright.pipeline.checks.extremes import Extreme, cam_of, cycle_of, row_of, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
@@ -251,6 +252,7 @@ def _with_section(demand: Demand, solution: Solution) -> Demand:
     method="bending, torsion and force along the arm at every section, with the fatigue notch"
     " factors",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     part="arm",
     kept_as="von Mises stress of the arm",
     formula="sqrt((K_f (M/W + F/A + L/W_y))^2 + 3 (K_f T/W_t)^2) <= R_p / S; K_f: fatigue notch"
@@ -274,7 +276,7 @@ def _with_section(demand: Demand, solution: Solution) -> Demand:
     "angles",
     allowed=_yield_allowed,
     remark=_with_section,
-    deviation=0.02,
+    deviation=0.005,
     bounded="line",
     kept=Kept(unit="MPa"),
 )

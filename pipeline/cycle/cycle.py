@@ -499,7 +499,8 @@ class Cycle(Tabled):
 def turn_of_line(cycle: Cycle) -> TurnOfLine:
     """Inputs of the pressure along the line of contact of a cycle."""
     force = cycle.loads.normal_force
-    return TurnOfLine(cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt)
+    turn = cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt
+    return TurnOfLine(*turn, np.zeros(force.shape))
 
 
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:

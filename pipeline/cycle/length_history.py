@@ -43,6 +43,7 @@ from camwright.pipeline.cycle.line_tilt import (
     line_tilt,
     rigid_moment,
 )
+from camwright.pipeline.follower.follower_tilt import TiltingLoads
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 from camwright.pipeline.follower.shaft_strength import slope_of
 
@@ -180,7 +181,7 @@ class TurnOfLine(NamedTuple):
     """Inputs of the pressure along the line over one turn.
 
     force (n,): normal force, N; shaft (n,): slope of the camshaft at the cam, rad, as of
-    `Cycle.shaft_tilt`.
+    `Cycle.shaft_tilt`; pivot (n,): load of an arm on its pivot, N, 0 without one.
     """
 
     machine: Machine
@@ -188,6 +189,7 @@ class TurnOfLine(NamedTuple):
     force: Array
     guides: GuideReactions
     shaft: Array
+    pivot: Array
 
     @property
     def rows(self) -> NDArray[np.intp]:
@@ -206,7 +208,8 @@ class TurnOfLine(NamedTuple):
             base_radius=machine.base_radius,
             clearance=machine.limits[ROLLER_CLEARANCE],
             bearing_length=None if follower.slides else follower.line_width,
-            guides=machine.guides.tilt_max,
+            guides=machine.tilting.within(machine.guides.spacing),
+            twist=machine.tilting.turned(self.pressed, machine.stem_offset),
         )
 
     @property
@@ -223,8 +226,20 @@ class TurnOfLine(NamedTuple):
 
     @property
     def held(self) -> Array:
-        """Couple (n,), N m, that friction of the guides holds."""
-        return held_couple(self.machine, self.guides)
+        """Couple (n,), N m, that friction of the guides or the load of a pivot holds."""
+        return self.machine.tilting.held(self.pressed)
+
+    @property
+    def pressed(self) -> TiltingLoads:
+        """Loads against which the follower tilts."""
+        machine, guides = self.machine, self.guides
+        return TiltingLoads(
+            self.force,
+            (guides.rubbing_load_a, guides.rubbing_load_b),
+            machine.guide_friction.greatest,
+            self.pivot,
+            machine.guides.spacing,
+        )
 
     @property
     def aside(self) -> Array:
@@ -246,7 +261,7 @@ class TurnOfLine(NamedTuple):
 
     @property
     def tilt_compliance(self) -> float:
-        """Slope of stem and camshaft together under the moment of the contact, rad/(N m)."""
+        """Slope of stem or arm and camshaft together under the moment of the contact, rad/(N m)."""
         machine, guides = self.machine, self.machine.guides
         reach = machine.overhang_at_max_lift
         return float(moment_compliance(machine, reach, guides.spacing))
@@ -369,7 +384,7 @@ def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> F
 
 
 def moment_compliance(machine: Machine, overhang: Value, spacing: Value) -> Value:
-    """Slope of stem and camshaft per moment of the contact (...), rad/(N m).
+    """Slope of stem or arm and camshaft per moment of the contact (...), rad/(N m).
 
     Parameters
     ----------
@@ -378,7 +393,7 @@ def moment_compliance(machine: Machine, overhang: Value, spacing: Value) -> Valu
     """
     shaft = slope_of(machine.camshaft)
     yields = 0.0 if shaft is None else shaft.couple
-    return machine.guides.tilt_compliance(machine.stem, overhang, spacing) + yields
+    return machine.tilting.compliance(overhang, spacing) + yields
 
 
 class TiltedPair(Protocol):
@@ -448,13 +463,6 @@ def factor_at_pressure(pair: FinitePair, pressure: float, mean_length: float) ->
     corner = pair.has_singular_end
     flat = pair.contact_length
     return float(signed_pressure(edges, line, flat, mean_length, has_corner=corner).value[0])
-
-
-def held_couple(machine: Machine, guides: GuideReactions) -> Array:
-    """Couple (n,), N m, that guide friction can hold in the plane of stem and cam axis."""
-    friction_a, friction_b = machine.guide_friction.greatest
-    held = np.minimum(friction_a * guides.rubbing_load_a, friction_b * guides.rubbing_load_b)
-    return np.asarray(held * machine.guides.spacing)
 
 
 class AxialPressures(Protocol):

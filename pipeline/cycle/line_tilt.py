@@ -17,11 +17,13 @@ class LineTilt:
 
     shaft (n,): slope of the camshaft at the cam, signed; parallelism: of the axes of cam and
     follower as made; run_out: of the cam on its shaft; roller: of the roller in the clearance of
-    its bearing; guides: of the stem in the clearances of its guides. All but that of the shaft have
-    either sign, arrays that broadcast against it.
+    its bearing; guides: of the stem in the clearances of its guides, or of an arm in that of its
+    pivot; twist: of an arm under a contact beside its middle. All but that of the shaft have either
+    sign, arrays that broadcast against it.
 
-    A stem aligns itself with the cam within the clearances of its guides, up to their friction.
-    What cam and follower are out of parallel beyond these clearances is forced on the contact.
+    A stem aligns itself with the cam within the clearances of its guides, up to their friction, an
+    arm up to the couple of its load on the pivot. What cam and follower are out of parallel beyond
+    these clearances is forced on the contact.
     """
 
     shaft: Array
@@ -29,14 +31,15 @@ class LineTilt:
     run_out: Value
     roller: Value
     guides: Value
+    twist: Value = 0.0
 
     def __post_init__(self) -> None:
         freeze(self, shaft=self.shaft)
 
     @property
     def imposed(self) -> Array:
-        """Greatest angle (n,) between cam and guides: shaft slope and worst tolerances."""
-        return np.asarray(np.abs(self.shaft) + self.parallelism + self.run_out)
+        """Greatest angle (n,) between cam and guides: shaft slope, worst tolerances, twist."""
+        return np.asarray(np.abs(self.shaft) + self.parallelism + self.run_out + self.twist)
 
     @property
     def forced(self) -> Array:
@@ -55,6 +58,8 @@ class LineTilt:
         yield "run-out", float(self.run_out)
         yield "guide clearance", float(self.guides)
         yield "roller bearing", float(self.roller)
+        if np.any(self.twist):
+            yield "twist of the arm", float(np.broadcast_to(self.twist, self.shaft.shape)[place])
 
     def sentence(self, place: int) -> str:
         """Tilt and its parts at one angle, in words."""
@@ -76,6 +81,7 @@ def line_tilt(
     clearance: Value,
     bearing_length: Value | None,
     guides: Value,
+    twist: Value,
 ) -> LineTilt:
     """Tilt of a line of contact from shaft slope and tolerances.
 
@@ -87,10 +93,11 @@ def line_tilt(
     base_radius : float        m
     clearance : float          radial internal clearance of the roller's bearing, m: full play
     bearing_length : float     m; None: a follower without a bearing
-    guides : float             tilt of the stem in its guides, rad
+    guides : float             tilt of the stem in its guides, or of an arm in its pivot, rad
+    twist : float or array     of an arm under a contact beside its middle, rad
     """
     roller = 0.0 if bearing_length is None else clearance / bearing_length
-    return LineTilt(shaft, parallelism, run_out / (2.0 * base_radius), roller, guides)
+    return LineTilt(shaft, parallelism, run_out / (2.0 * base_radius), roller, guides, twist)
 
 
 def rigid_moment(forced: Array, compliance: Value, held: Array, most: Array) -> Array:

@@ -34,6 +34,7 @@ In the order of the calculation:
 | `shaft_strength`        | camshaft sections, bending; gear teeth     | Pa; safety, -; rad    |
 | `arm_beam`              | arm as a beam: sections, stress, bending   | M, N m; Pa; m/N       |
 | `pivot_bush`            | pin tilted in the bush of a pivot          | rad; N/m              |
+| `follower_tilt`         | tilt of stem or arm across the cam         | rad; rad/(N m)        |
 | `follower_stiffness`    | bearing, pin, fork, stem, shaft in series  | m/N; N/m              |
 
 A further kind of follower is a class with the attributes of `follower_kind.FollowerKind`, a contour

@@ -32,6 +32,7 @@ from camwright.pipeline.cycle.line_tilt import (
     rigid_moment,
 )
 from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.follower.follower_tilt import TiltingLoads
 
 # Keys that the contact of finite length depends on, and the number of its different shapes up to
 # which each is solved.
@@ -76,13 +77,41 @@ class LineFactors(NamedTuple):
     arm: Array
 
 
+class FollowerTurning(NamedTuple):
+    """What turns the followers of designs across the plane of the cam, arrays (m, n).
+
+    shaft: slope of the camshaft at the cam, rad, as of `LineTilt`; held: couple that the follower
+    holds without a tilt, N m; twist: of an arm under a contact beside its middle, rad
+    """
+
+    shaft: Array
+    held: Array
+    twist: Array
+
+
+def turning_of(
+    designs: DesignValues, shaft: Array, force: Array, rubbing: tuple[Array, Array], pivot: Array
+) -> FollowerTurning:
+    """What turns the followers of designs.
+
+    Parameters
+    ----------
+    shaft : array (m, n)          slope of the camshaft at the cam, rad
+    force, pivot : array (m, n)   normal force, and load of an arm on its pivot, N
+    rubbing : two arrays (m, n)   normal loads of guides A and B, N
+    """
+    on_a, on_b = (designs.numbers[f"guides.{side}.friction_greatest"] for side in "ab")
+    loads = TiltingLoads(force, rubbing, (on_a, on_b), pivot, _spacing(designs))
+    follower = designs.machine.tilting
+    return FollowerTurning(shaft, follower.held(loads), follower.turned(loads, designs.stem_offset))
+
+
 def factors_of(
     designs: DesignValues,
     plane: Array,
     force: Array,
     radius: Array,
-    rubbing: tuple[Array, Array],
-    shaft: Array,
+    turning: FollowerTurning,
 ) -> LineFactors | None:
     """Axial pressure factors of the designs; 1 without contact, NaN for no closed contour.
 
@@ -95,16 +124,15 @@ def factors_of(
     ----------
     plane : array (m, n)           contact pressure of plane strain, Pa
     force, radius : array (m, n)   normal force, N; relative radius, m
-    rubbing : two arrays (m, n)    normal loads of guides A and B, N
-    shaft : array (m, n)           slope of the camshaft at the cam, rad, as of `LineTilt`
+    turning : FollowerTurning
     """
     varied, shapes, member = _shapes(designs)
     if not designs.machine.finite_pairs or len(shapes) > _SHAPES:
         return None
-    tilt = _tilt(designs, shaft)
+    tilt = _tilt(designs, turning)
     greatest, forced, yields, couple = (
         np.broadcast_to(each, force.shape)
-        for each in (tilt.greatest, tilt.forced, _yields(designs), _held_couple(designs, rubbing))
+        for each in (tilt.greatest, tilt.forced, _yields(designs), turning.held)
     )
     whole = LineFactors(np.ones(force.shape), np.ones(force.shape), np.zeros(force.shape))
     contact = (force > 0) & np.isfinite(radius)
@@ -175,15 +203,14 @@ def _between(
 def moment_on_follower(
     designs: DesignValues,
     force: Array,
-    rubbing: tuple[Array, Array],
-    shaft: Array,
+    turning: FollowerTurning,
     factors: LineFactors | None,
 ) -> Array:
     """Moment (m, n) of the contact about the middle of the follower, N m; see `factors_of`.
 
     factors : LineFactors   None: the case lacks an end; an upper bound
     """
-    forced, held = _tilt(designs, shaft).forced, _held_couple(designs, rubbing)
+    forced, held = _tilt(designs, turning).forced, turning.held
     if factors is None:
         most = GREATEST_MOMENT * force * designs.numbers["contact.width"]
         line = rigid_moment(forced, _yields(designs), held, most)
@@ -192,9 +219,9 @@ def moment_on_follower(
     return follower_moment(line, forced, held, force * designs.stem_offset)
 
 
-def forced_part(designs: DesignValues, shaft: Array, moment: Array) -> Array:
+def forced_part(designs: DesignValues, turning: FollowerTurning, moment: Array) -> Array:
     """Part (m, n) of the moment about the follower that bends the stem, N m."""
-    return np.where(_tilt(designs, shaft).forced > 0.0, moment, 0.0)
+    return np.where(_tilt(designs, turning).forced > 0.0, moment, 0.0)
 
 
 def has_many_shapes(designs: DesignValues) -> bool:
@@ -223,22 +250,21 @@ def _of_shape(machine: Machine, values: Mapping[str, float]) -> Machine:
     return replace(machine, cam=cam, follower=follower)
 
 
-def _tilt(designs: DesignValues, shaft: Array) -> LineTilt:
-    """Tilt of the line of contact (m, n), rad; see `TurnOfLine.tilt`. shaft : slope of the
-    camshaft, rad.
-    """
+def _tilt(designs: DesignValues, turning: FollowerTurning) -> LineTilt:
+    """Tilt of the line of contact (m, n), rad; see `TurnOfLine.tilt`."""
     machine = designs.machine
     follower = machine.follower
     ends = 0.0 if follower.end is None else 2.0 * follower.end.size
     width = None if follower.slides else designs.value(follower.width_key) - ends
     return line_tilt(
-        shaft,
+        turning.shaft,
         parallelism=designs.value(f"limits.{AXIS_PARALLELISM.id}"),
         run_out=designs.value(f"limits.{CAM_RUN_OUT.id}"),
         base_radius=designs.value("cam.prime_radius") - designs.numbers["follower.surface"],
         clearance=designs.value(f"limits.{ROLLER_CLEARANCE.id}"),
         bearing_length=width,
-        guides=machine.guides.tilt_at(_spacing(designs)),
+        guides=machine.tilting.within(_spacing(designs)),
+        twist=turning.twist,
     )
 
 
@@ -246,16 +272,6 @@ def _yields(designs: DesignValues) -> Array:
     """Slope of stem and camshaft under the moment of the contact (m, 1), rad/(N m)."""
     overhang = designs.value("follower.overhang_at_max_lift")
     return np.asarray(moment_compliance(designs.machine, overhang, _spacing(designs)))
-
-
-def _held_couple(designs: DesignValues, rubbing: tuple[Array, Array]) -> Array:
-    """Couple (m, n), N m, that the friction of the guides can hold; `rubbing`: normal loads of
-    guides A and B (m, n), N.
-    """
-    load_a, load_b = rubbing
-    on_a, on_b = (designs.numbers[f"guides.{side}.friction_greatest"] for side in "ab")
-    held = np.minimum(on_a * load_a, on_b * load_b)
-    return np.asarray(held * _spacing(designs))
 
 
 def _spacing(designs: DesignValues) -> Array:

@@ -26,11 +26,13 @@ from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany, b
 from camwright.pipeline.follower.pivot_forces import ArmPivot, PivotBalance, Pressed, Pull
 from camwright.pipeline.screening.design_lengths import (
     DesignValues,
+    FollowerTurning,
     LineFactors,
     factors_of,
     forced_part,
     has_many_shapes,
     moment_on_follower,
+    turning_of,
 )
 
 
@@ -177,7 +179,7 @@ class ScreenedCam(LoadedCam):
         stem.
         """
         guides, block = self.guides, self.block
-        couple = forced_part(block, self.shaft_tilt, self.follower_moment)
+        couple = forced_part(block, self._turning, self.follower_moment)
         couple = couple * np.cos(self.motion.pressure_angle)
         if not couple.any():
             return OfGuides(guides.bearing_a, guides.bearing_b)
@@ -193,9 +195,12 @@ class ScreenedCam(LoadedCam):
         """With too many shapes of contact that of a level line, see `has_many_shapes`."""
         if has_many_shapes(self.block):
             return super().follower_moment
-        return moment_on_follower(
-            self.block, self.normal, self.rubbing, self.shaft_tilt, self._factors
-        )
+        return moment_on_follower(self.block, self.normal, self._turning, self._factors)
+
+    @cached_property
+    def _turning(self) -> FollowerTurning:
+        pivot = np.zeros(self.normal.shape)
+        return turning_of(self.block, self.shaft_tilt, self.normal, self.rubbing, pivot)
 
     @cached_property
     def ends(self) -> LoadEnds:
@@ -225,7 +230,7 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def _factors(self) -> LineFactors | None:
-        loads = self.normal, self.block.relative_radius, self.rubbing, self.shaft_tilt
+        loads = self.normal, self.block.relative_radius, self._turning
         return factors_of(self.block, self.p0_line, *loads)
 
     @property

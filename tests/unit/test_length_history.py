@@ -21,7 +21,6 @@ from camwright.pipeline.cycle.length_history import (
     ContactLoads,
     FactorRange,
     factor_range,
-    held_couple,
     length_histories,
     raised_load,
     worst_of,
@@ -77,7 +76,7 @@ def test_moment_is_the_lesser_of_tilt_and_friction():
         *(mu * load for mu, load in zip(made.machine.friction.greatest, loads, strict=True))
     )
     couple = held * guides.spacing + 0.3e-3 * force
-    np.testing.assert_allclose(held_couple(made.machine, made.guides), held * guides.spacing)
+    np.testing.assert_allclose(turn_of_line(made).held, held * guides.spacing)
     assert (made.length.moment <= couple * (1.0 + 1e-9)).all()
     # At a dwell of the side load the offset alone holds the tilt.
     light = int(np.argmin(held / force))

@@ -19,6 +19,7 @@ from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.arm_strength import arm_forces, arm_yield, bar_of
 from camwright.pipeline.checks.part_strength import moving_masses
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.cycle.cycle import turn_of_line
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.arm_beam import ArmBar, torsion_of_rectangle
@@ -26,6 +27,7 @@ from camwright.pipeline.follower.guide_contact import BearingLine, settle
 from camwright.pipeline.follower.guide_reactions import Guide, lobatto
 from camwright.pipeline.follower.pivot_bush import pressed_bush
 from camwright.pipeline.follower.roller_parts import Fork, Pin
+from camwright.pipeline.follower.shaft_strength import slope_of
 from camwright.pipeline.preview import preview_case
 
 STEEL = Material(
@@ -306,6 +308,27 @@ def test_an_arm_beside_its_roller_is_twisted():
     np.testing.assert_allclose(
         off.sideways - plain.sideways, 0.01 * np.abs(forces.along), rtol=1e-7, atol=1e-9
     )
+
+
+@pytest.mark.parametrize("beside", [0.0, 0.008])
+def test_the_line_of_contact_is_tilted_by_the_twist_of_its_arm(beside):
+    """In place of a stem in guides: twist by the force beside the middle, and no clearance."""
+    solution = trial().solution
+    machine, cycle = solution.machine, solution.cycles[0]
+    arm = replace(machine.arm, plane_offset=beside)
+    turn = turn_of_line(cycle)._replace(machine=replace(machine, arm=arm))
+    bar = bar_of(solution.numbers)
+    beside += machine.stem_offset
+    twisted = bar.couple_compliance * beside * cycle.loads.normal_force
+    np.testing.assert_allclose(turn.tilt.twist, twisted, rtol=1e-12)
+    np.testing.assert_allclose(
+        turn.tilt.forced - np.abs(turn.shaft) - turn.tilt.parallelism - turn.tilt.run_out, twisted,
+        rtol=0, atol=1e-12,
+    )  # fmt: skip
+    yields = bar.couple_compliance + slope_of(machine.camshaft).couple
+    assert turn.tilt_compliance == pytest.approx(yields, rel=1e-12)
+    if twisted.any():
+        assert "twist of the arm" in turn.tilt.sentence(int(np.argmax(twisted)))
 
 
 # --- Demands ------------------------------------------------------------------------------------

@@ -1,0 +1,120 @@
+"""Tilt of a follower across the plane of the cam: of a stem in its guides, or of an arm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, Value
+from camwright.pipeline.follower.arm_beam import ArmBar
+from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
+from camwright.pipeline.follower.pivot_bush import pressed_bush
+from camwright.pipeline.follower.stem_beam import Stem
+
+
+class TiltingLoads(NamedTuple):
+    """Loads against which a follower tilts, arrays (..., n), N.
+
+    force: of the contact; rubbing, friction: normal loads of guides A and B and their greatest
+    coefficients; pivot: of the arm on its pivot, 0 without one; spacing: of the guides, m
+    """
+
+    force: Array
+    rubbing: tuple[Array, Array]
+    friction: tuple[Value, Value]
+    pivot: Array
+    spacing: Value
+
+
+class FollowerTilt(Protocol):
+    """Tilt of a follower in the plane of the contact normal and the cam axis."""
+
+    def within(self, spacing: Value) -> Value:
+        """Greatest tilt within the clearances (...), rad, at a spacing of the guides, m."""
+        ...
+
+    def compliance(self, overhang: Value, spacing: Value) -> Value:
+        """Slope under the moment of the contact (...), rad/(N m).
+
+        Parameters
+        ----------
+        overhang, spacing : float or array   of the stem at maximum lift, and of the guides, m
+        """
+        ...
+
+    def held(self, loads: TiltingLoads) -> Array:
+        """Greatest couple (...), N m, about the middle of the follower without a tilt."""
+        ...
+
+    def turned(self, loads: TiltingLoads, offset: Value) -> Array:
+        """Tilt (...), rad, by the contact force at an offset from the follower's middle, m."""
+        ...
+
+
+@dataclass(frozen=True)
+class StemTilt:
+    """Stem that aligns itself in the clearances of its guides, up to their friction."""
+
+    stem: Stem
+    guides: GuidePair
+
+    def within(self, spacing: Value) -> Value:
+        """See `FollowerTilt`."""
+        return self.guides.tilt_at(spacing)
+
+    def compliance(self, overhang: Value, spacing: Value) -> Value:
+        """See `FollowerTilt`."""
+        return self.guides.tilt_compliance(self.stem, overhang, spacing)
+
+    def held(self, loads: TiltingLoads) -> Array:
+        """Couple of the friction of both guides; see `FollowerTilt`."""
+        pairs = zip(loads.friction, loads.rubbing, strict=True)
+        on_a, on_b = (friction * load for friction, load in pairs)
+        return np.asarray(np.minimum(on_a, on_b) * loads.spacing)
+
+    def turned(self, loads: TiltingLoads, offset: Value) -> Array:  # noqa: ARG002
+        """Zero: it turns back within the clearances; see `FollowerTilt`."""
+        return np.zeros(loads.force.shape)
+
+
+@dataclass(frozen=True)
+class ArmTilt:
+    """Arm that its twist and the clearance of the bush in its pivot let tilt.
+
+    Its pivot stays flat on the pin up to the couple of its load at the end of the bush. A pivot
+    without a bush neither yields nor has clearance.
+    """
+
+    bar: ArmBar
+    bush: Guide | None
+
+    def within(self, spacing: Value) -> Value:
+        """Clearance over the length of the bush; see `FollowerTilt`."""
+        play = 0.0 if self.bush is None else self.bush.clearance / self.bush.length
+        return play + 0.0 * spacing
+
+    def compliance(self, overhang: Value, spacing: Value) -> Value:
+        """Twist of the arm, and of the pin on its bush; see `FollowerTilt`."""
+        slope = self.bar.couple_compliance
+        if self.bush is not None:
+            slope += 12.0 / (self.bush.foundation_modulus * self.bush.length**3)
+        return slope + 0.0 * (overhang + spacing)
+
+    def held(self, loads: TiltingLoads) -> Array:
+        """Load of the pivot at the end of the bush, and the force in the arm's own middle.
+
+        See `FollowerTilt`.
+        """
+        length = 0.0 if self.bush is None else self.bush.length
+        offset = self.bar.arm.plane_offset
+        return np.asarray(0.5 * length * loads.pivot + offset * np.maximum(loads.force, 0.0))
+
+    def turned(self, loads: TiltingLoads, offset: Value) -> Array:
+        """Twist of the arm, and tilt of the pin in its bush; see `FollowerTilt`."""
+        couple = np.maximum(loads.force, 0.0) * (offset + self.bar.arm.plane_offset)
+        twisted = self.bar.couple_compliance * couple
+        if self.bush is None:
+            return np.asarray(twisted)
+        return np.asarray(twisted + pressed_bush(self.bush, loads.pivot, couple).tilt)
