@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, rotation
 from camwright.geometry.figures import (
     SERIES,
     Curve,
@@ -246,7 +246,7 @@ def _roller_outline(turn: SheetTurn, at: int) -> Array | None:
 
 
 def _face_outline(turn: SheetTurn, at: int) -> Array | None:
-    """Closed rectangle (2, 5) of the face touching the contour at its row `at`, shifted by the
+    """Closed outline (2, n) of the face touching the contour at its row `at`, shifted by the
     contact offset at the maximum contact pressure, mm; None if its width or thickness is unknown.
     """
     c, place = turn.contour, turn.columns["face_contact_offset_mm"][turn.worst]
@@ -255,10 +255,19 @@ def _face_outline(turn: SheetTurn, at: int) -> Array | None:
         return None
     touch = np.array([c["contour_x_mm"][at], c["contour_y_mm"][at]])
     normal = np.array([c["normal_x"][at], c["normal_y"][at]])
+    radius, half = turn.length("follower", "face", "radius"), 0.5 * width
+    front = np.linspace(-half, half, 25)
+    sunk, high = 0.0 * front, 0.0
+    if radius is not None:  # turned about its centre by the pressure angle
+        angle = np.arcsin(place / radius)
+        normal = rotation(angle) @ normal
+        sunk = radius - np.sqrt(np.maximum(radius**2 - front**2, 0.0))
+        high = radius - np.sqrt(radius**2 - place**2)
     along = np.array([-normal[1], normal[0]])
-    middle = touch - place * along
-    corners = [(-0.5, 0.0), (0.5, 0.0), (0.5, 1.0), (-0.5, 1.0), (-0.5, 0.0)]
-    return np.array([middle + x * width * along + y * thick * normal for x, y in corners]).T
+    middle = touch - place * along - high * normal
+    across = np.array([*front, half, -half, -half])
+    above = np.array([*sunk, thick, thick, sunk[0]])
+    return np.asarray(middle[:, None] + across * along[:, None] + above * normal[:, None])
 
 
 def _face(turn: SheetTurn) -> Figure | None:

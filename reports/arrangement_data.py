@@ -106,8 +106,13 @@ def _arm(turn: SheetTurn) -> DrawnArm | None:
     if not turn.on_arm or distance is None or length is None or prime is None:
         return None
     sense = 1.0 if turn.case["follower"]["arm"].get("swing") == "with" else -1.0
-    start = float(Arm(distance, length, sense).angle(prime))
-    return DrawnArm(distance, length, sense, start, _BEARING * length)
+    linkage, bearing = Arm(distance, length, sense), _BEARING * length
+    offset, radius = (turn.length("follower", "face", key) for key in ("offset", "radius"))
+    if offset is not None:
+        start = float(linkage.face_angle(prime, offset))
+        return DrawnArm(distance, length, sense, start, bearing, offset)
+    start = float(linkage.angle(prime))
+    return DrawnArm(distance, length, sense, start, bearing, radius or 0.0, radius)
 
 
 def _counterweight(turn: SheetTurn) -> DrawnSector | None:

@@ -10,14 +10,14 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, rotation
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.envelope import Sleeve
 from camwright.pipeline.base.files import Json, read_npz, write_atomic
 from camwright.pipeline.results.field_file import EndField, read_end_field
 from camwright.reports import stress_map
 from camwright.reports.arrangement_data import mechanism_of
-from camwright.reports.drawing.arrangement import DrawnMechanism
+from camwright.reports.drawing.arrangement import DrawnArm, DrawnMechanism
 from camwright.reports.interactive import script_safe_json, scripts
 from camwright.reports.page import environment
 from camwright.reports.pressure_figures import Record
@@ -158,7 +158,12 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
     arm = mechanism.arm
     end = mechanism.stem_end - mechanism.lowest if arm is None else arm.length
     stem = mechanism.stem if arm is None else 1.2 * arm.bearing
-    bodies["follower"] = _follower(view, width, stem, end).as_record(_DIGITS)
+    lean, follower = None, _follower(view, width, stem, end)
+    if arm is not None:
+        lean = arm.turn(rows["lift_mm"][view.position])
+        if not view.is_roller:
+            lean, follower = view.to_lab + view.turn - np.pi, _face_on_arm(view, width, arm)
+    bodies["follower"] = follower.as_record(_DIGITS)
     bodies["guide"] = _frame(mechanism).as_record(_DIGITS)
     envelope = mechanism.envelope
     spin = view.arc() / float(np.hypot(*view.follower).max()) if view.is_roller else 0.0
@@ -169,8 +174,8 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
         "turn": _rounded(view.to_lab),
         "origin": [_rounded(part) for part in lab],
         "facing": _rounded(view.to_lab + view.turn + spin),
-        "lean": None if arm is None else _rounded(arm.turn(rows["lift_mm"][view.position])),
-        "contact": [_rounded(part) for part in _contacts(view, lab)],
+        "lean": None if lean is None else _rounded(lean),
+        "contact": [_rounded(part) for part in _contacts(view, lab, arm)],
         "half": width / 2,
         "readout": [
             {"words": words, "unit": unit, "values": _rounded(rows[name][view.position])}
@@ -323,20 +328,38 @@ def _sleeve(sleeve: Sleeve, bore: float, highest: float) -> Solid:
     return joined([*walls, *ends]).upright(highest + 0.5 * (sleeve.low + sleeve.high))
 
 
-def _contacts(view: TurnView, lab: Array) -> Array:
+def _face_on_arm(view: TurnView, width: float, arm: DrawnArm) -> Solid:
+    """Block of a face with its arm, to the middle of the face as origin, its travel along +y; width
+    of the cam, mm.
+    """
+    low, high = view.follower.min(axis=1), view.follower.max(axis=1)
+    # the y axis of the body points to the cam, downwards here
+    block = box((-high[0], -high[1], -width / 2), (-low[0], -low[1], width / 2))
+    thick, half = -float(low[1]), 0.6 * arm.bearing
+    bottom, top = max(arm.depth - half, 0.25 * thick), max(arm.depth + half, thick)
+    end = arm.sense * arm.length
+    bar = box((min(0.0, end), bottom, -width / 4), (max(0.0, end), top, width / 4))
+    post = box((-half, 0.25 * thick, -width / 4), (half, top, width / 4))
+    return joined([block, bar, post])
+
+
+def _contacts(view: TurnView, lab: Array, arm: DrawnArm | None = None) -> Array:
     """Contact points (2, f) in the frame of the guides, mm: on the roller along its normal, or the
-    highest point of the contour under a flat face. `lab`: origins (2, f) of the follower there.
+    outermost point of the contour under a face. `lab`: origins (2, f) of the follower there.
     """
     angle = view.to_lab + view.turn
     if view.is_roller:
         reach = float(np.hypot(*view.follower).max())
         return np.asarray(lab + reach * np.stack([-np.sin(angle), np.cos(angle)]))
-    surface = view.contour
-    lowest = []
-    for turn in view.to_lab:
-        there = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]) @ surface
-        lowest.append(there[:, int(np.argmax(there[1]))])
-    return np.stack(lowest, axis=1)
+    touched = []
+    for k, turn in enumerate(view.to_lab):
+        there = rotation(turn) @ view.contour
+        outwards = there[1] if arm is None else rotation(np.pi - angle[k])[1] @ there
+        if arm is not None and arm.radius is not None:
+            centre = lab[:, k] + rotation(angle[k]) @ np.array([0.0, -arm.radius])
+            outwards = -np.hypot(*(there - centre[:, None]))
+        touched.append(there[:, int(np.argmax(outwards))])
+    return np.stack(touched, axis=1)
 
 
 def _ends(material: ReportMaterial) -> Json:

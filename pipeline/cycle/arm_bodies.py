@@ -50,7 +50,8 @@ def swung_bodies(numbers: Numbers) -> dict[str, SwungBody]:
 
     From zero to the maximum lift, where that is among the numbers (`with_swing`). The arm ends at
     the bridge of a fork that is described, else at its reference point, about which roller and
-    cheeks are; a face is within it.
+    cheeks are, or a disc of the radius of a curved face. The block of a flat one is within as far
+    on both sides of the line of the arm.
     """
     case = numbers.known_case
     stated, keys = case.follower.arm, ("centre_distance", "length")
@@ -65,9 +66,13 @@ def swung_bodies(numbers: Numbers) -> dict[str, SwungBody]:
     bar = SwungBar(arm, start, start + swing / length, 0.0, length)
     deep = numbers["follower.half_depth"] + aside
     bodies = dict[str, SwungBody]()
-    if not case.facing.slides:
-        around = SwungBody(bar._replace(inner=length), numbers["follower.round"], (0.0, deep))
-        bodies[case.facing.word] = around
+    if offset is None:
+        around = bar._replace(inner=length), numbers["follower.round"]
+    else:
+        half, thick = 0.5 * numbers["follower.face.width"], numbers["follower.face.thickness"]
+        block = bar._replace(inner=np.maximum(length - half, 0.0), outer=length + half)
+        around = block, np.maximum(np.abs(offset), np.abs(thick - offset))
+    bodies[case.facing.word] = SwungBody(*around, (0.0, deep))
     cheek, bridge = (numbers.get(f"roller.fork.cheek_{name}") for name in ("height", "length"))
     end = length
     if cheek is not None and bridge is not None:

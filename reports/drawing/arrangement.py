@@ -37,6 +37,7 @@ from camwright.reports.drawing.spring_shapes import Coil, DrawnSpring
 _EDGE, _THIN = 0.45, 0.22  # mm, of lines on a mechanism `_WHOLE` high
 _WHOLE = 260.0
 _FORCE_SHARE = 0.85
+_FACE_POINTS = 25  # of a curved face
 """Length of the greatest force over the least radius of the cam."""
 FORCES = {"contact": "Contact force", "spring": "Spring force",
           "guide-a": "Guide A", "guide-b": "Guide B"}  # fmt: skip
@@ -76,7 +77,9 @@ class DrawnArm:
     """Arm of an oscillating follower on its pivot, at a height above the cam axis, mm and rad.
 
     sense: of the outward swing, 1 clockwise as the cam turns, -1 against it; start: angle from the
-    line to the cam axis at zero lift; bearing: radius drawn about the pivot
+    line to the cam axis at zero lift; bearing: radius drawn about the pivot; depth: of the middle
+    of a face below the line from the pivot to the end, towards the cam: its offset or, of a curved
+    face, its radius
     """
 
     pivot: float
@@ -84,6 +87,8 @@ class DrawnArm:
     sense: float
     start: float
     bearing: float
+    depth: float = 0.0
+    radius: float | None = None
 
     def turn(self, lift: Array | float) -> Array:
         """Counter-clockwise rotation of the arm from the line to the cam axis, rad."""
@@ -108,8 +113,8 @@ class DrawnMechanism:
     counter_hole             centre x, y and radius of a drilled hole, or None
     axis                     x of the follower axis
     lowest, stroke           height of roller centre or face at zero lift; greatest lift
-    roller, pin              radii; None: a flat face
-    face                     width and thickness of a flat face; None: a roller
+    roller, pin              radii; None: a face
+    face                     width and thickness of a face; None: a roller
     stem, stem_end           diameter; height of its end at zero lift
     seat                     thickness of the seats of the spring
     sizes                    of all parts, by which the envelope goes
@@ -143,6 +148,8 @@ class DrawnMechanism:
             return self.sizes.envelope
         ends = self.arm.end(np.linspace(0.0, self.stroke, 31))
         reach, deep = self.roller or 0.0, self.sizes.follower[1]
+        if self.face is not None:
+            reach = float(np.hypot(0.5 * self.face[0], max(self.arm.depth, self.face[1])))
         across, along = ((float(e.min()) - reach, float(e.max()) + reach) for e in ends)
         round_pivot = 2.0 * self.arm.bearing
         pivot = Box(
@@ -269,12 +276,15 @@ def _arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGro
     edge, thin = Pen("ink", _EDGE * m.scale, "steel"), Pen("muted", _THIN * m.scale)
     half, roller, end = 0.6 * arm.bearing, m.roller or 0.0, (0.0, -arm.length)
     bar = rectangle(-half, -arm.length, half, 0.0)
-    swung = (
+    swung: tuple[Shape, ...] = (
         DrawnOutline((bar,), edge),
         DrawnOutline((circle(roller, end), circle(m.pin, end)), Pen("ink", edge.width, "card")),
         DrawnOutline((circle(m.pin, end),), edge),
         DrawnOutline((circle(arm.bearing),), edge),
     )
+    if m.face is not None:
+        outlines = (_bar_of_face(arm, m.face), _face_of(arm, m.face), circle(arm.bearing))
+        swung = tuple(DrawnOutline((each,), edge) for each in outlines)
     wide, top = 1.6 * arm.bearing, arm.pivot + 2.0 * arm.bearing
     held = (-wide, arm.pivot + 1.2 * arm.bearing, wide, top)
     fixed = (
@@ -292,12 +302,32 @@ def _arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGro
     )
 
 
+def _face_of(arm: DrawnArm, face: tuple[float, float]) -> Array:
+    """Outline (2, n), mm, of the face of an arm that hangs down from its pivot at the origin."""
+    width, thick = face
+    along = 0.5 * width * np.linspace(-1.0, 1.0, _FACE_POINTS)
+    sunk = 0.0 * along
+    if arm.radius is not None:
+        sunk = arm.radius - np.sqrt(np.maximum(arm.radius**2 - along**2, 0.0))
+    back = arm.depth - thick
+    towards = arm.sense * np.array([*(arm.depth - sunk), back, back])
+    return np.stack([towards, np.array([*along, along[-1], along[0]]) - arm.length])
+
+
+def _bar_of_face(arm: DrawnArm, face: tuple[float, float]) -> Array:
+    """Corners (2, 4), mm, of the bar from the pivot to the middle of the back of a face."""
+    back = np.array([arm.sense * (arm.depth - 0.5 * face[1]), -arm.length])
+    aside = 0.6 * arm.bearing * np.array([-back[1], back[0]]) / np.hypot(*back)
+    return np.stack([aside, back + aside, back - aside, -aside], axis=1)
+
+
 def alt(m: DrawnMechanism, motion: DrawnMotion, row: int) -> str:
     """Text alternative of the drawing: angle and forces."""
     forces = ", ".join(
         f"{FORCES[key].lower()} {_newtons(motion, key, row)}" for key in m.shown_forces
     )
-    parts = "follower, guides and spring" if m.arm is None else "roller and arm on its pivot"
+    carried = "face" if m.roller is None else "roller"
+    parts = "follower, guides and spring" if m.arm is None else f"{carried} and arm on its pivot"
     return (
         f"Cam, {parts} in the plane of the cam at "
         f"{_angle_words(motion, row)}, load case {motion.load_case}. Lift "
@@ -442,11 +472,18 @@ def _guides(m: DrawnMechanism) -> list[Shape]:
 def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
     """Contact of cam and follower in the drawing, over the turn, (2, n), mm."""
     m, (centre, travel) = mechanism, mechanism.reference(motion.lift)
-    if m.roller is None:
+    radius = m.roller if m.arm is None or m.arm.radius is None else m.arm.radius
+    if radius is None and m.arm is not None and motion.contact_offset is not None:
+        depth, beside = m.arm.depth, motion.contact_offset
+        cos, sin = np.cos(travel), np.sin(travel)
+        return np.asarray(
+            centre + np.stack([depth * sin - beside * cos, -depth * cos - beside * sin])
+        )
+    if radius is None:
         across = 0.0 if motion.contact_offset is None else motion.contact_offset
         return np.stack([centre[0] - across, centre[1]])
     angle = motion.pressure_angle - travel
-    return np.asarray(centre - m.roller * np.stack([np.sin(angle), np.cos(angle)]))
+    return np.asarray(centre - radius * np.stack([np.sin(angle), np.cos(angle)]))
 
 
 def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arrow]:

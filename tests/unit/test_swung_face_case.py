@@ -8,15 +8,27 @@ import pytest
 from swung_face import face_text
 
 from camwright.geometry.arm_face import ArmFacePath, CurvedFacePath
+from camwright.geometry.arrays import rotation
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.envelope import MechanismSizes
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.cycle.arm_bodies import swung_bodies
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.workshop_files import notes_of
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.screening.screened_checks import SCREENED
+from camwright.reports.drawing.arrangement import (
+    DrawnArm,
+    DrawnMechanism,
+    DrawnMotion,
+    cam_turn,
+    contact_point,
+    drawing,
+)
 
 KINDS = ("flat", "curved")
 
@@ -189,6 +201,43 @@ def test_the_screening_judges_faces_as_their_previews(kind):
             "contact_temperature", "bulk_temperature"} <= compared  # fmt: skip
 
 
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("swing", ["with", "against"])
+def test_the_drawn_face_touches_the_drawn_cam(kind, swing):
+    """The contact of the drawing, turned back by the cam, is that of the contour; no corner of the
+    drawn block is within the cam."""
+    case = parse_case(face_text(kind, swing=swing))
+    contour, theta, mm = case.contour(given_lift(case)), np.linspace(0.0, 6.0, 25), 1e3
+    arm, face, radius = contour.pitch.arm, case.follower.face, case.follower.face.radius
+    depth = face.offset if radius is None else radius
+    drawn = DrawnArm(mm * arm.centre_distance, mm * arm.length, arm.sense, contour.pitch.start,
+                     9.5, mm * depth, radius and mm * radius)  # fmt: skip
+    block = mm * face.width, mm * face.thickness
+    mechanism = DrawnMechanism(
+        mm * contour.polygon(360), 15.0, None, None, 0.0, 0.0, 10.0, None, 0.0, block, 10.0, 50.0,
+        (), None, 2.0, MechanismSizes(50.0, 15.0, 0.0, 50.0, 10.0, (22.0, 7.5), 10.0, 50.0, (), ()),
+        None, drawn,
+    )  # fmt: skip
+    lift, alpha = mm * contour.lift(theta), contour.pitch.pressure_angle(theta)
+    place = mm * contour.pitch.slide(theta).on_face
+    motion = DrawnMotion("", theta, theta, "", lift, alpha, place, {"contact": np.ones(25)})
+    touched = contact_point(mechanism, motion)
+    for k, angle in enumerate(theta):
+        turned = rotation(cam_turn(angle)) @ (mm * contour.points(angle))
+        np.testing.assert_allclose(touched[:, k], turned, rtol=0, atol=1e-9)
+        (swung,) = (g for g in drawing(mechanism, motion, k).groups if g.name == "follower")
+        points = swung.pose.of(swung.shapes[1].lines[0])
+        inside = rotation(-cam_turn(angle)) @ points
+        polar = np.arctan2(inside[1], inside[0])
+        rim = mm * contour.polygon(3600)
+        order = np.argsort(np.arctan2(rim[1], rim[0]))
+        reach = np.interp(polar, np.arctan2(rim[1], rim[0])[order], np.hypot(*rim)[order])
+        assert (np.hypot(*inside) > reach - 1e-2).all()
+    assert "face and arm on its pivot" in drawing(mechanism, motion, 7).alt
+    across, along = mechanism.envelope.across, mechanism.envelope.along
+    assert across[0] <= touched[0].min() and along[0] <= touched[1].min()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("swing", ["with", "against"])
@@ -199,3 +248,29 @@ def test_a_torque_is_balanced_by_a_face_on_an_arm(kind, swing):
     assert failed(trial) <= {"friction_power", "contact_temperature"}
     (ripple,) = (each for each in trial.checks if each.id == "torque_reduction")
     assert ripple.demand > 0.3
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_block_of_a_face_is_within_its_swung_body(kind):
+    """Distances of points about the cam from the drawn block at both ends of the swing."""
+    case = parse_case(face_text(kind))
+    contour = case.contour(given_lift(case))
+    arm, face = contour.pitch.arm, case.follower.face
+    depth = face.offset if face.radius is None else face.radius
+    top = contour.lift.highest.value
+    body = swung_bodies(Numbers({"arm.lift": top}, case))["face"]
+    radius = face.radius or np.inf
+    corners = np.array([
+        (along, depth - max(deep, radius - np.sqrt(radius**2 - along**2) if face.radius else 0.0))
+        for along in np.linspace(-0.5, 0.5, 41) * face.width
+        for deep in np.linspace(0.0, face.thickness, 11)
+    ])  # fmt: skip
+    for u, v in np.random.default_rng(3).uniform(-0.15, 0.15, (40, 2)):
+        near = np.inf
+        for lift in (0.0, top):
+            angle = contour.pitch.start + lift / arm.length
+            along = np.array([-np.cos(angle), arm.sense * np.sin(angle)])
+            towards = np.array([-np.sin(angle), -arm.sense * np.cos(angle)])
+            points = (arm.length + corners[:, :1]) * along + corners[:, 1:] * towards
+            near = min(near, np.hypot(*(points + np.array([arm.centre_distance - u, -v])).T).min())
+        assert float(body.from_disc(u, v, 0.0)) <= near + 1e-12
