@@ -80,6 +80,9 @@ def acceleration_jump(values: Array) -> Jump:
 
 
 def _at_spacing(values: Array, stride: int) -> Jump:
+    """Greatest jump of s'' of lift values (n,), m, at equal angles of the turn, from windows of ten
+    values that are `stride` samples apart; see `acceleration_jump`.
+    """
     count, step = values.size, stride * FULL_TURN / values.size
     start = np.arange(0, count, stride)
     near = np.arange(1 - _SIDE_POINTS, _SIDE_POINTS + 1)
@@ -131,6 +134,10 @@ def _fits() -> tuple[_Fits, _Fits]:
 
 
 def _fit(places: Array, powers: tuple[int, ...]) -> _Fits:
+    """Least-squares fits of ten equally spaced values by a polynomial and, beyond a break, powers
+    of the distance from it: 2 for a jump of s'', 3 for a kink. places : (k,), of the break, in
+    steps from the fifth value.
+    """
     x = np.arange(1 - _SIDE_POINTS, _SIDE_POINTS + 1) / _SIDE_POINTS
     smooth = x[:, None] ** np.arange(_FIT_DEGREE + 1)
     complement, row = [], []
@@ -144,6 +151,8 @@ def _fit(places: Array, powers: tuple[int, ...]) -> _Fits:
 
 
 def _residual(window: Array, complement: Array) -> tuple[Array, Array]:
-    """Least norm of the residuals over the places (n,), and the index of its place (n,)."""
+    """Least norm of the residual of each window over the places of the break (n,), in the unit of
+    the values, and the index of that place (n,); window (n, m), complement (k, m, f).
+    """
     norms = np.linalg.norm(window @ complement, axis=2)
     return norms.min(axis=0), norms.argmin(axis=0)

@@ -78,7 +78,9 @@ def arc_polyline(contour: Contour, error: float = ARC_ERROR) -> ArcPolyline:
 
 
 def _fitted(contour: Contour, error: float) -> ArcPolyline:
-    """Arcs within a distance of the contour, m."""
+    """Polyline of tangent arcs within a distance `error`, m, of the contour; parts of the turn are
+    halved until their pair of arcs is close enough.
+    """
     edges = np.linspace(0.0, FULL_TURN, _FIRST_PARTS + 1)
     start, stop = edges[:-1], edges[1:]
     kept: list[Array] = []
@@ -109,7 +111,10 @@ def _fitted(contour: Contour, error: float) -> ArcPolyline:
 
 
 def _pairs(contour: Contour, start: Array, stop: Array) -> tuple[Array, Array, Array, Array]:
-    """Start points and tangents, common points and tangents of the pairs of arcs (2, n)."""
+    """Pairs of tangent arcs (biarcs) over the parts of the turn from `start` to `stop` (n,), rad:
+    start points, m, and unit tangents there, points at which the two arcs of a pair meet, m, and
+    unit tangents there; each (2, n).
+    """
     p, q = contour.points(start), contour.points(stop)
     t, u = contour.tangent(start), contour.tangent(stop)
     v = q - p
@@ -123,7 +128,9 @@ def _pairs(contour: Contour, start: Array, stop: Array) -> tuple[Array, Array, A
 
 
 def _distance(contour: Contour, start: Array, stop: Array) -> Array:
-    """Greatest distance (n,) of the contour from the pair of arcs over each part of the turn, m."""
+    """Greatest distance of the contour from the pair of arcs (n,), m, over each part of the turn
+    from `start` to `stop` (n,), rad; at samples within the part.
+    """
     p, t, middle, joint = _pairs(contour, start, stop)
     u, q = contour.tangent(stop), contour.points(stop)
     theta = start[:, None] + _SAMPLES * (stop - start)[:, None]
@@ -136,7 +143,8 @@ def _distance(contour: Contour, start: Array, stop: Array) -> Array:
 
 
 def _from_arc(points: Array, at: Array, tangent: Array, through: Array) -> Array:
-    """Distance of points (2, n, k) from the circle (n,) through two points, tangent in the first.
+    """Distance, m, of points (2, n, k) from n circles, each through two points `at` and `through`
+    (2, n), with a unit tangent (2, n) in the first.
 
     With d from the point, normal n and curvature c it is |d.n - c d.d / 2| up to a factor of
     1 + O(distance c), which is 1 to the digits of a tolerance.

@@ -100,6 +100,7 @@ class ArmFaceMotion(PlaneMotion):
 
     @property
     def curvature_slope(self) -> Array:
+        """Derivative of the curvature of the contour by its arc length, 1/m^2."""
         (sine, cosine), turning = self._parts, self.turning
         _, rate, rate_d1, rate_d2 = self.turned
         drawn = rate - rate**3 / turning**2 + rate_d2 / turning**3
@@ -200,6 +201,9 @@ class ArmFacePath(FollowerPath):
     offset: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse a face that leaves the quarter turn between the cam axis and the line square to
+        it, or turns with the cam as fast as it does.
+        """
         swing = self.lift.lowest.value / self.arm.length, self.lift.highest.value / self.arm.length
         low, high = (self.start + each for each in swing)
         if not high < 0.5 * np.pi:
@@ -284,7 +288,9 @@ class ArmFacePath(FollowerPath):
 
 
 def _turned(travel: Array, along: Array, across: Array) -> tuple[Array, Array]:
-    """Components along u and v of a vector along the travel and square to it."""
+    """Components along u and v of a vector given along the travel and square to it; travel :
+    direction of the travel from u, counter-clockwise, rad.
+    """
     cos, sin = np.cos(travel), np.sin(travel)
     return along * cos - across * sin, along * sin + across * cos
 

@@ -194,6 +194,9 @@ class ArmMotion(RoundMotion):
 
     @property
     def path_curvature_slope(self) -> Array:
+        """Derivative of the curvature of the path by the cam angle, 1/(m rad), from those of the
+        velocity along the travel and of the height.
+        """
         jet, sense, (_, rate, rate_d1, _) = self.jet, self.linkage.sense, self.turned
         along, height, beside = self.along, self.height, self._along_pivot
         along_d1, height_d1 = self._changes
@@ -282,6 +285,9 @@ class ArmPath(CentrePath):
         return self.arm.centre_distance - beside, self.arm.sense * self.arm.length * np.sin(angle)
 
     def _velocity(self, theta: ArrayLike) -> tuple[Array, Array]:
+        """Velocity of the roller centre in the cam frame along u and v, m/rad, at cam angles (...),
+        rad.
+        """
         s, s1 = self.lift.derivatives(theta, 1)
         arm, angle = self.arm, self.start + s / self.arm.length
         drawn = s1 - arm.sense * arm.length
@@ -364,7 +370,8 @@ def disc_lift(eccentricity: float, prime_radius: float, arm: Arm, count: int = 7
 
 
 def disc_seen(eccentricity: float, arm: Arm, first: float, theta: Array) -> tuple[Array, Array]:
-    """Centre of an eccentric disc from the pivot: angle from the cam axis, rad, and distance, m.
+    """Centre of an eccentric disc from the pivot at cam angles (n,), rad: angle from the line to
+    the cam axis (n,), rad, and distance (n,), m.
 
     The angle grows with the lift. At cam angle 0 the centre is opposite to the direction `first`
     from the line of centres, rad.

@@ -112,7 +112,9 @@ def freeze(instance: DataclassInstance, **arrays: ArrayLike) -> None:
 
 
 def alike(marks: ArrayLike) -> list[NDArray[np.intp]]:
-    """Groups of equal columns of a boolean array (k, n): indices, one array per pattern."""
+    """Groups of equal columns of a boolean array (k, n): the column numbers, one array per
+    different column.
+    """
     packed = np.packbits(np.asarray(marks, dtype=bool), axis=0)
     if not packed.size:
         return [np.arange(packed.shape[1])] if packed.shape[1] else []

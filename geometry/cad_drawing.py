@@ -145,13 +145,17 @@ def write_dxf(
 
 
 def _add_arcs(space: Modelspace, points: Array, bulges: Array) -> None:
-    """Closed polyline of arcs (2, n), m, to cut."""
+    """Add a closed polyline to cut: vertices (2, n), m, and bulges (n,), tangent of a quarter of
+    the angle of the arc behind each vertex.
+    """
     rows = np.vstack([points / _MILLIMETRE, bulges]).T.tolist()
     space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs={"layer": CUT})
 
 
 def _add_spline(space: Modelspace, curve: CurveLike, error: float, layer: str) -> Array:
-    """Closed spline of a curve; returns its control points (2, n), m, which enclose it."""
+    """Add the closed spline of a curve, within `error`, m, to the drawing; returns its control
+    points (2, n), m, which enclose it.
+    """
     spline = clamped_spline(curve, error)
     entity = space.add_spline(degree=_SPLINE_DEGREE, dxfattribs={"layer": layer})
     entity.control_points = [(x, y, 0.0) for x, y in (spline.c / _MILLIMETRE).tolist()]
@@ -162,6 +166,7 @@ def _add_spline(space: Modelspace, curve: CurveLike, error: float, layer: str) -
 
 
 def _add_bore(space: Modelspace, outline: Outline) -> None:
+    """Bore with its keyway as a closed polyline of arcs, or a circle, to cut."""
     radius = outline.bore_radius
     if outline.keyway is None:
         space.add_circle((0.0, 0.0), radius / _MILLIMETRE, dxfattribs={"layer": CUT})

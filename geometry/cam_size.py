@@ -166,7 +166,9 @@ class RollerCam(ABC):
         return _balanced(least_argument(within, -most, most), most)
 
     def smallest(self, limits: PitchLimits) -> RollerSize:
-        """Smallest prime radius over all offsets, and the offset at which it is reached, m."""
+        """Smallest prime radius over all offsets, and the offset at which it is reached, m; by
+        golden sections in the offset, after a scan where the curvature governs.
+        """
         most = self.least_prime_radius(limits)
         by_angle = least_argument(lambda each: self._by_angle(limits, each), -most, most)
         offset = _balanced(by_angle, most)
@@ -211,6 +213,9 @@ class GivenLiftCam(RollerCam):
         return float(np.hypot(self._height_by_angle(limits, offset), offset))
 
     def _height_by_angle(self, limits: PitchLimits, offset: float) -> float:
+        """Least height of the roller centre at zero lift, m, by the limits of the pressure angle,
+        with an offset, m.
+        """
         rise, back = np.tan(limits.rise), np.tan(limits.back)
         return max(
             self.lift.greatest(lambda s, s1, _: abs(np.maximum(s1, 0) - offset) / rise - s).value,
@@ -218,6 +223,9 @@ class GivenLiftCam(RollerCam):
         )
 
     def _height_by_curvature(self, curvature: float, offset: float) -> float:
+        """Least height of the roller centre at zero lift, m, with the curvature of the pitch curve
+        within `curvature`, 1/m, positive convex, negative concave.
+        """
         return self.lift.greatest(
             lambda s, s1, s2: _height_of_curvature(s1, s2, offset, curvature) - s
         ).value
@@ -238,6 +246,7 @@ class EccentricCam(RollerCam):
         positive("lift.eccentricity", self.eccentricity, "m")
 
     def parts(self, prime_radius: float, offset: float) -> LiftParts:
+        """Lift of the roller on the disc, which depends on prime radius and offset, m."""
         disc = Eccentric(self.eccentricity, prime_radius + self.eccentricity, offset)
 
         def derivatives(x: Array) -> Array:
@@ -259,6 +268,9 @@ class EccentricCam(RollerCam):
         return RollerSize(self.least_prime_radius(limits, offset), offset)
 
     def _by_angle(self, limits: PitchLimits, offset: float) -> float:
+        """Smallest prime radius, m, by the pressure angle alone, with an offset, m: in closed form
+        up to an offset of the eccentricity, by bisection beyond.
+        """
         if abs(offset) <= self.eccentricity:
             # sin(alpha) = (l1 cos(phi) - e) / l2, greatest with the crank square to the travel
             rise, back = np.sin(limits.rise), np.sin(limits.back)
@@ -335,7 +347,8 @@ def _slope(_: Array, slope: Array, __: Array) -> Array:
 
 
 def _angles(parts: LiftParts, height: float, offset: float) -> tuple[Extremum, Extremum]:
-    """Greatest pressure angles on rise and return, rad, from a height (m) at zero lift.
+    """Greatest magnitudes of the pressure angle on rise and on return, rad, with their cam angles;
+    height : of the roller centre at zero lift, m.
 
     On the other stroke s' counts as zero, which the bottom of the lift has in any case.
     """
@@ -355,7 +368,8 @@ def _motion(jet: Jet, height: float, offset: float) -> RollerMotion:
 
 
 def _height_of_curvature(slope: Array, lift_d2: Array, offset: float, curvature: float) -> Array:
-    """Largest height d (...), m, >= 0, at which a pitch curve has a curvature, 1/m; 0: at none.
+    """Largest height d (...), m, >= 0, of the roller centre over the cam axis at which a pitch
+    curve with s' (...) and s'' (...), m/rad^k, has a curvature, 1/m; 0 where it has it at none.
 
     Root of (a^2 + z^2)^3 = (z^2 - b z + c)^2 with lengths over the radius of curvature, by the
     eigenvalues of its companion matrix; the sign of the curvature excludes the others.
@@ -377,11 +391,14 @@ def _height_of_curvature(slope: Array, lift_d2: Array, offset: float, curvature:
 
 
 def _balanced(offset: float, most: float) -> float:
+    """The offset, m, or zero where it is round-off of its greatest value `most`, m."""
     return 0.0 if abs(offset) <= _ZERO_OFFSET * most else offset
 
 
 def _least_of_scan(function: Callable[[float], float], most: float) -> float:
-    """Argument of the least value within +- `most`: a scan, then golden sections about it."""
+    """Argument of the least value of a function within +- `most`: a scan, then golden sections
+    about its least.
+    """
     offsets = np.linspace(-most, most, _SCANNED)
     k = int(np.argmin([function(float(each)) for each in offsets]))
     step = 2.0 * most / (_SCANNED - 1)

@@ -36,7 +36,8 @@ class HoleLike(Protocol):
 
 
 def keyway_corners(bore_radius: float, keyway: KeywayLike) -> Array:
-    """Corners (2, 4) of a keyway without fillets, m: on the bore, twice on the floor, on the bore.
+    """Corners (2, 4) of a keyway without fillets, m, counter-clockwise: on the bore, twice on the
+    floor, on the bore.
 
     Raises
     ------
@@ -53,7 +54,8 @@ def keyway_corners(bore_radius: float, keyway: KeywayLike) -> Array:
 
 
 def radius_at(outline: Array, turn: float) -> float:
-    """Greatest distance from the origin at which a ray at angle `turn`, rad, meets an outline.
+    """Greatest distance from the origin, m, at which a ray at angle `turn`, rad, meets an outline;
+    by linear interpolation on its edges.
 
     Parameters
     ----------

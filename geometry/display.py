@@ -36,7 +36,9 @@ class Displayed:
 
 
 def in_brief(value: object) -> str:
-    """Short text of a value: the shape of an array, the length of a collection."""
+    """Short text of a value: a number with six digits, the shape of an array, the length of a
+    collection, the class of anything else.
+    """
     if value is None or isinstance(value, bool | int):
         return str(value)
     if isinstance(value, float):
@@ -56,7 +58,9 @@ def clipped(text: str, most: int) -> str:
 
 
 def html_table(caption: str, header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table in HTML, every text escaped."""
+    """Table in HTML with its caption, the names of its columns, which may be none, and its rows;
+    every text is escaped.
+    """
     lines = ["<table>", f"<caption>{escape(caption)}</caption>"]
     if header:
         lines.append(_html_row("th", header))

@@ -42,6 +42,7 @@ class Eccentric:
     offset: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse a mechanism that cannot rotate fully."""
         if not 0.0 < self.crank < np.inf:
             raise InputError("mechanism.crank", self.crank, "> 0 m")
         if not abs(self.offset) < self.rod - self.crank < np.inf:

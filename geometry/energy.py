@@ -118,7 +118,8 @@ def lift_from_torque(
 def lift_of_spring(
     theta: ArrayLike, cam_torque: ArrayLike, deflection: Deflection, initial_energy: float = 0.0
 ) -> Lift:
-    """Lift whose energy in a spring of any characteristic balances the torque.
+    """Lift whose energy in a spring of any characteristic balances the torque; see
+    `lift_from_torque` for the other parameters.
 
     Parameters
     ----------
@@ -153,7 +154,11 @@ def spring_deflection(energy: ArrayLike, spring_rate: ArrayLike, preload: ArrayL
 
 
 def _energy_curve(theta: Array, cam_torque: Array) -> tuple[PeriodicPolynomial, float]:
-    """Integral of the torque from angle 0, J, and its change over the turn."""
+    """Integral of the torque from angle 0, J, as a function of the angle, and its change over the
+    turn, J; theta (n,), rad, cam_torque (n,), N m.
+
+    InputError for unequal angles or a mean torque.
+    """
     require_uniform_turn("theta", theta)
     if cam_torque.shape != theta.shape:
         raise InputError("cam_torque", len(cam_torque), f"{len(theta)} values, one per angle")
@@ -164,6 +169,7 @@ def _energy_curve(theta: Array, cam_torque: Array) -> tuple[PeriodicPolynomial, 
 
 
 def _require_spring(spring_rate: ArrayLike, preload: ArrayLike) -> None:
+    """Refuse a rate, N/m, that is not positive, or a negative preload, N."""
     positive("spring.rate", spring_rate, "N/m")
     force = np.asarray(preload, dtype=float)
     if not ((force >= 0) & (force < np.inf)).all():

@@ -41,6 +41,7 @@ class InputError(CamError):
         super().__init__(field, value, limit)
 
     def __str__(self) -> str:
+        """Message such as ``roller.radius = -0.01, must be > 0 m``: field, value, limit."""
         value = self.value
         text = f"{value:.4g}" if isinstance(value, float) else " ".join(str(value).split())
         return f"{_shortened(self.field)} = {_shortened(text)}, must be {self.limit}"

@@ -171,7 +171,10 @@ def sampled_peak(values: Array) -> Extremum:
 
 
 def _vertex(values: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
-    """Vertices (...) beside samples of number `at` (...), and their distances in samples."""
+    """Maxima (...) near the greatest samples of periodic functions `values` (..., n), and their
+    distances from it in samples; at : (...), number of that sample. By the parabola through three
+    samples, or where that is higher at a kink, by the lines on both sides.
+    """
     first, before, here, after, last = (
         np.take_along_axis(values, (at + step)[..., None] % values.shape[-1], axis=-1)[..., 0]
         for step in (-2, -1, 0, 1, 2)
@@ -197,7 +200,7 @@ def sampled_least(values: Array) -> Array:
 def least_argument(
     function: Callable[[float], float], low: float, high: float, sections: int = _SECTIONS
 ) -> float:
-    """Argument of the minimum of a unimodal function between two bounds.
+    """Argument of the minimum of a unimodal function between `low` and `high`.
 
     By golden sections, which leave 0.618^sections of the range; the function may have a kink.
     """

@@ -214,14 +214,18 @@ class Figure:
 
     @property
     def legends(self) -> tuple[bool, ...]:
-        """Whether each panel has a legend; one is enough for panels with equal labels."""
+        """Whether each panel has a legend (panels,): with two curves or more that have names; the
+        first alone where all have the same names.
+        """
         first = [curve.label for curve in self.panels[0].curves]
         shared = all(len(p.curves) < 2 or [c.label for c in p.curves] == first for p in self.panels)
         return tuple(len(p.labelled) > 1 and not (k and shared) for k, p in enumerate(self.panels))
 
     @property
     def alt(self) -> str:
-        """Text alternative: range of each curve, every point of a count, limits."""
+        """Text alternative of the picture: title, range of each curve or every point of a count,
+        limits.
+        """
         parts = []
         for panel in self.panels:
             axis = self.axis_of(panel)
@@ -254,6 +258,7 @@ def _range(values: Array, unit: str) -> str:
 
 
 def _points(curve: Curve, unit: str) -> str:
+    """Values of a curve with unit, place and note each, as text; NaN left out."""
     notes = [f" ({note})" for note in curve.notes] or [""] * curve.x.size
     return ", ".join(
         f"{value:.4g} {unit}".rstrip() + f" at {at:g}{note}"
@@ -302,7 +307,7 @@ def over(
     figure_id: str, title: str, caption: str, quantity: str, unit: str, panels: Sequence[Panel], *,
     counted: bool = False, dots: bool = True, marks: tuple[AxisMark, ...] = (),
 ) -> Figure:  # fmt: skip
-    """Figure over a common quantity.
+    """Figure of panels over a common quantity, whose limits follow from the curves.
 
     Parameters
     ----------
@@ -317,6 +322,7 @@ def over(
 
 
 def _span(panels: Sequence[Panel], counted: bool) -> tuple[float, float]:
+    """Limits of the horizontal axis about the curves, with a margin, in the unit of the axis."""
     curves = [curve for panel in panels for curve in panel.curves]
     low, high = _ends(curve.x for curve in curves)
     width = max((bar_width(c.x) for c in curves if c.look == "bar"), default=0.0)
@@ -340,7 +346,7 @@ def outline(points: Array, label: str = "", colour: str = "blue", look: Look = "
 def outline_panel(
     curves: tuple[Curve, ...], title: str = "", names: tuple[str, str] = ("x", "y")
 ) -> Panel:
-    """Panel of outlines, mm, to one scale."""
+    """Panel of outlines, mm, to one scale; names : of the horizontal and the vertical axis."""
     spans = []
     for values in ((curve.x for curve in curves), (curve.y for curve in curves)):
         low, high = _ends(values)
@@ -411,7 +417,9 @@ def _size(panel: Panel) -> tuple[float, float]:
 
 
 def _draw(ax: Axes, panel: Panel, curve: Curve, right: float) -> None:
-    """A curve with its ribbon, in the colours of pyplot; bars up to `right`."""
+    """Draw a curve with its ribbon in the colours of pyplot; horizontal bars end at `right` at
+    most.
+    """
     colour = _NAMED.get(curve.colour)
     if colour is None:
         colour = f"C{SERIES.index(curve.colour)}"
@@ -429,7 +437,9 @@ def _draw(ax: Axes, panel: Panel, curve: Curve, right: float) -> None:
 
 
 def _name_rows(ax: Axes, panel: Panel, right: float) -> None:
-    """Names of horizontal bars, and their ends in figures."""
+    """Write the names of horizontal bars beside them, and their ends in figures, at `right` at
+    most.
+    """
     for row, end in enumerate(panel.ends):
         if not np.isnan(end):
             ax.text(min(end, right), row, f" {end:.4g}", va="center", fontsize="small")

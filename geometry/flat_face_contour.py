@@ -272,7 +272,12 @@ class FaceMotion(PlaneMotion):
         return -(self.jet.slope + self.jet.jerk) / self.radius**3
 
     def reactions(self, lever: tuple[Array, Array], spacing: Value) -> tuple[Reaction, Reaction]:
-        """Of the friction along the face, and of the axial force beside the stem axis."""
+        """Reactions of guides A and B over the axial force: of the friction along the face, and of
+        the axial force beside the stem axis.
+
+        lever : of the side force at each guide, over their spacing
+        spacing : of the guides, m
+        """
         tilt = self.arm / spacing
         along = [self.friction * each for each in lever]
         whole = [each + magnitude(tilt) for each in along]

@@ -104,6 +104,12 @@ def arm_angle(
 
 
 def _highest(polygon: ArrayLike, support: Support, theta: ArrayLike) -> Array:
+    """Greatest of the heights, m, or arm angles, rad, (m,) at which points of a contour touch the
+    follower at each angle `theta` (m,), rad; between the points (2, n), m, of `polygon` by a
+    periodic cubic spline over the chord length.
+
+    GeometryError where no point reaches the follower.
+    """
     from scipy.interpolate import CubicSpline
 
     points, angle = finite("polygon", polygon), finite("theta", theta)

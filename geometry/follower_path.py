@@ -33,7 +33,9 @@ class Reaction(NamedTuple):
         return self.whole if self.slack is None else self.whole - self.slack
 
     def corrected(self, fix: Array) -> Array:
-        """Reaction with a finite-element correction `fix`, >= 0; at 1 that of a point support."""
+        """Reaction over the axial force (..., n) with a finite-element correction `fix` (..., n),
+        >= 0; at 1 that of a point support. Zero where the couple outweighs it.
+        """
         if self.slack is None:
             return self.whole * fix
         load = self.whole * fix - self.slack

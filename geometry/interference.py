@@ -117,7 +117,9 @@ def second_contact(gap: Gap, count: int) -> SecondContact:
 
 
 def _knots(factor: Function, count: int) -> Array:
-    """Equal angles, with finer ones about each undercut."""
+    """Angles (m,), rad, ascending: `count` equal ones, with finer ones about each undercut, where a
+    short loop would fall between them.
+    """
     step = FULL_TURN / count
     values, bottoms = local_minima(factor, count)
     bottoms, values = bottoms[values < 0], values[values < 0]
@@ -133,7 +135,10 @@ def _knots(factor: Function, count: int) -> Array:
 
 
 def _overlapping(start: Array, chord: Array) -> tuple[Array, Array]:
-    """Indices of pairs of non-adjacent chords whose bounding boxes overlap, by a sweep along x."""
+    """Numbers (k,) and (k,), the lesser first, of pairs of non-adjacent chords whose bounding boxes
+    overlap, by a sweep along x; start, chord : (2, n), start points and vectors of the chords of a
+    closed polygon, m.
+    """
     low, high = np.minimum(start, start + chord), np.maximum(start, start + chord)
     order = np.argsort(low[0], kind="stable")
     count = len(order)
@@ -148,7 +153,10 @@ def _overlapping(start: Array, chord: Array) -> tuple[Array, Array]:
 
 
 def _polished(points: Curve, velocity: Curve, first: Array, second: Array) -> tuple[Array, Array]:
-    """Crossings by Newton's method; pairs that converge to one angle are discarded."""
+    """Pairs of cam angles (m,), rad, at which the curve passes through the same point, by Newton's
+    method from `first` and `second` (n,). Pairs that converge to one angle, or not at all, are
+    discarded.
+    """
     apart = np.abs(second - first)
     one, two, change = first, second, np.full_like(first, np.inf)
     for _ in range(_POLISH_STEPS):
@@ -166,7 +174,9 @@ def _polished(points: Curve, velocity: Curve, first: Array, second: Array) -> tu
 
 
 def _distinct(first: Array, second: Array) -> tuple[tuple[float, float], ...]:
-    """Pairs in ascending order, without duplicates."""
+    """Pairs of angles, rad, within the turn, the lesser first, in ascending order, without
+    duplicates.
+    """
     pairs = np.sort(np.mod([first, second], FULL_TURN), axis=0)
     kept: list[tuple[float, float]] = []
     for one, two in sorted(zip(*pairs.tolist(), strict=True)):

@@ -233,7 +233,8 @@ def require_uniform_turn(field: str, theta: Array) -> None:
 
 
 def one_turn(theta: Array, values: Array, field: str = "lift.theta") -> tuple[Array, Array, float]:
-    """A table over one turn without its repeated end, and the difference of its ends, m.
+    """Angles and lifts of a table over one turn without its repeated end, and the absolute
+    difference of lift between its ends, m, 0 if the end is not repeated.
 
     Parameters
     ----------

@@ -82,7 +82,9 @@ def lift_through(theta: ArrayLike, values: ArrayLike) -> Lift:
 
 
 def _refuse_overshoot(angle: Array, value: Array, theta: Array, lift: Array) -> None:
-    """Refuse a spline (lift over theta) that falls below zero between points that do not."""
+    """Refuse a spline, `lift` (m,) over `theta` (m,), that falls below zero between points, `value`
+    (n,) over `angle` (n,), that do not; m, rad.
+    """
     depth, place = float(lift.min()), float(theta[lift.argmin()])
     if depth >= -NEGATIVE_TOLERANCE or value.min() < -NEGATIVE_TOLERANCE:
         return
@@ -203,7 +205,9 @@ def fitted_lift(theta: ArrayLike, values: ArrayLike, noise: float) -> FittedLift
 
 
 def _fit_within(angle: Array, value: Array, noise: float) -> tuple[FittedLift | None, float]:
-    """Fit of fewest parts within a noise, m, None without one; rms residual of the last, m."""
+    """Fit of fewest spline parts whose rms residual is within `noise`, m, None where none is, and
+    the rms residual of the last fit, m; angle (n,), rad, value (n,), m.
+    """
     lowest = float(value.min())
     if not lowest >= -BELOW_ZERO * noise:
         at = f"{1e3 * lowest:.4g} mm at {np.degrees(angle[value.argmin()]):.4g} deg"
@@ -226,6 +230,9 @@ def _fit_within(angle: Array, value: Array, noise: float) -> tuple[FittedLift | 
 
 
 def _least_squares(angle: Array, value: Array, parts: int, noise: float) -> FittedLift:
+    """Periodic quintic spline of `parts` equal parts fitted to a table, angle (n,), rad, value
+    (n,), m, by least squares; noise : that of the table, m, which the result records.
+    """
     from scipy.interpolate import BSpline
 
     step = FULL_TURN / parts
@@ -250,5 +257,8 @@ def _not_below_zero(values: Array) -> Array:
 
 
 def _table(theta: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
+    """Angles, rad, and lifts, m, of a table over one turn, both (n,), without its repeated end;
+    InputError as `one_turn`.
+    """
     angle, value = finite("lift.angle", theta), finite("lift.lift", values)
     return one_turn(angle, value, "lift.angle")[:2]

@@ -100,7 +100,7 @@ class LiftParts:
         )
 
     def greatest(self, function: LiftFunction, added: AngleFunction | None = None) -> Extremum:
-        """Maximum of a function of the lift over the continuous turn, and its cam angle, rad.
+        """Maximum of a function of s, s' and s'' over the continuous turn, and its cam angle, rad.
 
         Local maxima among the samples are refined to round-off.
 
@@ -139,7 +139,9 @@ class LiftParts:
 def _at(
     part: LiftPart, function: LiftFunction, added: AngleFunction | None, x: Array, lift: Array
 ) -> Array:
-    """Values (...) at places x, where the lift and its derivatives are (3, ...)."""
+    """Values (...) of `function`, and of `added`, at places x (...), 0 to 1, of a part; lift : (3,
+    ...), s, s', s'' there.
+    """
     values = function(*lift)
     return values if added is None else values + added(part.start + part.span * x)
 
@@ -152,7 +154,9 @@ def _minus_at(
 
 
 def _half(segment: Segment, level: float, half: int, x: Array) -> Array:
-    """Lift and derivatives of the first or second half of a segment, (3, ...)."""
+    """Lift and derivatives (3, ...), m/rad^k, of the first (0) or second (1) half of a segment at
+    places x (...), 0 to 1 over the half; level : lift at the start of the segment, m.
+    """
     place = 0.5 * (x + half)
     if half:
         place = np.maximum(place, _LEAVES_MIDDLE)

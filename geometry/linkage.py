@@ -88,7 +88,9 @@ class SliderCrank:
         return np.asarray(r * cos + rod_part)
 
     def _rod(self, theta: ArrayLike) -> tuple[Array, ...]:
-        """Sine and cosine of the crank angle, rod across and along the slider's line, m."""
+        """Sine and cosine of the crank angle, and components of the rod across and along the
+        slider's line, m; each (...).
+        """
         sin, cos = np.sin(theta), np.cos(theta)
         across = self.crank_radius * sin - self.offset
         return sin, cos, across, np.sqrt(self.rod_length**2 - across**2)

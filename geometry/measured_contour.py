@@ -158,6 +158,9 @@ def real_contour(contour: Contour, inspection: Inspection, *, keep_phase: bool =
 
 
 def _checked(points: ArrayLike) -> Array:
+    """Measured points (2, n), m, as a read-only array; InputError for too few, NaN, or a gap above
+    30 degrees.
+    """
     measured = finite("measured", points)
     if measured.ndim != 2 or measured.shape[0] != 2 or measured.shape[1] < POINTS_MIN:
         raise InputError("measured", f"shape {measured.shape}", f"(2, n) with n >= {POINTS_MIN}")
@@ -169,7 +172,9 @@ def _checked(points: ArrayLike) -> Array:
 
 
 def _rough_phase(contour: Contour, measured: Array) -> float:
-    """Phase of least variance of the radius deviation, among equal steps of the turn, rad."""
+    """Rotation, rad, of measured points (2, n), m, against the nominal contour, among 72 equal
+    steps of the turn: that of least variance of the radii less the nominal ones.
+    """
     theta = uniform_turn(contour.lift.search_count)
     polar, radius = _polar(contour.points(theta))
     order = np.argsort(polar)
@@ -186,7 +191,10 @@ def _rough_phase(contour: Contour, measured: Array) -> float:
 
 
 def _feet(contour: Contour, points: Array) -> tuple[Array, Array]:
-    """Cam angle of the foot of each point on the contour, rad, and its normal distance, m."""
+    """Cam angles (n,), rad, of the feet of the normals from points (2, n), m, on the contour, and
+    distances along the outward normal (n,), m. By Newton's method; GeometryError where it does not
+    converge.
+    """
     grid = uniform_turn(contour.lift.search_count)
     polar, _ = _polar(contour.points(grid))
     order = np.argsort(polar)
@@ -211,7 +219,9 @@ def _feet(contour: Contour, points: Array) -> tuple[Array, Array]:
 
 
 def _harmonics(theta: Array, deviation: Array) -> tuple[Array, Array]:
-    """Cosine and sine harmonics by least squares, at most one wave per four points."""
+    """Cosine and sine harmonics (k,) and (k,), m, of wave 0 to k - 1 of a deviation (n,), m, over
+    cam angles (n,), rad; by least squares, at most one wave per four points.
+    """
     count = min(HARMONICS_MAX, theta.size // 4)
     waves = np.multiply.outer(theta, np.arange(count + 1))
     basis = np.hstack([np.cos(waves), np.sin(waves[:, 1:])])

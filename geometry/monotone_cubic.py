@@ -50,7 +50,9 @@ class MonotoneCubic:
 
     @cached_property
     def _slopes(self) -> Array:
-        """Slope at each sample (n,): harmonic mean of those of its pieces, 0 at an extreme."""
+        """Slope at each sample (n,), value per place: weighted harmonic mean of the slopes of the
+        two pieces beside it, 0 at an extreme.
+        """
         step, rise = np.diff(self.places), np.diff(self.values) / np.diff(self.places)
         before, after = rise[:-1], rise[1:]
         first, second = 2.0 * step[1:] + step[:-1], step[1:] + 2.0 * step[:-1]
@@ -63,7 +65,7 @@ class MonotoneCubic:
         )
 
     def __call__(self, at: ArrayLike, derivative: int = 0) -> Array:
-        """Value, or first derivative, at any places (...)."""
+        """Value, or with `derivative` 1 the slope, at any places (...); cubic Hermite pieces."""
         x = np.asarray(at, dtype=float)
         k = np.clip(np.searchsorted(self.places, x, side="right") - 1, 0, self.places.size - 2)
         step, slope = np.diff(self.places)[k], self._slopes
@@ -77,7 +79,9 @@ class MonotoneCubic:
 
 
 def _end_slope(step: Array, rise: Array) -> float:
-    """Slope at the first sample by the parabola through three, limited to keep the monotony."""
+    """Slope at the first sample by the parabola through three, limited to keep the monotony; step,
+    rise : lengths and slopes of the pieces, that at this end first.
+    """
     slope = float(((2.0 * step[0] + step[1]) * rise[0] - step[0] * rise[1]) / (step[0] + step[1]))
     if slope * rise[0] <= 0.0:
         return 0.0

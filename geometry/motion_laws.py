@@ -38,6 +38,7 @@ class Piece(Protocol):
 
 
 def _polynomial(coefficients: ArrayLike) -> Piece:
+    """Law of a polynomial with these coefficients in rising powers of x."""
     rising = np.polynomial.Polynomial(np.asarray(coefficients, dtype=float))
     derivatives: list[list[float]] = [
         (rising.deriv(k) if k else rising).coef.tolist() for k in range(JERK + 1)
@@ -53,7 +54,7 @@ def _polynomial(coefficients: ArrayLike) -> Piece:
 
 
 def _wave(x: Values, frequency: float, order: int) -> Values:
-    """Derivative of cos(frequency x), of the given order."""
+    """Derivative of order 0 to 4 of cos(frequency x) by x."""
     wave: Values = -np.sin(frequency * x) if order % 2 else np.cos(frequency * x)
     sign = -1.0 if order in (2, 3) else 1.0
     return sign * frequency**order * wave
@@ -108,6 +109,9 @@ _THREE_EIGHTHS = _state(0.25, _plateau)
 
 
 def _modified_trapezoid(x: Values, order: int) -> Values:
+    """Modified trapezoid on the first half: the acceleration rises by a quarter sine up to x = 1/8,
+    is constant up to 3/8 and falls to zero by a quarter cosine.
+    """
     late = _after(_THREE_EIGHTHS, x - 0.375, _QUARTER, order)
     after_start: Values = np.where(x.real < 0.375, _plateau(x - 0.125, order), late)
     whole: Values = np.where(x.real < 0.125, _start(x, order), after_start)
@@ -115,6 +119,9 @@ def _modified_trapezoid(x: Values, order: int) -> Values:
 
 
 def _modified_sine(x: Values, order: int) -> Values:
+    """Modified sine on the first half: the acceleration rises by a quarter sine up to x = 1/8 and
+    falls to zero by a quarter cosine up to 1/2.
+    """
     late = _after(_EIGHTH, x - 0.125, _QUARTER / 3.0, order)
     whole: Values = np.where(x.real < 0.125, _start(x, order), late)
     return _SINE * whole
@@ -193,6 +200,9 @@ class Segment:
     stroke: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse an unknown law, an angle out of bounds, a dwell with a stroke and any other law
+        without.
+        """
         if self.law != DWELL and self.law not in LAWS:
             raise InputError("lift.segment.law", self.law, f"one of {', '.join((DWELL, *LAWS))}")
         if not 0.0 < self.angle <= FULL_TURN * (1.0 + CLOSURE_TOLERANCE):
@@ -225,6 +235,9 @@ class SegmentMotion:
     repeat: int = 1
 
     def __post_init__(self) -> None:
+        """Refuse segments whose angles do not add up to the period, whose strokes do not add up to
+        zero, or that are all dwells.
+        """
         if not self.segments:
             raise InputError("lift.segment", "none", "at least one segment")
         if not 1 <= self.repeat <= REPEAT_MAX:

@@ -54,7 +54,8 @@ class PeriodicPolynomial:
         return value
 
     def derivatives(self, theta: ArrayLike, order: int) -> Array:
-        """Value and derivatives up to `order`, (order + 1, ...), by one look-up; read-only.
+        """Values and derivatives up to `order` at angles (...), rad, in a read-only array (order +
+        1, ...), row k in units per rad^k.
 
         Those at the same angles as in one of the last calls are kept: loads, contact and checks
         evaluate one lift at the same equal angles.
@@ -74,6 +75,9 @@ class PeriodicPolynomial:
         return rows[: order + 1]
 
     def _evaluate(self, theta: ArrayLike, first: int, last: int) -> Array:
+        """Derivatives of order `first` to `last` at angles (...), rad, (last - first + 1, ...); NaN
+        at an angle NaN.
+        """
         degree, count = self.coefficients.shape[0] - 1, self.coefficients.shape[1]
         part = FULL_TURN / count
         angle = np.mod(np.asarray(theta, dtype=float), FULL_TURN)
@@ -93,7 +97,8 @@ class PeriodicPolynomial:
         return values
 
     def antiderivative(self) -> tuple[PeriodicPolynomial, float]:
-        """Integral from angle 0, and its change over the whole turn.
+        """Integral from angle 0 as a function of the angle, in units times rad, and its change over
+        the whole turn.
 
         The integral is periodic only if the change is zero, which the caller must check.
         """
@@ -150,7 +155,9 @@ def periodic_cubic(values: ArrayLike) -> PeriodicPolynomial:
 
 
 def _through(values: ArrayLike, degree: int) -> PeriodicPolynomial:
-    """Periodic spline of odd degree through samples at equal angles."""
+    """Periodic spline of odd degree through samples (n,) at n equal angles of one turn, from angle
+    0; its B-spline weights by FFT.
+    """
     samples = np.asarray(values, dtype=float)
     count, half = samples.size, degree // 2
     # The splines of equal knots are shifts of one another: a cyclic convolution, solved by FFT.
@@ -171,7 +178,8 @@ def _through(values: ArrayLike, degree: int) -> PeriodicPolynomial:
 
 @cache
 def _pieces(degree: int) -> Array:
-    """B-spline of unit knots: piece m (degree + 1, degree + 1) in rising powers of x - m.
+    """Polynomials of the B-spline with knots at whole numbers, (degree + 1, degree + 1): row m over
+    m to m + 1, in rising powers of x - m.
 
     References
     ----------

@@ -158,6 +158,9 @@ def _described(error: Exception) -> tuple[str, ...]:
 
 
 def _describe(error: Exception) -> str:
+    """Error in one line of text: file and reason of the system, or its kind and the hint at
+    --debug.
+    """
     if isinstance(error, BrokenPipeError):  # not of the output: see `output_streams`
         return "a process or pipe that was written to has ended"
     if isinstance(error, OSError):

@@ -249,7 +249,9 @@ def _prescribed(task: _Task) -> Iterator[Tried]:
 
 
 def _smoothed(task: _Task) -> Iterator[Tried]:
-    """Trials of ever wider smoothers."""
+    """Trials of ever wider smoothers of the torque, until a cam passes or the trials end; the last
+    has the whole iteration.
+    """
     case, torques = task.case, task.torques
     forecast = _forecast_of(task)
     smoother, why = Smoother.from_case(case.smoothing, case.period), "smoother of the case"
@@ -272,7 +274,9 @@ def _smoothed(task: _Task) -> Iterator[Tried]:
 
 
 def _forecast_of(task: _Task) -> Forecast:
-    """Forecast in the worker processes; of each smoother once."""
+    """Function that gives the checks of the cams of some smoothers, each computed once in the
+    worker processes.
+    """
     known: dict[Smoother, tuple[Check, ...]] = {}
 
     def forecast(smoothers: Sequence[Smoother]) -> list[tuple[Check, ...]]:
@@ -290,7 +294,9 @@ def _forecast_of(task: _Task) -> Forecast:
 def forecasts(
     case: Case, torques: Mapping[str, Torque], smoothers: Sequence[Smoother]
 ) -> list[tuple[Check, ...]]:
-    """Coarse-preview checks of the cam of each smoother; none where no cam exists."""
+    """Checks by a coarse preview of the cam of each smoother, in their order; an empty tuple where
+    no cam exists.
+    """
     made: list[tuple[Check, ...]] = []
     for smoother in smoothers:
         try:
@@ -309,7 +315,9 @@ def forecasts(
 
 
 def _constrained(task: _Task) -> Iterator[Tried]:
-    """Synthesis and finite elements in turn, until they agree; the best trial is the final one."""
+    """Trials of a constrained synthesis, whose limits are corrected by the finite elements of each,
+    until both agree; the last has the iteration with the best as final trial.
+    """
     case, torques = task.case, task.torques
     margin, why = case.smoothing.correction_margin, "least ripple within all limits"
     points: list[TrialPoint] = []
@@ -363,7 +371,9 @@ def _constrained(task: _Task) -> Iterator[Tried]:
 
 
 def _ending(final: Trial, count: int, latest: Comparison, *, settled: bool) -> str:
-    """Result of the final trial and the reason for the end of the trials, in words."""
+    """Sentence on the final trial and on the reason for the end of the trials; count : number of
+    trials.
+    """
     chosen = f"trial {final.number} {_result(final)}"
     if final.number < count:
         chosen += f"; it is the best of {count} trials"

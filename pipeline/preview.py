@@ -76,7 +76,9 @@ def preview_case(
 
 
 def _nominal(case: Case, torques: Mapping[str, Torque], kept: bool, progress: Progress) -> Trial:
-    """Trial of a case without tolerance corners."""
+    """Trial of a case at preview depth without tolerance corners; kept : take the cam of a
+    synthesis from the disk cache.
+    """
     if case.smoothing.kind != "constrained":
         contour = case.contour(cam_lift(case, torques))
         trial = solve(
@@ -89,7 +91,9 @@ def _nominal(case: Case, torques: Mapping[str, Torque], kept: bool, progress: Pr
 
 
 def _kept(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Trial:
-    """As `_synthesised`; solved again for the cam in the disk cache, if it is there."""
+    """Trial of the constrained synthesis, whose cam is taken from the disk cache where it is there;
+    loads and checks are solved again.
+    """
     solved: list[Trial] = []
 
     def compute() -> disk_cache.Arrays:

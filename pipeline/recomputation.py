@@ -200,7 +200,9 @@ def _recomputed(
     jobs: int | None,
     progress: Progress,
 ) -> Recomputation:
-    """See `recompute`."""
+    """Comparison of a run with its recomputation; angles : number of cam angles drawn at random by
+    `seed`; jobs : worker processes, None: one per processor, at most 4.
+    """
     case, contour = drawn_cam(run.path)
     torques = engine_torques(case)
     record = run.final.record
@@ -284,7 +286,8 @@ def _number(final: TrialRecord, name: str, value: object) -> float | None:
 def _lift_differences(
     run: Run, case: Case, torques: Mapping[str, Torque], contour: Contour
 ) -> Iterator[str]:
-    """Difference of the stored lift from that of the case; a synthesis chooses its lift freely.
+    """Lines on the difference of the stored lift from that which follows from the case; a synthesis
+    chooses its lift freely.
 
     Spring and prime radius are within their ranges where they are free, else those of the case.
     """
@@ -311,7 +314,7 @@ def _lift_differences(
 
 
 def _source_differences(run: Run, lift: Lift, expected: Lift) -> Iterator[str]:
-    """Differences of what is recorded of the source of the lift: its closure, and its spacing."""
+    """Lines on differences of what is recorded of the source of the lift: closure and spacing."""
     file = f"{run.final.path.name}/trial.json"
     if not abs(lift.closure - expected.closure) <= SAME * lift.highest.value:
         stated, again = (shown(each.closure, "mm") for each in (lift, expected))
@@ -331,7 +334,9 @@ def _chosen(case: Case) -> dict[str, float]:
 
 
 def _check_differences(final: TrialRecord, checks: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """Differences of the recorded checks from those computed again, beyond their error bars."""
+    """Lines on the recorded checks that differ from those computed again by more than their error
+    bars, are missing or are none of the case.
+    """
     file = f"{final.path.name}/6_checks.json"
     stored = {record["id"]: record for record in final.checks}
     again = {str(record["id"]): record for record in checks}
@@ -378,7 +383,9 @@ def _is_round_off(record: Mapping[str, Any]) -> bool:
 def _drawn_angles(
     run: Run, trial: Trial, count: int, seed: int, jobs: int | None, progress: Progress
 ) -> tuple[Angle, ...]:
-    """Stored cycle against both bodies in full at loaded positions drawn at random."""
+    """Stored cycle compared with both bodies in full, at `count` loaded positions over all load
+    cases drawn at random; empty without a certificate.
+    """
     worst = tuple(point for point in trial.certificate if not point.order_from)
     if not worst:
         return ()
@@ -400,7 +407,9 @@ def _drawn_angles(
 
 
 def _angle(run: Run, trial: Trial, number: int, k: int, point: CertificatePoint) -> Angle:
-    """Figure of the stored cycle that differs most from a point, over its error bar."""
+    """Figure of the stored cycle of load case `number` at position k that differs most from a
+    certified point, measured by its error bar.
+    """
     cycle = trial.cycles[number]
     table = run.final.cycle.of_load_case(cycle.load_case)
     columns = {
@@ -433,6 +442,9 @@ class _Files:
     """
 
     def __init__(self, run: Run, trial: Trial) -> None:
+        """Sort the files of the run by the class that says how each is compared; unknown ones are
+        noted.
+        """
         self._run, self._trial = run, trial
         self._final = run.final.path.name
         self.differences: list[str] = []
@@ -465,7 +477,9 @@ class _Files:
                 self.unseen.append(name if own else f"{name.partition('/')[0]}/")
 
     def _solved(self, folder: Path) -> None:
-        """Compare what follows from case and lift."""
+        """Write the run again into a folder and compare the files that follow from case and
+        lift.
+        """
         run, trial = self._run, self._trial
         case = read_case(run.path / "case.toml")
         with RunFolder(folder, case, depth=trial.depth) as again:
@@ -527,7 +541,9 @@ def _few(file: str, lines: Sequence[str]) -> Iterator[str]:
 
 
 def _written(again: RunFolder, run: Run, trial: Trial) -> Mapping[str, object]:
-    """Write the files that follow from a trial as a run does; the contents of ``run.json``."""
+    """Write the files that follow from a trial into the folder `again` as a run does; returns the
+    contents of ``run.json``.
+    """
     if (torque := trial.solution.machine.torque) is not None:
         again.write("1_torque.csv", torque_columns(torque))
     write_trial_files(again, trial)
@@ -547,7 +563,9 @@ def _written(again: RunFolder, run: Run, trial: Trial) -> Mapping[str, object]:
 
 
 def _shown_fields(folder: Path, trial: Trial) -> Shown:
-    """Angles of the stored stress field, by their number."""
+    """Which cam angles the stored stress field shows, by their number: none, the worst, a default
+    set or all.
+    """
     file = folder / "fields" / STRESS
     if not file.is_file():
         return Shown.NONE
@@ -561,7 +579,7 @@ def _shown_fields(folder: Path, trial: Trial) -> Shown:
 
 
 def _recorded_limits(run: Run) -> Iterator[str]:
-    """Limits of the model in the record that are not those of this version."""
+    """Lines on limits of the model in the record that are not those of this version."""
     recorded = read_json(run.path / signoff.NAME)
     for key, words in limitations().items():
         if recorded.get(key) != words:

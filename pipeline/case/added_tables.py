@@ -62,6 +62,9 @@ def with_added(case: Tables) -> Tables:
 
 
 def _add(table: Tables, more: Tables, path: str) -> None:
+    """Write the keys of `more` into `table`, tables within tables; `path` : dotted name of the
+    table for messages. InputError for a key that it has with another value.
+    """
     for key, value in more.items():
         stated, name = table.get(key), f"{path}.{key}".lstrip(".")
         if isinstance(stated, dict) and isinstance(value, dict):
@@ -124,6 +127,9 @@ def _rows(paths: Iterable[str]) -> list[tuple[str, Key]]:
 
 
 def _block(rows: Sequence[tuple[str, Key]], materials: Mapping[str, Material]) -> str:
+    """Text of one `[[added]]` table with these keys (path, key) and their examples as values, a
+    comment on each; the card of a table that has one comes first.
+    """
     by_table = sorted(rows, key=lambda row: _place(row[0], rows))
     text = f"[[{ADDED}]]\n"
     for table, listed in groupby(by_table, key=lambda row: row[0].rpartition(".")[0]):
@@ -149,6 +155,9 @@ def line_of(key: Key) -> str:
 
 
 def _remark(key: Key) -> str:
+    """Comment on an example: meaning of the key, values that it accepts where they are words,
+    source.
+    """
     words = key.accepted.replace("`", '"') if key.accepted.startswith("`") else ""
     return "; ".join(filter(None, ("example", key.meaning, words, f"source: {key.source}")))
 
@@ -194,7 +203,9 @@ def with_examples(error: MissingKeysError, tables: Tables, folder: Path | None) 
 
 
 def _within(path: str) -> Iterator[tuple[str, Key]]:
-    """A key, or the required keys of a table in place of it."""
+    """A key with its path, or in place of a table the keys that it requires, those of its tables
+    too. A card stands for the keys that it fills, if it spares enough of them.
+    """
     keys = keys_at(path)
     if not keys or not keys[0].is_table:
         yield from ((path, key) for key in keys[:1])
@@ -219,7 +230,7 @@ def _within(path: str) -> Iterator[tuple[str, Key]]:
 
 
 def _filled(path: str, card: Key) -> Tables:
-    """The table of a path as its example card fills it."""
+    """The table at a dotted path as the example of its card key fills it."""
     tables: Any = {card.name: card.example}
     table = tables
     for step in reversed(path.split(".")):
@@ -233,7 +244,9 @@ def _section(path: str) -> type[Any]:
 
 
 def _materials(rows: Rows, written: Written, folder: Path | None) -> Rows:
-    """Cards of the materials that rows and case name, and the case does not have."""
+    """Card key of each shipped material that the examples of `rows` or the case name, and the case
+    does not have, by path; without an example where no card has the name.
+    """
     stated = written.value(("materials",))
     known, shipped = stated if isinstance(stated, dict) else {}, known_cards(folder)["materials"]
     names: Iterable[object] = (

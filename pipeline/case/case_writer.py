@@ -34,6 +34,9 @@ def filled(text: str, **values: Filling) -> str:
 
 
 def _filled(line: str, values: Mapping[str, Filling]) -> str | None:
+    """A line of a commented text with its marks replaced; None, for a line to be left out, where a
+    value before the comment is None.
+    """
     match = _LINE.fullmatch(line)
     if match is None:
         return line

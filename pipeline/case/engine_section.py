@@ -26,7 +26,7 @@ KINDS = ("cylinder", "table", "pressure", "speed", "voltage")
 
 
 def engine_files(engine: Engine | None) -> Iterator[tuple[str, str]]:
-    """Key and file name of every file that an engine includes."""
+    """Key and file name of every file that an engine refers to."""
     if engine is None or isinstance(engine, CylinderEngine):
         return
     yield "engine.file", engine.file

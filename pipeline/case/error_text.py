@@ -53,7 +53,9 @@ class Written:
     tables: Tables = field(default_factory=dict, compare=False)
 
     def value(self, steps: Iterable[str | int]) -> TomlValue | None:
-        """Value at a dotted key; None where the file omits it."""
+        """Value at a dotted key in its steps, names and numbers of rows; None where the file omits
+        it.
+        """
         node: Any = self.tables
         for step in steps:
             try:
@@ -81,6 +83,7 @@ class MissingKeysError(InputError):
     """
 
     def __init__(self, keys: tuple[str, ...], examples: str = "", toml: str = "") -> None:
+        """Message that names the first key, with examples if there are any, else the other keys."""
         self.keys, self.toml = keys, toml
         limit = "given"
         if examples:
@@ -125,7 +128,9 @@ def refusal_of(error: ValidationError, section: str = "") -> InputError:
 
 
 def _refusal(entry: Mapping[str, Any], key: str) -> InputError:
-    """Error of one key."""
+    """InputError of one key from an error of pydantic: value as written, limit, what to do about a
+    kind that is not provided.
+    """
     context, value = dict(entry.get("ctx", {})), entry["input"]
     word = value if isinstance(value, str) else ""
     if "field" in context:
@@ -151,7 +156,9 @@ def _refusal(entry: Mapping[str, Any], key: str) -> InputError:
 
 
 def _key_of(entry: Mapping[str, Any], section: str) -> str:
-    """Dotted key of an error."""
+    """Dotted key of an error of pydantic within a section; that of the kind where the error is in
+    it.
+    """
     context = entry.get("ctx", {})
     key = f"{section}.{_dotted(entry['loc'])}".strip(".")
     if entry["type"] == "union_tag_invalid":

@@ -127,6 +127,9 @@ class Key:
 
     @cached_property
     def _example(self) -> TomlValue:
+        """Example of the key as a TOML value: the word of its kind, its own example, or its
+        default.
+        """
         if self.name == "kind" and " or " not in self.accepted:
             return self.accepted.strip("`")  # one of several tables, told apart by it
         if self._known.example is not None:
@@ -155,12 +158,15 @@ class Key:
 
     @property
     def _known(self) -> Known:
+        """Where a value of the key is found, and its example."""
         if not self.is_field:
             return self._resolved.known
         return self._stated(Known, Known("") if self.is_table else None)
 
     def _stated(self, kind: type[Words], absent: Words | None = None) -> Words:
-        """The first mark of a kind on the fields of its path."""
+        """The first mark of a kind, such as `Known`, on the fields of its path; `absent` where
+        there is none, and KeyError if that is None.
+        """
         marks = (mark for each in self._alike for mark in words_at(each.section, each.field))
         words = next((mark for mark in marks if isinstance(mark, kind)), absent)
         if words is None:
@@ -186,7 +192,9 @@ def case_tables() -> tuple[TableKeys, ...]:
 
 @cache
 def registry() -> Mapping[str, tuple[Key, ...]]:
-    """Keys of a case file by path, one for each variant of their table."""
+    """Keys of a case file by path; several of one path where a table has variants (kinds) with the
+    same key.
+    """
     by_path: dict[str, tuple[Key, ...]] = {}
     for key in case_keys():
         by_path[key.path] = (*by_path.get(key.path, ()), key)
@@ -235,6 +243,7 @@ class TableKeys(NamedTuple):
 
 
 def _keys_of(table: TableKeys) -> Iterator[Key]:
+    """Key of a table itself, then those of its values; tables within it are left out."""
     path, header, section, holder, held_as = table
     if path:
         yield Key(path, header, holder, held_as, is_table=True)
@@ -252,6 +261,9 @@ def sections(section: type[Section]) -> Iterator[TableKeys]:
 
 
 def _within(section: type[Section], path: str) -> Iterator[TableKeys]:
+    """Tables below a section at a dotted path, each before those within it; NAME stands for a name
+    that the case chooses.
+    """
     for name, field in section.model_fields.items():
         for kind, inner in nested(field):
             key = f"{path}.{field.alias or name}".lstrip(".")
@@ -272,6 +284,9 @@ def nested(field: FieldInfo) -> Iterator[tuple[str, type[Section]]]:
 
 
 def _nested(hint: object, kind: str) -> Iterator[tuple[str, type[Section]]]:
+    """Sections within a type hint, each with its kind: "rows" of an array of tables, "names" of a
+    table of named ones, else the kind handed down.
+    """
     origin = get_origin(hint)
     if origin is Annotated:
         yield from _nested(get_args(hint)[0], kind)
@@ -291,7 +306,7 @@ def _nested(hint: object, kind: str) -> Iterator[tuple[str, type[Section]]]:
 
 
 def accepted(field: FieldInfo) -> str:
-    """Values that a key accepts: unit and bounds, words, or type."""
+    """Values that a key accepts, in words: unit and bounds, the words themselves, or its type."""
     mark = number_in(field)
     if isinstance(mark, In):
         return mark.limit.replace("finite ", "any, ").replace(" and ", ", ")
@@ -323,6 +338,7 @@ def accepted(field: FieldInfo) -> str:
 
 
 def _leaves(hint: object) -> Iterator[object]:
+    """Types at the ends of a type hint: members of unions, entries of tuples; a Literal as one."""
     inner = get_args(hint)
     if get_origin(hint) is Literal or not inner:
         yield hint
@@ -339,7 +355,9 @@ def of_field(section: type[Section], name: str) -> str:
 
 
 def default(field: FieldInfo) -> str:
-    """Default of a field with its unit; "" without one."""
+    """Default of a field as text with its unit; `REQUIRED` where it has to be stated, "" without
+    one.
+    """
     if field.is_required():
         return REQUIRED
     value = field.default
@@ -358,7 +376,7 @@ def default(field: FieldInfo) -> str:
 
 
 def _default_value(field: FieldInfo | None) -> TomlValue:
-    """Default of a field as a case file has it."""
+    """Default of a field as a TOML value, with its unit; KeyError without one."""
     value = None if field is None else field.default
     if field is None or value is None or value is PydanticUndefined:
         raise KeyError("a key without a default has an example beside its field")

@@ -113,7 +113,7 @@ def engine_torque(case: TorqueSource, state: LoadCase) -> Torque:
 
 
 def torque_key(case: TorqueSource, load_case: str) -> str:
-    """Case key that supplies the torque of a load case, by its name."""
+    """Case key, such as `engine.file`, that supplies the torque of the load case with this name."""
     number = [state.name for state in case.load_cases].index(load_case)
     if case.load_cases[number].torque is not None:
         return f"load_case[{number}].torque"
@@ -147,7 +147,9 @@ def require_ripple(case: TorqueSource, torques: Mapping[str, Torque]) -> None:
 
 
 def _torque_of_cycle(case: TorqueSource, state: LoadCase) -> Torque:
-    """Torque over a cycle; a file of the load case replaces that of engine and machine."""
+    """Torque of a load case at the shaft over a cycle, of engine and driven machine together; a
+    file of the load case replaces both.
+    """
     machine = case.torque
     if state.torque is not None:
         if machine is None:
@@ -161,6 +163,9 @@ def _torque_of_cycle(case: TorqueSource, state: LoadCase) -> Torque:
 
 
 def _of_engine(case: TorqueSource, state: LoadCase) -> Torque:
+    """Torque of the engine in a load case over a cycle, N m, by its kind: table, cylinder model,
+    measured pressure or measured crank speed.
+    """
     engine = case.engine
     if isinstance(engine, TorqueTable):
         return torque_from_csv(case.path(engine.file))
@@ -175,7 +180,7 @@ def _of_engine(case: TorqueSource, state: LoadCase) -> Torque:
 
 
 def _cylinder_torque(engine: CylinderEngine, speed: float) -> Torque:
-    """Torque of a cylinder model at a speed, rad/s, from the disk cache where it is known."""
+    """Torque of a cylinder model over a cycle at a crank speed, rad/s; kept in the disk cache."""
 
     def compute() -> dict[str, Array]:
         torque = torque_from_cylinder(engine, speed)
@@ -247,7 +252,9 @@ def pressure(case: TorqueSource, engine: PressureTable) -> tuple[BrakeBalance, P
 
 
 def crank_speed(case: TorqueSource, engine: SpeedTable | VoltageTable) -> SpeedTrace:
-    """Measured crank speed of a case, from tooth times or the voltage of a pick-up."""
+    """Measured crank speed of a case over the cycle, from tooth times or the voltage of a pick-up;
+    InputError without the inertia of the crankshaft.
+    """
     if case.crankshaft is None:
         raise InputError("crankshaft.inertia", "missing", "given")
     calibrator = engine.calibrator(case.crankshaft.inertia, case.path)
@@ -322,7 +329,9 @@ def measurement_words(case: TorqueSource) -> Iterator[str]:
 
 
 def _recording(speed: SpeedTrace) -> WheelRecording:
-    """What the record of a trigger wheel shows of itself."""
+    """Runs, tooth pattern and sampling rate of a recorded trigger wheel, for ``run.json``; empty
+    for a table of speeds.
+    """
     recording = speed.recording
     if recording is None:
         return {}

@@ -68,7 +68,9 @@ def with_new_wire_keys(wire: TomlValue, field: str) -> Tables:
 
 
 def _rename(table: Tables, old: str, new: str, place: str) -> None:
-    """Give a key its new name; `place` is the dotted name of its table for messages."""
+    """Give a key its new name in place, its order kept; `place` is the dotted name of its table for
+    messages. InputError if the table has both names.
+    """
     if old not in table:
         return
     if new in table:
@@ -89,7 +91,7 @@ def _new(name: TomlValue, known: Mapping[str, str]) -> TomlValue:
 
 
 def _parent(case: Tables, field: str) -> Tables | None:
-    """The table that holds a dotted field."""
+    """The table that holds a dotted field; None where the case has none."""
     table = case
     for part in field.split(".")[:-1]:
         inner = table.get(part)

@@ -176,6 +176,7 @@ class Smoothing(Section):
 
     @model_validator(mode="after")
     def _has_its_ranges(self) -> Self:
+        """Refuse a free variable without a rising range of its values."""
         for name in self.free:
             if name == "initial_energy":
                 continue
@@ -274,6 +275,7 @@ class Confirmation(Section):
 
     @model_validator(mode="after")
     def _confirms(self) -> Self:
+        """Refuse a confirmation without a confirming source and without a name and date."""
         signed = bool(self.name.strip()) and self.date is not None
         if not signed and not self.source.confirmed:
             shown = str(self.source) or "missing"

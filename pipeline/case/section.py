@@ -75,6 +75,10 @@ class FromText:
     def __get_pydantic_core_schema__(
         self, source: type[Source], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
+        """Validation of a field as text or as a table of text and confirmation, into a `Source`;
+        for the JSON Schema it is text.
+        """
+
         def made(entry: object, text: ValidatorFunctionWrapHandler) -> Source:
             read = entry if isinstance(entry, Source) else source_in(entry)
             if isinstance(entry, dict) and not read:
@@ -164,6 +168,10 @@ class FromTable:
     def __get_pydantic_core_schema__(
         self, source: type[Part], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
+        """Validation of a table by the section of a part, then into the part; errors keep field,
+        value and limit.
+        """
+
         def made(section: Section) -> Part:
             try:
                 return part_of(source, section)
@@ -179,7 +187,7 @@ Table = Annotated[PartType, FromTable()]
 
 
 def part_of(part: type[PartType], section: Section) -> PartType:
-    """Part class that a section describes.
+    """Part made of the values of the section that describes it.
 
     Raises
     ------
@@ -199,7 +207,7 @@ _PARTS: dict[type[Section], type[Part]] = {}
 
 
 def section_of(part: type[Part]) -> type[Section]:
-    """Section class of a part, with its fields in order."""
+    """Section class with the fields of a part in order, made at the first call."""
     if part not in _SECTIONS:
         made = _section_made_of(part)
         _SECTIONS[part], _PARTS[made] = made, part
@@ -212,6 +220,7 @@ def written_as(section: type[Section]) -> type[Section | Part]:
 
 
 def _section_made_of(part: type[Part]) -> type[Section]:
+    """Section class with the fields of a part but for its labels, their defaults and docstrings."""
     hints = hints_of(part)
     described: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
@@ -231,6 +240,7 @@ def _marks_in(field: FieldInfo) -> Iterator[object]:
 
 
 def _marks(hint: object) -> Iterator[object]:
+    """All marks of `Annotated` in a type hint, the outer ones first."""
     yield from getattr(hint, "__metadata__", ())
     for each in get_args(hint):
         yield from _marks(each)
@@ -277,6 +287,8 @@ class MaterialName:
     def __get_pydantic_core_schema__(
         self, source: type[Material], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
+        """Validation of a name, into the material card of this name in the context."""
+
         def card(name: str, info: ValidationInfo) -> Material:
             known: Mapping[str, Material] = (info.context or {}).get("materials", {})
             if name not in known:

@@ -31,7 +31,9 @@ _ASSUMED = {
 
 
 def calibration_record(calibration: Calibration | None) -> WheelErrors:
-    """Pitch errors of the trigger wheel, for ``run.json``."""
+    """Pitch errors of the trigger wheel, deg, for ``run.json``: tolerance, and where they were
+    estimated, rms corrected and rms left, with the change of torque in percent.
+    """
     if calibration is None:
         return {}
     errors = calibration.errors
@@ -65,7 +67,7 @@ def speed_notes(
 
 
 def _words(calibration: Calibration) -> str:
-    """What was estimated, on what assumptions, and what remains."""
+    """Line of text on estimated pitch errors: their size, the assumption, and what remains."""
     errors, kind = calibration.errors, calibration.kind
     low, high = (shown(speed, "rpm") for speed in calibration.speeds)
     change = ""
@@ -79,7 +81,7 @@ def _words(calibration: Calibration) -> str:
 
 
 def _contradictions(calibration: Calibration) -> list[str]:
-    """What contradicts the assumptions of a calibration."""
+    """Notes on what contradicts the assumptions of a calibration; none where nothing does."""
     errors, texts = calibration.errors, []
     if calibration.too_wide:
         texts.append(
@@ -96,7 +98,9 @@ def _contradictions(calibration: Calibration) -> list[str]:
 
 
 def _wide_bar(trace: SpeedTrace, inertia: float) -> list[str]:
-    """Pitch errors that leave much of the torque uncertain."""
+    """Note, in a list, where pitch errors leave an uncertainty of the torque above `WHEEL_BAR_MAX`
+    of its peak to peak; inertia in kg m2.
+    """
     calibration = trace.calibration
     bar = float(trace.wheel_bar(inertia).max())
     swing = trace.torque(inertia).peak_to_peak
@@ -116,7 +120,9 @@ def _wide_bar(trace: SpeedTrace, inertia: float) -> list[str]:
 
 
 def _half_orders(trace: SpeedTrace, running_gear: RunningGear | None) -> list[str]:
-    """Half orders of the cycle out of proportion to the integer orders."""
+    """Note, in a list, where the half orders of the cycle are out of proportion to the integer
+    orders for the firing of these cylinders.
+    """
     share = trace.half_order_share
     offsets = (0.0,) if running_gear is None else running_gear.firing_offsets
     alike = abs(np.exp(0.5j * np.array(offsets)).sum()) < 1e-6 * len(offsets)

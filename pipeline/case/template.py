@@ -66,6 +66,9 @@ def first_case(name: str, kind: str = "cylinder") -> FirstCase:
 
 
 def _text(name: str, kind: Kind) -> str:
+    """Text of the first case of a kind: source of the torque or lift, machine, follower,
+    requirements.
+    """
     balances = kind not in ("lift", "eccentric", "arm")
     carried = _ARM if kind == "arm" else _STEM
     parts = (
@@ -89,7 +92,9 @@ def _case(text: str) -> Case:
 
 
 def _data(kind: Kind, case: Case) -> str:
-    """What would be measured on the engine of the kind `cylinder`, or on the pump of `pump`."""
+    """Text of the data file of a kind: what would be measured on the engine of the kind `cylinder`,
+    or on the pump of `pump`.
+    """
     if kind == "torque":
         pump = _case(_text("modelled", "pump"))
         return _torque_text(engine_torque(pump, pump.load_cases[0]))

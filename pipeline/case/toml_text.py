@@ -28,7 +28,9 @@ _FILE_KEYS = ("file", "torque", "motored_file", "external_force_file")
 
 
 def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -> Tables:
-    """Tables of a section or part as in a case file; absent fields are omitted."""
+    """Tables of a section or part as in a case file, values as text with unit; absent fields are
+    omitted. renamed : file names in place of those stated; None: as they are.
+    """
     section = section_of(type(model)) if isinstance(model, Part) else type(model)
     tables: Tables = {}
     left_out = model.derived if isinstance(model, Part) else ()
@@ -45,7 +47,7 @@ def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -
 
 
 def table_in(tables: Tables, name: str) -> Tables:
-    """Nested table, created if absent.
+    """Table of a name within tables, to be changed in place.
 
     Raises
     ------
@@ -59,6 +61,9 @@ def table_in(tables: Tables, name: str) -> Tables:
 
 
 def _written(value: _FieldValue, unit: str, renamed: Mapping[str, str] | None) -> TomlValue:
+    """Value of a field as in a case file: with its unit, a material by its name, a part as a
+    table.
+    """
     if isinstance(value, Material):
         return value.name
     if isinstance(value, Source):

@@ -32,7 +32,7 @@ TORQUE_KINDS = ("table", "harmonics", "pressure", "compressor", "pump", "press")
 
 
 def torque_files(torque: ShaftTorque | None) -> Iterator[tuple[str, str]]:
-    """Key and file name of every file that a torque includes."""
+    """Key and file name of every file that a torque refers to."""
     if isinstance(torque, (TabledTorqueFile, PressureTorqueFile)):
         yield "torque.file", torque.file
     if isinstance(torque, Press) and torque.file is not None:
@@ -65,6 +65,9 @@ def shaft_torque(torque: ShaftTorque, speed: float, path: Callable[[str], Path])
 
 
 def _values(torque: ShaftTorque, theta: Array, path: Callable[[str], Path]) -> Array:
+    """Torque at the shaft (n,), N m, at shaft angles `theta` (n,), rad; path : from file name to
+    path.
+    """
     if isinstance(torque, TabledTorqueFile):
         return tabled_torque(torque, path(torque.file)).torque(theta)
     if isinstance(torque, PressureTorqueFile):
@@ -75,7 +78,7 @@ def _values(torque: ShaftTorque, theta: Array, path: Callable[[str], Path]) -> A
 
 
 def _inertia(torque: ShaftTorque, theta: Array) -> Array:
-    """Inertia of the reciprocating masses at the shaft (n,), kg m2."""
+    """Inertia of the reciprocating masses at the shaft (n,), kg m2, at shaft angles (n,), rad."""
     if isinstance(torque, Press):
         return torque.inertia(theta)
     if isinstance(torque, (PressureTorqueFile, CompressorTorque, PumpTorque)):

@@ -34,7 +34,9 @@ _NO_VALUES = (
 
 
 def values_in(entry: TomlValue, name: str = "") -> Iterator[str]:
-    """Dotted names of the values of a case, or of one of its tables."""
+    """Dotted names of the values of a case, or of a table of it with the dotted name `name`; tables
+    that have no values, such as sources, are left out.
+    """
     if isinstance(entry, dict):
         for key, inner in entry.items():
             if key not in (_WORDS if name else _NO_VALUES):
@@ -103,7 +105,9 @@ def require_known(tables: Tables, field: str, value: str) -> None:
 
 
 def put_sources(case: Tables, field: str, table: TomlValue, entries: Tables) -> None:
-    """Add the sources of a table's numbers where the case states none."""
+    """Write the sources `entries` of the numbers of a table, with the dotted name `field`, into the
+    case in place, where it states none.
+    """
     stated, numbers = case.setdefault("sources", {}), set(values_in(table, field))
     if isinstance(stated, dict):
         for key, entry in entries.items():
@@ -112,7 +116,9 @@ def put_sources(case: Tables, field: str, table: TomlValue, entries: Tables) -> 
 
 
 def forget_sources(tables: Tables, part: str) -> None:
-    """Remove sources and confirmations of replaced values."""
+    """Remove, in place, sources and confirmations of the values of a part, by its dotted name, that
+    is replaced.
+    """
 
     def kept(value: TomlValue) -> bool:
         return not f"{value}.".startswith(f"{part}.")

@@ -121,7 +121,9 @@ def gear_of(shaft: Camshaft) -> CamshaftGear:
 
 
 def _described(machine: Machine) -> _Shaft | tuple[str, ...]:
-    """Camshaft with its diameter and material, or the keys that the case lacks."""
+    """Camshaft with its diameter, material and sections to be judged, or else the dotted keys that
+    the case lacks.
+    """
     shaft, cam = camshaft_of(machine), machine.cam
     if shaft.diameter is None or shaft.thinnest is None or shaft.material is None:
         return lacking(shaft.table, shaft, "diameter", "material")
@@ -500,6 +502,7 @@ def shaft_bearing_life(solution: Solution) -> Demand:
 
 
 def _geared(numbers: Numbers) -> tuple[Camshaft, CamshaftGear]:
+    """Camshaft and its gear, of the case of these numbers."""
     shaft = camshaft_of(numbers.known_case)
     return shaft, gear_of(shaft)
 
@@ -522,7 +525,8 @@ def _tooth_bending(
     teeth: str,
     kept_as: str,
 ) -> Declaration:
-    """Tooth root stress of a wheel with its own form factor.
+    """Check of the tooth root stress of a wheel, camshaft gear or pinion, with its own form factor;
+    wheel : gives its number of teeth and its material.
 
     key, teeth: of its bending limit and of its number of teeth
     """
@@ -627,6 +631,9 @@ def _flank(numbers: Numbers) -> float:
 
 
 def _flank_allowed(numbers: Numbers) -> Allowed:
+    """Allowed Hertz pressure of the teeth, Pa: the lower contact limit of gear and pinion over the
+    safety.
+    """
     gear = _geared(numbers)[1]
     limits = gear.contact_limit, gear.pinion_contact_limit
     missing = lacking(gear.table, gear, "contact_limit", "pinion_contact_limit")
@@ -637,6 +644,7 @@ def _flank_allowed(numbers: Numbers) -> Allowed:
 
 
 def _with_card_of_gear(demand: Demand, solution: Solution) -> Demand:
+    """Demand with material card and source of the gear."""
     gear = gear_of(camshaft_of(solution.machine))
     return replace(demand, figures=(f"{gear.material.name}: {gear.source}".rstrip(": "),))
 
@@ -692,7 +700,9 @@ gear_contact = check(
 
 
 def _rotor(machine: Machine, contour: Contour) -> Rotor:
-    """Gear, cam and the shaft between both, rigid without diameter or material."""
+    """Camshaft as a torsional oscillator: inertias of gear and cam, kg m2, and the stiffness of the
+    shaft between both, N m/rad, rigid without diameter or material.
+    """
     shaft, cam = camshaft_of(machine), machine.cam
     gear, card, twist = gear_of(shaft), shaft.material, _RIGID_STIFFNESS
     if shaft.thinnest is not None and card is not None:
@@ -710,7 +720,9 @@ def _rotor(machine: Machine, contour: Contour) -> Rotor:
 
 
 def _hardest_impact(cycle: Cycle, rotor: Rotor, drag: float, backlash: float) -> Impact | None:
-    """Hardest impact of a turn; None where no reversal lets the teeth cross their backlash."""
+    """Impact of the greatest tooth force over a turn; drag, N m, backlash, m. None where no
+    reversal of the torque lets the teeth cross their backlash, and at standstill.
+    """
     if cycle.cam_speed <= 0.0:
         return None
     torque = cycle.loads.cam_torque + drag
@@ -810,6 +822,9 @@ def gear_impact(solution: Solution) -> Demand:
 
 
 def _loads(cycle: Cycle) -> ShaftLoads:
+    """Forces and bearing loads of the camshaft over the turn; InputError where the case has
+    none.
+    """
     if cycle.shaft is None:
         raise InputError("camshaft", "missing", "described for its checks")
     return cycle.shaft

@@ -83,7 +83,9 @@ def _limits_of(one: Check) -> Iterator[str]:
 
 
 def _weaker(case: Case) -> dict[str, str]:
-    """Limits of a case that are weaker than their defaults, in words by key."""
+    """Limits of a case that are weaker than their defaults: value and default in words, by dotted
+    key.
+    """
     words = {}
     for name, limit in LIMITS.items():
         if not is_weaker(limit, case.limits[limit]):

@@ -173,18 +173,25 @@ def _endurance(bodies: Mapping[str, Material], follower: FollowerKind) -> LeastL
 
 
 def _endurance_allowed(numbers: Numbers) -> Allowed:
+    """Allowed contact pressure, Pa: the lower endurance pressure of cam and follower over the
+    safety.
+    """
     least = _endurance(numbers.known_case.bodies, numbers.known_case.facing)
     value = None if least.value is None else least.value / numbers.limit(CONTACT_SAFETY)
     return Allowed(value, least.missing, if_exceeded=bool(least.missing))
 
 
 def _shakedown_allowed(numbers: Numbers) -> Allowed:
+    """Allowed contact pressure, Pa, at the shakedown limit of the weaker body without traction."""
     yields = min(card.yield_strength for card in numbers.known_case.bodies.values())
     return Allowed(SHAKEDOWN * (yields / (math.sqrt(3.0) * numbers.limit(SHAKEDOWN_SAFETY))))
 
 
 def _at_life(machine: Machine, body: str, card: Material, cycles: LoadCycles) -> float | None:
-    """By the line of endurance; without one by the pressure, up to its number of load cycles."""
+    """Allowed contact pressure of a body, Pa, at its load cycles in the target life: by its line of
+    endurance or, without one, its endurance pressure up to the number of load cycles of that. None
+    where neither is known.
+    """
     count = cycles.of(body)
     row, safety = endurance_of(machine, card), machine.limits[CONTACT_SAFETY]
     if row.slope is not None and row.intercept is not None:
@@ -195,7 +202,9 @@ def _at_life(machine: Machine, body: str, card: Material, cycles: LoadCycles) ->
 
 
 def _life_lacks(machine: Machine, body: str, card: Material, cycles: LoadCycles) -> tuple[str, ...]:
-    """Line of endurance, or up to `endurance_cycles` the endurance pressure."""
+    """Keys that the material of a body lacks for its endurance at the target life: the line of
+    endurance, or up to `endurance_cycles` the endurance pressure.
+    """
     row = endurance_of(machine, card)
     stated = any(each is not None for each in row[1:])
     slides = row.motion != "rolling" if stated else machine.follower.slides
@@ -207,6 +216,7 @@ def _life_lacks(machine: Machine, body: str, card: Material, cycles: LoadCycles)
 
 
 def _times(limit: LeastLimit, factor: float, safety: float = 1.0) -> LeastLimit:
+    """The limit, Pa, times a factor and over a safety; unchanged where it is not known."""
     value = limit.value
     return limit if value is None else limit._replace(value=factor * value / safety)
 
@@ -223,7 +233,8 @@ def least_poisson(machine: Machine) -> float:
 
 
 def estimated_length_factor(machine: Machine) -> float | None:
-    """Stated over plane-strain pressure on the base circle, untilted; None without ends.
+    """Greatest pressure along the line of contact over that of plane strain on the base circle,
+    untilted, estimated from the ends; None without ends.
 
     At the greatest pressure that the endurance allows, or else the yield strength.
     """
@@ -237,7 +248,9 @@ def estimated_length_factor(machine: Machine) -> float | None:
 
 
 def life_turns(machines: tuple[Machine, ...]) -> float:
-    """Cam turns in the target life, by the duty or at the fastest load case; 0 without a life."""
+    """Cam turns in the target life of a machine in these load cases: by their duty or, if one has
+    none, at the fastest; 0 without a target life.
+    """
     life = machines[0].limits[TARGET_LIFE] or 0.0
     speed = max(machine.cam_speed for machine in machines)
     if all(machine.duty is not None for machine in machines):
@@ -293,7 +306,9 @@ def _judged(
 
 
 def _pressure_in_words(demand: Demand, solution: Solution) -> Demand:
-    """With the model of the pressure in the middle of a crowned line of contact."""
+    """Demand with the material of its limit and, with a crowned line of contact, the pressure in
+    its middle over plane strain.
+    """
     figured = _with_endurance(demand, solution)
     if not solution.machine.is_crowned:
         return figured
@@ -303,6 +318,7 @@ def _pressure_in_words(demand: Demand, solution: Solution) -> Demand:
 
 
 def _with_endurance(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the material and the numbers of the endurance."""
     figures = (_least_endurance(solution.machine).source,)
     return replace(demand, figures=figures, stated=_stated_endurance(solution.machine))
 
@@ -319,12 +335,16 @@ def _stated_yield(machine: Machine) -> dict[str, float]:
 
 
 def _shakedown_in_words(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the material and the yield strength of its limit, and a note on traction."""
     note = "without traction; sliding at the surface lowers the limit"
     figures, stated = (shear_yield(solution.machine).source,), _stated_yield(solution.machine)
     return replace(demand, note=note, figures=figures, stated=stated)
 
 
 def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
+    """Demand of the pressure along the line with the keys that it lacks, the kind of pressure that
+    governs, and the sources of the limit.
+    """
     machine, worst = solution.machine, demand.at
     rows = END_MEAN_LENGTH, AXIS_PARALLELISM, CAM_RUN_OUT, ROLLER_CLEARANCE
     return replace(
@@ -358,7 +378,9 @@ def equivalent_pressure(cycle: Cycle) -> Array:
 
 
 def _traction_factor(cycle: Cycle) -> Array:
-    """Equivalent over contact pressure (n,); NaN where the traction is not known."""
+    """Contact pressure equivalent in shakedown over contact pressure (n,); NaN where the traction
+    is not known.
+    """
     machine = cycle.machine
     coefficient = traction_coefficient(cycle)
     if machine.follower.friction is None or np.isnan(coefficient).any():
@@ -369,7 +391,9 @@ def _traction_factor(cycle: Cycle) -> Array:
 
 @lru_cache(maxsize=32)
 def shakedown_factors(friction: float, poisson: float) -> tuple[Array, Array]:
-    """Traction coefficients from 0 to `friction` with their `shakedown_factor`; cached on disk."""
+    """Traction coefficients (k,) from 0 to `friction`, and the shakedown limit p0/k at each (k,),
+    see `shakedown_factor`; cached on disk.
+    """
 
     def compute() -> dict[str, Array]:
         nodes = np.linspace(0.0, friction, _TRACTIONS)
@@ -445,6 +469,9 @@ def first_yield(solution: Solution) -> Demand:
 
 
 def _stress_with_traction(cycle: Cycle) -> Array:
+    """Greatest von Mises stress below the contact with traction at each cam angle (n,), Pa; NaN
+    where it is not known.
+    """
     stress = cycle.rolling.von_mises
     return np.full(cycle.theta.size, np.nan) if stress is None else stress
 
@@ -531,7 +558,9 @@ def of_elements(solution: Solution, worst: Extreme) -> dict[str, float]:
 
 
 def signed_sentence(solution: Solution, worst: Extreme) -> str:
-    """Kind of the greatest stated pressure, in words; "" where it is not known."""
+    """Sentence on the kind of pressure along the line at the cam angle of the greatest one; ""
+    where it is not known.
+    """
     for cycle in solution.cycles:
         if cycle.load_case == worst.load_case and cycle.length and worst.cam_angle is not None:
             index = first_least(np.abs(cycle.theta - worst.cam_angle))

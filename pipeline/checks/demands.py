@@ -84,7 +84,9 @@ def slope_over(cam: LoadedCam, limit: float) -> Array:
 
 
 def rating_over(rating: Value, worst: Value, unloaded: float) -> Array:
-    """Rating (...) over a load or damage; `unloaded` for none, NaN for an unknown one."""
+    """Rating (...) over a load or damage `worst` (...), in its unit; `unloaded` where that is zero,
+    NaN where it is unknown.
+    """
     load: Array = np.asarray(worst, dtype=float)
     loaded = load > 0.0
     without = np.where(np.isnan(load), np.nan, unloaded)
@@ -125,7 +127,8 @@ def force_left(closing: Array, inertia: Array, least_spring: float | Array) -> A
 
 
 def over_contact_force(needed: Array, normal: Array, least_spring: Value) -> Array:
-    """Force over the normal force (...), the latter at least `CONTACT_FLOOR`.
+    """Force `needed` (...), N, over the normal force (...), N, the latter at least `CONTACT_FLOOR`
+    of the least spring force.
 
     About to lose the contact, no quotient by its force says more than that; infinite without
     contact, NaN where the normal force is.
@@ -138,7 +141,8 @@ def over_contact_force(needed: Array, normal: Array, least_spring: Value) -> Arr
 
 
 def over_normal_force(cam: LoadedCam, needed: Array) -> Array:
-    """Required over available normal force (n,); 1 plus the shortfall below the margin.
+    """Required normal force `needed` (n,), N, over the available one; below the margin of the
+    contact force 1 plus the shortfall over it.
 
     For the synthesis: the quotient has a pole where the search passes through a loss of contact.
     """

@@ -83,7 +83,8 @@ def centre_error(solution: Solution) -> float:
 
 
 def length_error(solution: Solution) -> float:
-    """Relative error of the axial factor at the greatest stated pressure.
+    """Relative error of the pressure along the line over that of plane strain, at the greatest
+    pressure over the load cases.
 
     0 where it is not known.
     """
@@ -97,7 +98,9 @@ def length_error(solution: Solution) -> float:
 
 
 def _share(one: Check, meshes: Mapping[Error, float | None]) -> float | None:
-    """Sampling error plus that of the meshes of its origin; None where that is not known."""
+    """Relative error of a demand: of sampling and of the meshes (`meshes`: by kind of error) from
+    which it comes; None where that is not known.
+    """
     kind = one.declaration.error
     sampled = ROUNDING if one.error_share is None else max(one.error_share, ROUNDING)
     of_mesh = 0.0 if kind == "sampling" else meshes.get(kind)

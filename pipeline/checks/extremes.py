@@ -70,7 +70,9 @@ def least(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme
 
 
 def _vertex(cycles: Sequence[Cycle], measure: Callable[[Cycle], Array], sign: float) -> Extreme:
-    """Vertex of a measure of forces between the solved angles, see `sampled_peak`."""
+    """Greatest (sign 1) or least (-1) value of a measure of forces over the load cases, by a
+    parabola between the solved angles; see `sampled_peak`.
+    """
     values = {cycle.load_case: measure(cycle) for cycle in cycles}
     worst = _extreme(cycles, lambda cycle: values[cycle.load_case], sign)
     if worst.cam_angle is None:
@@ -176,7 +178,10 @@ def over_duty(
 def duty_parts(
     cycles: Iterable[Cycle], measure: Callable[[Cycle], float], *, life: bool = False
 ) -> dict[str, float]:
-    """Contributions q_i r_i, or q_i/L_i, of the load cases to wear or damage per time."""
+    """Contributions of the load cases, by name, to the wear or damage per time: duty times
+    `measure`, a wear rate, or with `life` duty over `measure`, a life. Load cases without a duty
+    are left out.
+    """
     parts = {}
     for cycle in cycles:
         duty = cycle.machine.duty
@@ -187,6 +192,7 @@ def duty_parts(
 
 
 def _mean(parts: Mapping[str, float], life: bool) -> float:
+    """Wear rate, the sum of the contributions, or life, its inverse; infinite without damage."""
     total = sum(parts.values())
     if not life:
         return total
@@ -194,7 +200,9 @@ def _mean(parts: Mapping[str, float], life: bool) -> float:
 
 
 def _index(value: float, coarse: float, ratio: int) -> float:
-    """Grid convergence index of a value on two meshes at the second order, relative."""
+    """Relative grid convergence index of a value on two meshes whose element sizes have a ratio, at
+    order 2.
+    """
     if value == coarse or np.isnan(value):
         return 0.0
     change = abs(coarse - value) / abs(value) if value != 0.0 else np.inf
@@ -207,7 +215,10 @@ def _extreme(
     sign: float,
     error: Callable[[Cycle, float], float] | None = None,
 ) -> Extreme:
-    """Extreme with its cam angle and sampling error, or with the error of a value per turn."""
+    """Greatest (sign 1) or least (-1) value of a measure (n,) over the load cases: with its cam
+    angle and sampling error or, given `error`, without angle and with the error that this gives for
+    a value of a turn. NaN, where there is one.
+    """
     extreme, at = NOWHERE, None
     for cycle in cycles:
         values = np.asarray(measure(cycle), dtype=float)
@@ -231,7 +242,8 @@ def _beyond(value: float, other: float, sign: float) -> bool:
 
 
 def _sampling_error(values: Array, sign: float) -> float:
-    """Greatest value between the samples less the greatest sample, relative; of -values at sign -1.
+    """Relative sampling error of the greatest of values (n,) at equal angles, or of the least at
+    sign -1: greatest value between the samples less the greatest sample.
 
     At a smooth peak the vertex of the parabola through three samples, with the safety factor 1.25;
     at a kink or a jump the lines through the two samples on either side, up to their crossing.
@@ -317,6 +329,9 @@ def worst_measure(
 def _worst(
     solution: Solution, measure: Measure, reduce: Reduce, *, at_least: bool, order: int
 ) -> Extreme:
+    """Extreme of a measure, reduced over lift, contour or load cases as `reduce` says; order :
+    highest derivative of the lift that it needs. Kept per contour or solution.
+    """
     contour, numbers = solution.contour, solution.numbers
     if reduce in ("case", "top"):
         value = float(np.ravel(measure(ContourCam.at_top(contour, numbers)))[0])
@@ -341,6 +356,9 @@ def _worst(
 def _worst_of_cycles(
     solution: Solution, measure: Measure, reduce: Reduce, *, at_least: bool
 ) -> Extreme:
+    """Extreme of a measure over the load cases: by their duty ("wear"), between the solved angles
+    ("forces"), or at them.
+    """
     cycles, sign = solution.cycles, -1.0 if at_least else 1.0
     if reduce == "wear":
         return over_duty(cycles, lambda cycle: mean_of(solution, measure, cycle))

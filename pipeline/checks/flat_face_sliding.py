@@ -196,6 +196,7 @@ def contact_temperature(solution: Solution) -> Demand:
         places[cycle.load_case] = k, float(rise[k]), float(limits[k])
 
     def use(cycle: Cycle) -> float:
+        """Contact temperature at the worst angle of a load case, in degC, over its limit."""
         _, hot, limit = places[cycle.load_case]
         return float(celsius(cold + bulk_rise(flash(cycle)) + hot)) / limit
 

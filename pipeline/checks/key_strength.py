@@ -110,7 +110,8 @@ def _key_check(
     symbols: Mapping[str, str],
     factor: float = 1.0,
 ) -> Declaration:
-    """Stress of the key against the yield strength of the weaker of the key and its mate.
+    """Check of a stress of the key against the yield strength of the weaker of the key and its
+    mate, hub or shaft.
 
     factor: allowed stress over the allowed normal stress
     """
@@ -193,7 +194,7 @@ def _cards(key: ParallelKey | None, mate: _Mate) -> list[Material]:
 
 
 def _shaft_beside(case: Case) -> _Mate | None:
-    """None if the shaft is not covered."""
+    """Shaft as mate of the key; None where the case does not cover the camshaft."""
     if not case.scope.covers("camshaft"):
         return None
     card = None if case.camshaft is None else case.camshaft.material
@@ -242,6 +243,9 @@ def _corner_allowed(numbers: Numbers) -> Allowed:
 
 
 def _corner_in_words(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the stated root radius of the keyway, or its missing key; it belongs to no cam
+    angle.
+    """
     cam, root = solution.machine.cam, "cam.keyway.root_radius"
     missing = () if cam.keyway_root_radius is not None else (root,)
     stated = {} if demand.allowed is None else {"s": demand.allowed}
@@ -290,7 +294,9 @@ def _slip_at(limit: float, numbers: Numbers) -> float | None:
 
 
 def _must_not_slip(numbers: Numbers) -> NDArray[np.bool_]:
-    """Whether the torque reverses through the fit: the key alone carries that of a sliding fit."""
+    """Whether the torque of each design or load case reverses through the fit, and so must not
+    slip; a sliding fit leaves it to the key.
+    """
     slip = numbers.get(_SLIP)
     keyed = numbers.known_case.cam.key is not None
     slides = np.asarray(keyed and slip is not None and np.asarray(slip) == 0.0)
@@ -298,6 +304,7 @@ def _must_not_slip(numbers: Numbers) -> NDArray[np.bool_]:
 
 
 def _slip_in_words(demand: Demand, solution: Solution) -> Demand:
+    """Demand with a note where the fit is a sliding one."""
     sliding = demand.value is not None and solution.numbers[_SLIP] == 0.0
     return replace(demand, note="sliding fit" if sliding else "")
 
@@ -345,6 +352,7 @@ def _wall_allowed(numbers: Numbers) -> Allowed:
 
 
 def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the pressure of the fit, yield strength and source of the cam material."""
     card, pressure = solution.case.cam.material, solution.numbers.get("cam.fit.greatest_pressure")
     note = "" if pressure is None else f"pressure of the fit {shown(float(pressure), 'MPa')}"
     stated = {"R_e": card.core_yield}
@@ -393,7 +401,7 @@ def fit_yield(cam: LoadedCam) -> Array:
 
 
 def _no_fit(numbers: Numbers) -> tuple[str, ...]:
-    """Keys of the fit that a seat with a slip torque of its own lacks."""
+    """Keys of the fit that a case lacks that states a slip torque of its own."""
     case = numbers.known_case
     shaft = case.camshaft
     if case.cam.fit is not None or shaft is None:
@@ -402,7 +410,8 @@ def _no_fit(numbers: Numbers) -> tuple[str, ...]:
 
 
 def _root_in_words(demand: Demand, solution: Solution) -> Demand:
-    """None without data, and of a wall for which the stress is not known.
+    """Demand of the fatigue of the keyway root with its note and sources; its value is None without
+    data, and for a wall so thin that the stress is not known.
 
     With a fit and finite elements it is their demand; the bound below them judges what it passes.
     """
@@ -432,7 +441,9 @@ def _root_in_words(demand: Demand, solution: Solution) -> Demand:
 def _loose_root(
     solution: Solution, root: KeywayRoot, worst: Extreme, wall: float
 ) -> dict[str, float]:
-    """Half of the pulsating stress at the root of a keyway without a fit, and its strength."""
+    """Stated numbers of the keyway root without a fit, at the worst cam angle: half of its
+    pulsating stress, Pa, as amplitude "a" and mean "m", and factors of its strength; wall, m.
+    """
     cycle, k = row_of(solution.cycles, worst)
     torque, force = abs(cycle.loads.cam_torque[k]), abs(cycle.loads.normal_force[k])
     counted = min(wall, float(root.thick))
@@ -460,7 +471,9 @@ def _root_safety(cam: LoadedCam) -> Array:
 
 
 def _with_fit(demand: Demand, solution: Solution) -> Demand:
-    """Demand of the root under a fit: by finite elements, or the closed form as a bound."""
+    """Demand of the keyway root under a fit: the safety by finite elements where these are solved,
+    otherwise that of the closed form, a lower bound, which decides only if it passes.
+    """
     solved = solution.hub_fatigue
     if solved is None:
         bound, limit = demand.value, demand.allowed
@@ -488,7 +501,9 @@ def _with_fit(demand: Demand, solution: Solution) -> Demand:
 
 
 def _strengths(solution: Solution) -> dict[str, float]:
-    """Factors of the endurance of the cam's material."""
+    """Stated factors of the endurance of the cam's material: surface "k_a" and reliability "k_e";
+    empty without tensile strength.
+    """
     tensile = solution.machine.cam.material.tensile_strength
     if tensile is None:
         return {}
@@ -595,6 +610,7 @@ def keyway_root_of(numbers: Numbers) -> KeywayRoot:
 
 
 def _root_of(numbers: Numbers) -> KeywayRoot:
+    """Stress coefficients of the keyway root of one machine; NaN without its data."""
     cam, card = _cam_of(numbers), numbers.known_case.cam.material
     keyway, key, flanks, radius = cam.keyway, cam.key, cam.key_flanks, cam.keyway_root_radius
     endurance, tensile = card.fatigue_bending, card.tensile_strength
@@ -625,7 +641,11 @@ def _root_of(numbers: Numbers) -> KeywayRoot:
 def _fitted_root(
     numbers: Numbers, cam: CamBody, pressure: float, radius: float
 ) -> KeywayRoot | None:
-    """Root of a keyway under a fit, key pressure in Pa per N m; None without its data."""
+    """Stress coefficients of a keyway root under a fit; None without its data.
+
+    pressure : on the key per torque, Pa/(N m)
+    radius : of the root, m
+    """
     ring, greatest = fitted_ring(numbers), greatest_interference(numbers)
     strength = notch_strength(cam.material, radius, float(numbers.limit(SHAFT_RELIABILITY)))
     if ring is None or greatest is None or strength is None or cam.keyway is None:

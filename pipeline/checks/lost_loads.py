@@ -44,6 +44,9 @@ def load_ends(solution: Solution) -> tuple[LoadEnd, ...]:
 
 
 def _end(cycle: Cycle) -> tuple[float, str] | None:
+    """Cam angle, rad, and reason at which the loads of a load case end: jump, lock or stall; None
+    where they hold over the turn.
+    """
     stall = cycle.turn.driven.stall
     return cycle.end or (None if stall is None else (stall, STALLS))
 
@@ -70,6 +73,9 @@ class _Parts(NamedTuple):
 
     @classmethod
     def of(cls, solution: Solution, ends: Sequence[LoadEnd]) -> _Parts | None:
+        """Solution split into load cases with and without lost loads, by their `ends`; None where
+        there are no ends.
+        """
         names = {end.load_case for end in ends}
         if not names:
             return None

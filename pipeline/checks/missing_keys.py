@@ -8,7 +8,9 @@ from camwright.pipeline.case.machine import Machine
 
 
 def lacking(table: str, part: object, *keys: str) -> tuple[str, ...]:
-    """Keys of a table of the case without a value, among given ones."""
+    """Dotted keys, among `keys`, of a part without a value; table : name of its table in the
+    case.
+    """
     return tuple(f"{table}.{key}" for key in keys if getattr(part, key) is None)
 
 
@@ -28,7 +30,9 @@ def no_friction(machine: Machine) -> tuple[str, ...]:
 
 
 def lacking_along_line(machine: Machine) -> tuple[str, ...]:
-    """Missing keys for the pressure along the line: ends, and slope of the camshaft."""
+    """Dotted keys that the case lacks for the pressure along the line of contact: ends of cam and
+    follower, diameter and material of the camshaft.
+    """
     parts, shaft = (machine.cam, machine.follower), machine.camshaft
     ends = tuple(key for part in parts for key in lacking(part.table, part, "end"))
     return ends if shaft is None else (*ends, *lacking(shaft.table, shaft, "diameter", "material"))

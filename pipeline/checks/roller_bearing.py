@@ -113,6 +113,9 @@ def _damage(cam: LoadedCam) -> Array:
 
 
 def _with_damage(demand: Demand, solution: Solution) -> Demand:
+    """Demand of the rating life with the shares of the load cases in the damage, and the bearing
+    card.
+    """
     notes = [] if demand.value is None else _damage_note(solution, _damage, _life)
     return _with_card(replace(demand, note="; ".join(notes)), solution)
 
@@ -140,7 +143,9 @@ def _modified_damage(cam: LoadedCam) -> Array:
 
 
 def _modified_kept(cam: LoadedCam, limit: float) -> Array | None:
-    """At the least viscosity ratio of ISO 281 below it; no constraint without data."""
+    """Use of the limit of the modified life (n,) as constraint of the synthesis, at a viscosity
+    ratio of at least that where ISO 281 begins; None without data.
+    """
     if cam.numbers.get(_VISCOSITY) is None:
         return None
     kappa, least = _viscosity_ratio(cam.spin_mean, cam.numbers), bearing_life.LEAST_VISCOSITY_RATIO
@@ -148,7 +153,9 @@ def _modified_kept(cam: LoadedCam, limit: float) -> Array | None:
 
 
 def _used(cam: LoadedCam, kappa: Array) -> Array:
-    """|n| (P/C)^3/a_ISO (...), rad/s, at a viscosity ratio; zero of a roller at rest."""
+    """Damage per time, |n| (P/C)^3/a_ISO (n,), rad/s, at a viscosity ratio `kappa`; zero of a
+    roller at rest.
+    """
     numbers, surged = cam.numbers, not_negative(cam.surged)
     force = np.where(np.real(surged) < _LEAST_FORCE, _LEAST_FORCE, surged)
     rating, clean = numbers[_RATING], numbers["roller.bearing.cleanliness_load"]
@@ -157,6 +164,9 @@ def _used(cam: LoadedCam, kappa: Array) -> Array:
 
 
 def _with_modified_damage(demand: Demand, solution: Solution) -> Demand:
+    """Demand of the modified life with the shares of the load cases in the damage, its sources, and
+    the mean factor a_ISO.
+    """
     limits, notes = solution.machine.limits, list[str]()
     if demand.value is not None and np.isnan(demand.value):
         notes.append("not known for a viscosity ratio below 0.1: outside of ISO 281")
@@ -186,7 +196,9 @@ def _film_ratio(mean: Value, numbers: Numbers) -> Value:
 
 
 def _with_line_of_viscosity(demand: Demand, solution: Solution) -> Demand:
-    """With the factor and the power of the rated viscosity at the mean speed of the roller."""
+    """Demand with factor "a" and power "b" of the rated viscosity at the mean speed of the
+    roller.
+    """
     noted = replace(demand, figures=(bearing_life.SOURCE, solution.machine.roller.bearing.source))
     if demand.at is None or not demand.at.load_case:
         return noted
@@ -205,7 +217,9 @@ def _film_kept(cam: LoadedCam, limit: float) -> Array:
 def _damage_note(
     solution: Solution, measure: Measure, life: Callable[[Value, Numbers], Value]
 ) -> list[str]:
-    """Shares of the load cases in the damage of a life; none without a duty."""
+    """Note, in a list, on the shares of the load cases in the damage of a life; empty without a
+    duty. life : of a mean measure, s.
+    """
 
     def of_turn(cycle: Cycle) -> float:
         return float(life(mean_of(solution, measure, cycle), solution.numbers))
@@ -219,7 +233,7 @@ def _damage_note(
 
 
 def _with_slope(demand: Demand, solution: Solution) -> Demand:
-    """With the part of the camshaft in the angle."""
+    """Demand of the misalignment of the bearing with the part of the camshaft in it."""
     if demand.at is None or not demand.at.load_case:
         return demand
     cycle, row = row_of(solution.cycles, demand.at)
@@ -671,7 +685,7 @@ def grease_life(solution: Solution) -> Demand | None:
 
 
 def greased(cam: LoadedCam) -> Array:
-    """Estimated grease life in load cases, (1,) or (m, 1), s.
+    """Estimated life of the grease, s, in load cases, (1,) or (m, 1).
 
     That of the maker where it is stated; NaN without its data or out of its range.
     """

@@ -339,7 +339,9 @@ def _certified(
     method: Callable[[CertificatePoint], str],
     stated: Callable[[CertificatePoint], dict[str, float]],
 ) -> Demand:
-    """Greatest value over the certified cam angles; the method names its quantity."""
+    """Demand of the certificate: greatest `share`, a relative error, over the certified cam angles;
+    `method` and `stated` give words and numbers of that angle.
+    """
     points = solution.certificate
     if not points:
         return Demand(None, allowed, note=NO_CERTIFICATE)
@@ -424,7 +426,7 @@ def _mesh(
     method: str = "worst over all elements of cam and follower",
     source: Source = VERIFICATION,
 ) -> Declaration:
-    """Check of the mesh quality."""
+    """Check of a figure of the mesh quality, at least `allowed`."""
 
     @check(
         id=name,
@@ -486,7 +488,7 @@ mesh_edges = _mesh(
 def _uncertainty(
     name: str, figure: Callable[[CertificatePoint], Convergence], unit: str = "MPa"
 ) -> Declaration:
-    """Check of the discretisation uncertainty of a certified quantity."""
+    """Check of the discretisation uncertainty of the certified quantity `name`."""
     words = QUANTITIES[name]
     meshes = "three meshes of both bodies at the two worst certified angles, two at the others"
 
@@ -600,7 +602,9 @@ benchmark_hertz = _benchmark(
 
 
 def _stated_terms(figure: Convergence) -> dict[str, float]:
-    """Numbers of the grid convergence index."""
+    """Numbers of the grid convergence index by their symbols in the formula of the check; empty
+    without one.
+    """
     if (terms := figure.terms) is None:
         return {}
     stated = {"f1": figure.values[-1] or 1.0, "D": terms.difference, "F_s": terms.safety}
@@ -626,5 +630,8 @@ def _bores(solution: Solution) -> list[BoreStress]:
 
 
 def _away_from_edges(cycle: Cycle) -> Array:
+    """Greatest von Mises stress at the bore away from the keyway edges at each cam angle (n,), Pa;
+    NaN where it is not known.
+    """
     bore = cycle.rolling.bore
     return np.full(cycle.theta.size, np.nan) if bore is None else bore.away_from_edges

@@ -86,7 +86,8 @@ def axial_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
 def _cells(
     pair: FinitePair, mean_length: float, at: tuple[Array, Array], moments: Sequence[Array]
 ) -> tuple[Array, list[Array]]:
-    """Edges, m, and pressures over p0 at each of the moments, N m, on the cells of the worst load.
+    """Edges (c + 1,), m, and for each of the moments (m,), N m, the pressure over p0, in a list of
+    arrays, on the cells of the worst load; at : curvature, 1/m, and force, N, (m,) each.
 
     At a corner the last cell is that of the mean.
     """

@@ -38,7 +38,8 @@ _FINER_ABOVE = 0.005  # of cycle and certificate on two meshes: half of the limi
 
 
 def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int, int], ...]:
-    """Load case and position of the `count` angles to certify, the most critical first.
+    """Number of the load case and of the position of each angle to certify, at most `count`, the
+    most critical first.
 
     Extremes of pressure, load, curvature and its change over all load cases, then equal steps over
     the turn of the first. Of angles closer than four positions only one is certified.
@@ -99,7 +100,9 @@ def _half_width(load: LengthLoad) -> float:
 
 
 def _length_load(cycles: Sequence[Cycle], at: tuple[int, int]) -> LengthLoad:
-    """Contact of a load case at a position: end and moment of the greatest signed pressure."""
+    """Contact of a load case at a position, with the end and the moment that give the greatest
+    signed pressure; at : numbers of load case and position.
+    """
     cycle, index = cycles[at[0]], at[1]
     if cycle.length is None:
         raise ResultError("pressure along the line of contact: missing")
@@ -128,6 +131,7 @@ def _length_load(cycles: Sequence[Cycle], at: tuple[int, int]) -> LengthLoad:
 
 
 def _change(history: ContactHistory) -> Array:
+    """Change of the curvature of the contact about each position (n,), 1/m."""
     curvature = 1 / history.relative_radius
     return np.abs(np.roll(curvature, -1) - np.roll(curvature, 1))
 
@@ -146,7 +150,9 @@ _EXTREMES: tuple[Callable[[ContactHistory], Array], ...] = (
 def finest_positions(
     cycles: Sequence[Cycle], chosen: Sequence[tuple[int, int]]
 ) -> tuple[tuple[int, int], ...]:
-    """The two of the chosen (load case, position) with the greatest contact pressure."""
+    """The `FINEST` of the chosen (load case, position) with the greatest contact pressure, the
+    greatest first.
+    """
     left, taken = list(chosen), list[tuple[int, int]]()
     while left and len(taken) < FINEST:
         pressures = [cycles[case].contact.p0[k] for case, k in left]
@@ -212,7 +218,8 @@ def begun(
     observed: tuple[CertificatePoint, ...] = (),
     store: ContactStore = NOT_STORED,
 ) -> BegunCertificate:
-    """Certificate at chosen (load case, position), its meshes submitted to worker processes.
+    """Certificate at chosen (load case, position), numbers both, its meshes submitted to worker
+    processes.
 
     The finest mesh is solved at `finest_positions` alone; nowhere with the points `observed` on
     three meshes, whose orders then hold, and where the two coarser ones leave too much to the
@@ -242,7 +249,9 @@ def begun(
 def _figures(
     store: ContactStore, index: int, pair: ContactPair, theta: float, force: float, edges: float
 ) -> MeshFigures:
-    """Figures of a mesh, from the store if it has them."""
+    """Figures of a mesh at a cam angle, rad, and a normal force, N, from the store if it has them;
+    index : of the piece in the store, edges : elements per half-width.
+    """
     key = piece_key(pair, np.array(force), theta, edges)
 
     def solved() -> Arrays:

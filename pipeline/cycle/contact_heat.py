@@ -22,7 +22,8 @@ def flash_history(
     contact: ContactHistory,
     sliding: FaceSliding,
 ) -> Array | None:
-    """Flash temperature rise (n,), K; None without friction or thermal data.
+    """Flash temperature rise of a sliding face at each cam angle (n,), K; None without friction or
+    thermal data.
 
     Where the face reverses its motion through the contact it takes no heat: the cusp between two
     angles is that of the nearer.

@@ -41,7 +41,9 @@ def kept_piece(
 
 
 def piece_key(pair: ContactPair, normal_force: Array, *inputs: float) -> str:
-    """SHA-256 of all inputs of a piece: pair, normal forces, N, and options."""
+    """SHA-256 of all inputs of a stored piece of the contact: pair, normal forces, N, and numbers
+    such as angle and mesh size.
+    """
     digest = hashlib.sha256(pair.contour.pitch.lift.values.tobytes())
     digest.update(normal_force.tobytes())
     size = pair.width, pair.bore_radius

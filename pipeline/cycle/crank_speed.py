@@ -90,7 +90,8 @@ def follower_inertia(pitch: FollowerPath, mass: float, gear_ratio: float, count:
 def mechanism_torque(
     pitch: FollowerPath, system: FollowerSystem, gear_ratio: float, count: int
 ) -> MechanismTorque:
-    """Torque of spring, weight, external force and friction on the crank.
+    """Function of crank speed (count,), rad/s, and acceleration (count,), rad/s2, for the torque of
+    spring, weight, external force and friction on the crank, N m.
 
     J(theta) includes the inertia of the follower.
 
@@ -189,7 +190,9 @@ def study_of(
 
 
 def _driving(torque: Torque, constant: float) -> tuple[Array, Inertia]:
-    """Engine torque (n,), N m, without that of the inertia, and the inertia of the engine."""
+    """Engine torque over the cycle (n,), N m, without that of the varying inertia, and the inertia
+    of the engine with that part; constant : inertia, kg m2.
+    """
     if torque.varying_inertia is None:
         return torque.total, Inertia(constant, np.zeros(torque.theta.size))
     without = torque.total - torque.components["inertia"]
@@ -235,6 +238,7 @@ class SpeedRipple(Mapping[str, tuple[float, float]]):
 
     @cached_property
     def _ripple(self) -> dict[str, tuple[float, float]]:
+        """Standard deviations of the crank speed by load case; those at standstill are left out."""
         ripple: dict[str, tuple[float, float]] = {}
         for machine in self.machines:
             name, shaft, torque = machine.load_case, machine.crankshaft, machine.torque

@@ -121,6 +121,7 @@ def bore_pressure(machine: Machine, guide: Guide, line_load: Array) -> Array:
 
 
 def _slice(machine: Machine, guide: Guide, load: float) -> Conforming:
+    """Pressure of the stem in the bore of a guide at a line load, N/m, as a pin in a hole."""
     pin, bore = guide_bodies(machine, guide)
     radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
     return pin_in_hole(load, radius, clearance, pin, bore, _KNOTS)

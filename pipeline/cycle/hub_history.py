@@ -63,7 +63,9 @@ class HubFatigue:
 
 
 def seated_cam(contour: Contour, numbers: Numbers, refinement: float = 1.0) -> SeatedCam | None:
-    """Cam on its shaft; None without fit, key, root radius or shaft material."""
+    """Cam on its shaft as finite-element model; None without fit, key, root radius or shaft
+    material. refinement : of the mesh, element sizes are divided by it.
+    """
     case = numbers.known_case
     cam, shaft = case.cam, None if case.camshaft is None else case.camshaft.material
     keyway, flanks, radius = cam.keyway, cam.key_flanks, cam.keyway_root_radius
@@ -102,6 +104,9 @@ def hub_fatigue(
 def _fatigue(
     seated: SeatedCam, cycles: Sequence[Cycle], numbers: Numbers, interference: float
 ) -> RootFatigue | None:
+    """Fatigue of the keyway root over all load cases at one interference, m; None without the data
+    of its strength.
+    """
     cam = numbers.known_case.cam
     key, flanks, radius = cam.key, cam.key_flanks, cam.keyway_root_radius
     if key is None or flanks is None or radius is None:

@@ -38,6 +38,9 @@ def length_record(
 
 
 def _point(point: LengthPoint, bodies: Sequence[str]) -> LengthPointRecord:
+    """Record of a certified contact of finite length: load, factors of half-space and finite
+    elements, their difference.
+    """
     load = point.load
     _, p0 = plane_strain(load.pair, load.force)
     return {
@@ -58,6 +61,7 @@ def _point(point: LengthPoint, bodies: Sequence[str]) -> LengthPointRecord:
 
 
 def _tier(tier: TierResult) -> LengthTier:
+    """Record of a solution of the contact: factors with their uncertainties."""
     centre, greatest, end1, end2 = (in_unit(each.gci, "%") for each in tier.convergence)
     return {
         **factors(tier),
@@ -82,7 +86,9 @@ def _by_name(values: Array) -> LengthFactors:
 
 
 def _elements(point: LengthPoint, bodies: Sequence[str]) -> LengthElements:
-    """Factors, pressure at the middle of each cell along the contact, and stress below it."""
+    """Record of the finite-element solution: factors, pressure over p0 at the middle of each cell
+    along the line, and the stress below, by name of the body.
+    """
     pair, contact = point.load.pair, point.finite_elements.contact
     _, p0 = plane_strain(pair, point.load.force)
     places = [in_unit(float(y), "mm") for y in contact.cells.centres_along]

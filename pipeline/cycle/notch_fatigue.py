@@ -39,7 +39,8 @@ class NotchStrength(NamedTuple):
         return amplitude / self.endurance + np.maximum(mean, 0.0) / self.tensile
 
     def fkm(self, amplitude: Values, mean: Values) -> Array:
-        """Use (...) of the strength by local stresses at a constant stress ratio.
+        """Use (...) of the fatigue strength by local stress amplitude and mean stress (...), Pa, at
+        a constant stress ratio.
 
         The amplitude line falls by M up to R = 0, by M/3 up to R = 0.5, and not beyond.
 
@@ -91,7 +92,9 @@ def notch_strength(card: Material, root_radius: float, reliability: float) -> No
 
 
 def _support(root_radius: float, tensile: float) -> float:
-    """n_sigma of steel by the relative stress gradient of a root, 1/mm, and R_m, MPa."""
+    """Support factor n_sigma of steel, by the relative stress gradient of a root with a radius, m,
+    and the tensile strength R_m, MPa.
+    """
     gradient = _GRADIENT / in_unit(root_radius, "mm")
     if gradient <= 0.1:
         return float(1.0 + gradient * 10.0 ** (-tensile / 2700.0))

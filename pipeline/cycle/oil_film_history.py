@@ -41,7 +41,9 @@ class FilmHistory:
         freeze(self, thickness=self.thickness)
 
     def columns(self) -> dict[Column, Array]:
-        """Columns of ``5_cycle.csv``."""
+        """Columns (n,) of ``5_cycle.csv``: smooth film, ratio to the roughness, mixed film, as far
+        as they are known.
+        """
         smooth = Column(
             "film_thickness", "um", "Minimum film thickness of smooth surfaces", unknown=True
         )

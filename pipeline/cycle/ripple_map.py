@@ -135,7 +135,8 @@ def _loads(engine: CylinderEngine, state: LoadCase) -> Array:
 
 
 def _modelled(case: Case, state: LoadCase, speeds: Array, loads: Array) -> Array:
-    """Torque of a cylinder model (loads, speeds, ANGLES), N m.
+    """Torque of a cylinder model (loads, speeds, ANGLES), N m, at speeds, rad/s, and intake
+    pressures `loads`, Pa, in increasing order; few are solved.
 
     The gas torque is quadratic in the speed at the least load, and linear in the load as at the
     mean speed.

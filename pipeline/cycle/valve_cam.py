@@ -50,6 +50,7 @@ class ValveCam:
     tappet_mass: float = 0.1
 
     def __post_init__(self) -> None:
+        """Refuse sizes and masses out of bounds, and an offset beyond the prime radius."""
         least = {"base_radius": 0.0, "cam_mass": 0.0}
         if self.module == "B":
             least["roller_radius"] = 0.0

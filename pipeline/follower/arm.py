@@ -94,6 +94,7 @@ class FollowerArm(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a bore that leaves no hub."""
         super().__post_init__()
         hub = self.depth if self.hub is None else self.hub
         if self.bore is not None and hub is not None and not self.bore < hub:

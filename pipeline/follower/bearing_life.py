@@ -194,7 +194,9 @@ _NEWTON_STEPS = 60
 
 
 def _light_grease(speed: Values, outer_diameter: Value, temperature: float) -> Values:
-    """log10 of the life of the grease in h (...), at low load; NaN outside the range."""
+    """log10 of the life of the grease in h (...), at low load, by speed (...), rpm, outer diameter,
+    m, and temperature, K; NaN outside the range of the curves.
+    """
     size = 1e3 * outer_diameter * speed
     factor = np.where(np.real(size) > 125e3, size, 125e3)
     warm = max(celsius(temperature), 50.0)

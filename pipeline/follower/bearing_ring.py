@@ -45,7 +45,8 @@ class Ring:
         return self.modulus * self.width * self.thickness**3 / 12.0
 
     def stress_inside(self, moment: Array, hoop: Array) -> Array:
-        """Circumferential stress at the inner radius, Pa, of moment, N m, and hoop force, N.
+        """Circumferential stress at the inner radius (...), Pa, of a moment (...), N m, and a hoop
+        force (...), N; as a curved bar.
 
         A positive moment puts the inner radius in tension.
 
@@ -102,7 +103,8 @@ class RingBending:
 
 
 def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
-    """Goodman's equivalent fully reversed amplitude, Pa; infinite where the mean exceeds R_m.
+    """Goodman's equivalent fully reversed amplitude (...), Pa, of amplitude and mean stress (...),
+    Pa; infinite where the mean exceeds the tensile strength, Pa.
 
     A compressive mean stress counts as zero; NaN where an input is.
 
@@ -117,7 +119,8 @@ def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
 
 
 def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float) -> float:
-    """Estimated secant stiffness of a ball between its raceways under a force, N/m.
+    """Estimated secant stiffness of a ball between its raceways, N/m, under a force, N, with its
+    diameter, m, and Young's modulus, Pa.
 
     Each contact as ball on flat, d = (9 F^2/(16 E*^2 R))^(1/3), times a factor 1.3 for the
     osculation of the grooves (recalled, verify); the bending of the ring is insensitive to it.

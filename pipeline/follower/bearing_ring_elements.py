@@ -50,6 +50,9 @@ class RingElements:
     """
 
     def __init__(self, ring: Ring, sections: int, poisson: float = 0.3) -> None:
+        """Assemble the stiffness and the operators from the displacements to motion, moment and
+        hoop force of each section.
+        """
         from skfem import Basis, ElementQuad2, ElementVector
         from skfem.models.elasticity import lame_parameters, linear_elasticity
 
@@ -187,7 +190,9 @@ def _solved_at_position(
 
 
 def annulus(radius: float, thickness: float, sections: int) -> MeshQuad2:
-    """Closed ring of curved quadratic quadrilaterals, two over the thickness."""
+    """Mesh of a closed ring of curved quadratic quadrilaterals, `sections` around and two over the
+    thickness; radius : mean, m.
+    """
     from skfem import MeshQuad, MeshQuad2
 
     angle = FULL_TURN / sections * np.arange(sections)

@@ -184,7 +184,9 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
 
 
 def periodic_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
-    """Periodic response at speeds (n,), rad/s; by harmonic balance at constant speed."""
+    """Periodic response of the mass at n equal cam angles to a lift (n,), m, and cam speeds (n,),
+    rad/s; by harmonic balance at constant speed, otherwise by collocation.
+    """
     speed = finite("cam_speed", cam_speed)
     if is_steady(speed):
         return harmonic_response(lift, float(speed[0]), follower)

@@ -130,7 +130,7 @@ def bounce(
 
 
 def _law(cam_speed: float | PeriodicPolynomial) -> PeriodicPolynomial:
-    """Cam speed over the cam angle, rad/s, > 0."""
+    """Cam speed as a function of the cam angle, rad/s; InputError where it is not positive."""
     if not isinstance(cam_speed, PeriodicPolynomial):
         cam_speed = PeriodicPolynomial(np.array([[float(cam_speed)]]))
     least = float(cam_speed(np.linspace(0.0, FULL_TURN, 1441)).min())
@@ -181,7 +181,9 @@ class _Motion:
         return _Phase(solution.t, solution.y, last=solution.status == 0)
 
     def flight(self, angle: float, state: Array) -> _Phase:
-        """Phase in flight, to the landing."""
+        """Phase in flight from take-off at cam angle `angle`, rad, with a state (5,), to the
+        landing; the greatest gap is refined between steps.
+        """
         solution = self._integrated(angle, angle + LONGEST * FULL_TURN, state, touching=False)
         theta, gaps, shut = self._look(solution)
         early = np.flatnonzero(shut & (theta > angle) & (theta < solution.t[-1]))
@@ -215,7 +217,9 @@ class _Motion:
     def _look(
         self, solution: scipy.optimize.OptimizeResult
     ) -> tuple[Array, Array, NDArray[np.bool_]]:
-        """Cam angles (k,), rad, of a flight, the gaps there, m, and whether the contact is shut."""
+        """Cam angles (k,), rad, of samples of a flight, the gaps there (k,), m, and whether the
+        contact has shut again (k,).
+        """
         first, last = solution.t[0], solution.t[-1]
         count = int((last - first) / FULL_TURN * self.lift.search_count)
         theta = np.linspace(first, last, min(max(64, count), _GAPS_MAX))
@@ -226,7 +230,9 @@ class _Motion:
     def _integrated(
         self, angle: float, end: float, state: Array, *, touching: bool
     ) -> scipy.optimize.OptimizeResult:
-        """One phase, to the change of contact or the last angle."""
+        """State over the cam angle from `angle` to `end`, rad, or to the change of contact before,
+        by Runge-Kutta of order 8; touching : with the force of the stem, else in flight.
+        """
         f = self.follower
 
         def rates(at: float, y: Array) -> list[float]:
@@ -254,6 +260,7 @@ class _Motion:
         )
 
     def record(self, phases: Sequence[_Phase], flights: tuple[Flight, ...]) -> Bounce:
+        """Motion, contact force and energies at all steps of the phases in turn, m, m/s, N, J."""
         f = self.follower
         theta = np.concatenate([phase.theta for phase in phases])
         x, v, work, lost, time = np.concatenate([phase.state for phase in phases], axis=1)
@@ -292,6 +299,9 @@ class _ContactChange:
         return -1.0 if self.touching else 1.0
 
     def __call__(self, angle: float, state: Array) -> float:
+        """Contact force, N, of a phase in contact, or of one in flight a value that rises through
+        zero as the contact shuts; state : (5,) at cam angle `angle`, rad.
+        """
         if self.touching:
             return self.motion.force(angle, state)
         return float(self.motion.shut(*self.motion.foot(angle), state[0], state[1]))

@@ -29,7 +29,7 @@ def in_series(compliances: Iterable[float]) -> float:
 
 
 def bearing_compliance(solved: RingOnBalls, ring: OuterRing, load: float) -> float:
-    """Compliance of outer ring and balls at a load (N), m/N, mean over the ball positions.
+    """Compliance of outer ring and balls at a radial load, N, m/N, mean over the ball positions.
 
     The ring was solved with other balls; by Castigliano's theorem its compliance changes by the
     sum of squared ball loads per newton times the change of the balls' compliance.
@@ -74,7 +74,8 @@ def stem_compliance_along(stem: Stem, length: float) -> float:
 
 
 def shaft_compliance(shaft: Camshaft) -> float | None:
-    """Bending and shear compliance of the camshaft at the cam, m/N.
+    """Bending and shear compliance of the camshaft at the cam, m/N; None without diameter or
+    material.
 
     A plain bar on two hinged bearings, the cam between or beyond them; None without diameter or
     material.

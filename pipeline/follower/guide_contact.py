@@ -85,7 +85,9 @@ class BearingLine:
         return self.rigid_modes @ rigid - self.compliance @ push
 
     def law(self, deflection: Array) -> Array:
-        """Force of the bore (k, n), N: zero within the clearance, linear beyond."""
+        """Force of the bore on the beam (k, n), N, at deflections (k, n), m: zero within the
+        clearance, linear beyond, signed like the deflection.
+        """
         force = np.abs(deflection)
         force -= self.play[:, None]
         np.maximum(force, 0.0, out=force)
@@ -93,7 +95,9 @@ class BearingLine:
         return np.copysign(force, deflection, out=force)
 
     def law_miss(self, deflection: Array, push: Array) -> Array:
-        """Maximum residual of the contact law over the knots (n,), as indentation, m."""
+        """Greatest residual of the contact law over the knots (n,), as indentation, m, of forces
+        `push` (k, n), N, at deflections (k, n), m.
+        """
         miss = self.law(deflection)
         np.abs(np.subtract(push, miss, out=miss), out=miss)
         miss /= self.stiffness[:, None]
@@ -157,6 +161,7 @@ class BearingLine:
         return np.asarray(self.compliance + np.diag(1.0 / self.stiffness))
 
     def _bound_to(self, knots: NDArray[np.intp]) -> BoundKnots:
+        """Linear equations of the beam with these knots (active,) in contact with the bore."""
         modes, softness = self._modes[knots], self._softness[knots[:, None], knots]
         scale = (
             float(softness.diagonal().max(initial=0.0)) or 1.0
@@ -283,7 +288,8 @@ def settle(
 
 
 def _first_guess(line: BearingLine, load: Array) -> tuple[Array, Array]:
-    """Bore forces and end motion near those of loads (2, n).
+    """Bore forces (k, n), N, and end motions (2, n), m and rad, near those of loads (2, n), N and N
+    m, for the start of the iteration.
 
     Some loads in the order of direction and size are solved, and those between interpolated.
     """
@@ -308,7 +314,8 @@ def _first_guess(line: BearingLine, load: Array) -> tuple[Array, Array]:
 def _linear_step(
     line: BearingLine, push: Array, rigid: Array, load: Array
 ) -> tuple[Array, Array, NDArray[np.intp]]:
-    """Equilibrium with the knots in contact bound to the bore and the others free.
+    """Bore forces (k, n), N, and end motions (2, n) in equilibrium with loads (2, n), with the
+    knots that now touch bound to the bore and the others free; number of knots in contact (n,).
 
     Also the number of knots in contact (n,). Positions with the same knots in contact share one
     factorisation. The unknown is the change of the end motion: small loads would be lost in the
@@ -366,7 +373,8 @@ def _reduced(
 def _best_length(
     line: BearingLine, push: Array, rigid: Array, push_step: Array, rigid_step: Array, load: Array
 ) -> Array:
-    """Step length (n,) in (0, 1] of minimum energy.
+    """Step length (n,) in (0, 1] from the present state to that of the linear step (`push_step`,
+    `rigid_step`) of least energy.
 
     The slope of the energy increases along the step, so that a negative slope at the full step
     gives length 1. The slope is piecewise linear between the lengths at which knots leave or enter
@@ -391,7 +399,12 @@ def _best_length(
 
 
 def _zero(line: BearingLine, before: Array, change: Array, first: Array, spread: Array) -> Array:
-    """Zero (n,) of a slope with value `first` at 0 and a positive value at 1."""
+    """Zero (n,) of the slope of the energy along a step, which is `first` (n,) at length 0 and
+    positive at 1.
+
+    before, change : (k, n), deflection at length 0 and its change over the step, m
+    spread : (n,), rate of the slope by the beam alone, J
+    """
     pace = np.where(change == 0.0, 1e-300, change)
     toward = np.sign(pace) * line.play[:, None]
     stiffening = line.stiffness[:, None] * change**2

@@ -137,6 +137,9 @@ class Guide(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a press fit, and a least or greatest friction on the wrong side of the nominal
+        one.
+        """
         super().__post_init__()
         _no_press_fit("guide.clearance", self.clearance)
         low, high = self.friction_min, self.friction_max
@@ -197,6 +200,7 @@ class GuidePair(Part):
     """guide B beyond guide A"""
 
     def __post_init__(self) -> None:
+        """Refuse guides that overlap."""
         super().__post_init__()
         least = 0.5 * (self.a.length + self.b.length)
         if not least < self.spacing:
@@ -316,7 +320,8 @@ class GuideReactions(Displayed):
         return np.asarray(np.ptp(self.knots_b) * mean_line_load(self.line_pressure_b, self.knots_b))
 
     def loaded_side(self, guide: int, position: int) -> tuple[float, float]:
-        """Load, N, and loaded length of the side of a guide (0: A, 1: B) with more line load.
+        """Load, N, and loaded length, m, of the side of a guide (0: A, 1: B) that has the greater
+        mean line load at the position of this number.
 
         At the number of a position; the loaded length, m, is that of `mean_line_load`.
         """
@@ -347,7 +352,9 @@ def mean_line_load(line_load: ArrayLike, knots: ArrayLike) -> Array:
 
 
 def _pushes(load: Array, at: Array) -> tuple[Array, Array]:
-    """Push (2, n), N, on both sides of a bore and its loaded length (2, n), m."""
+    """Force on both sides of a bore (2, n), N, and loaded length of each (2, n), m; load (k, n),
+    N/m, signed line load at the knots `at` (k,), m from the middle of the guide.
+    """
     weights = at[-1] * lobatto(at.size)[1]
     sides = np.stack([load, -load])
     push: Array = weights @ np.maximum(sides, 0.0)
@@ -361,7 +368,9 @@ def _mean(push: Array, length: Array) -> Array:
 
 
 def _loaded_length(sides: Array, knots: Array, weights: Array) -> Array:
-    """Length with a positive line load (..., n), m, of loads (..., k, n)."""
+    """Length with a positive line load (..., n), m, of line loads `sides` (..., k, n), N/m, at
+    knots (k,), m; beyond the last loaded knot the line load is extrapolated to zero.
+    """
     on, gaps = sides > 0.0, np.diff(knots)[:, None]
     length = (gaps * (on[..., :-1, :] & on[..., 1:, :])).sum(axis=-2)
     for load, spaces, near in (
@@ -373,7 +382,9 @@ def _loaded_length(sides: Array, knots: Array, weights: Array) -> Array:
 
 
 def _beyond(load: Array, gaps: Array, weights: Array) -> Array:
-    """Loaded length beyond a loaded knot before an unloaded one (..., k - 1, n), m."""
+    """Loaded length beyond each loaded knot that an unloaded one follows (..., k - 1, n), m,
+    otherwise 0; load (..., k, n), N/m, gaps (k - 1, 1) between knots and weights (k, 1), m.
+    """
     here, after = np.maximum(load[..., :-1, :], 0.0), load[..., 1:, :]
     before = np.zeros_like(here)
     before[..., 1:, :] = here[..., :-1, :]
@@ -444,7 +455,10 @@ class _Carried(NamedTuple):
         return _relative(miss, self.rubbing_a + self.rubbing_b + np.abs(force))
 
     def moment_residual(self, moment: Array, reach: Array, spacing: float) -> Array:
-        """Residual of the moments about the roller over the sum of their magnitudes (n,)."""
+        """Residual of the moments about the roller over the sum of their magnitudes (n,); moment
+        (n,), N m, of the side force, reach (n,), from the roller to the middle of guide A, and
+        spacing of the guides, m.
+        """
         far = reach + spacing
         turned = self.couple_a + self.couple_b + self.reaction_a * reach - self.reaction_b * far
         scale = self.rubbing_a * reach + self.rubbing_b * far + np.abs(moment)
@@ -570,7 +584,10 @@ def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> N
 
 @lru_cache(maxsize=8)
 def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine, Array, float]:
-    """Beam and foundation from the edge of guide A; slopes per force, rad/N; half its length."""
+    """Stem as a beam in both guides from the edge of guide A nearer to the roller, slopes of the
+    stem at the middles of the guides per unit force at each knot, rad/N, and half the length of
+    guide A, m; knots : per guide.
+    """
     unit, weight = lobatto(knots)
     half_a, half_b = 0.5 * guides.a.length, 0.5 * guides.b.length
     positions = np.r_[half_a * (1.0 + unit), half_a + guides.spacing + half_b * unit]
@@ -588,7 +605,7 @@ def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine
 
 @cache
 def lobatto(count: int) -> tuple[Array, Array]:
-    """Nodes and weights (count,) of Gauss-Lobatto quadrature on [-1, 1].
+    """Nodes and weights, (count,) each, of Gauss-Lobatto quadrature on [-1, 1].
 
     References
     ----------
@@ -606,7 +623,7 @@ def _relative(error: Array, scale: Array) -> Array:
 
 
 def _certify(result: GuideReactions) -> None:
-    """Check equilibrium and contact law.
+    """Check that the residuals of equilibrium and of the contact law are within `RESIDUAL_LIMIT`.
 
     Raises
     ------

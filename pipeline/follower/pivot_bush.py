@@ -54,7 +54,9 @@ def pressed_bush(bush: Guide, force: Array, couple: Array) -> PressedBush:
 
 
 def _between_edges(bush: Guide, force: Array, couple: Array) -> tuple[Array, Array]:
-    """Tilt and greatest line load of a pin that touches both sides of its bush (m,)."""
+    """Tilt, rad, and greatest line load, N/m, (m,) each, of a pin that a force, N, and a couple, N
+    m, (m,) press to both sides of its bush; tilt by bisection.
+    """
     length, modulus, play = bush.length, bush.foundation_modulus, bush.clearance
 
     def ends(tilt: Array) -> tuple[Array, Array]:

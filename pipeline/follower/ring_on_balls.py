@@ -51,7 +51,9 @@ class RingOnBalls:
 
 
 def solid_reason(radius: float, bearing: Bearing) -> str:
-    """Why a solid roller of a radius (m) is modelled; "" for a ring on its balls."""
+    """Why a roller of a radius, m, is modelled as solid; "" where it is modelled as a ring on its
+    balls.
+    """
     ring = bearing.ring
     if ring is None:
         return "ring and balls of the bearing are not specified"

@@ -102,7 +102,8 @@ def judged_sections(
 
 
 def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: ArrayLike) -> Array:
-    """Bending moment (..., 2, n), N m, at positions (...), m from the first bearing.
+    """Bending moment (..., 2, n), N m, at positions (...), m from the first bearing, by the
+    components of the forces over the turn (n,).
 
     By force component.
     """
@@ -119,7 +120,9 @@ def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: ArrayLike) -> Arra
 
 
 def torque_at(torque: Array, shaft: Camshaft, place: ArrayLike) -> Array:
-    """Torque (..., n), N m, at positions (...): cam torque and drag from gear to cam, else 0."""
+    """Torque (..., n), N m, at positions (...), m from the first bearing: between gear and cam the
+    cam torque (n,), N m, and the drag, elsewhere 0.
+    """
     low, high = sorted((shaft.cam_position, shaft.gear_position))
     at = np.asarray(place, dtype=float)[..., None]
     within = (low - _SAME_PLACE <= at) & (at <= high + _SAME_PLACE)
@@ -229,7 +232,8 @@ def fatigue_safety(amplitude: Array, mean: Array, endurance: Array, tensile: flo
 
 
 def greatest_stress(moment: Array, torque: Array, sections: Sections) -> Array:
-    """Von Mises stress (k, n), Pa, at the notches by bending (k, 2, n) and torsion (k, n), N m.
+    """Von Mises stress (k, n), Pa, at the k notched sections, of bending moments (k, 2, n) and
+    torques (k, n), N m.
 
     References
     ----------
@@ -301,7 +305,8 @@ class CamSlope(NamedTuple):
 
 @lru_cache(maxsize=32)
 def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSlope:
-    """Slope at the cam per force, cam between the bearings or overhung; see `shaft_bending`.
+    """Slopes of the shaft at the cam per unit force at cam, gear and counterweight, and per moment
+    at the cam; the cam is between the bearings or overhung. diameter, m, elastic_modulus, Pa.
 
     References
     ----------

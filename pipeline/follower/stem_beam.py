@@ -50,7 +50,7 @@ class Stem:
 
     @property
     def shear_flexibility(self) -> float:
-        """1/(kappa G A), 1/N; 0 for an Euler-Bernoulli beam.
+        """Shear deflection per force and length, 1/(kappa G A), 1/N; 0 for an Euler-Bernoulli beam.
 
         References
         ----------

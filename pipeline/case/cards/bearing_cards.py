@@ -61,6 +61,7 @@ class BearingCard(Part):
     rows: Annotated[int, Count(1, 4)] = 1
 
     def __post_init__(self) -> None:
+        """Refuse a ring that is described in part, or does not fit into the bearing."""
         super().__post_init__()
         if any(getattr(self, name) is not None for name in (*_RING, *_STRENGTHS)):
             for name in _RING:

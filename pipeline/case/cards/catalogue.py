@@ -72,6 +72,9 @@ def catalogue_of(folder: Path | None) -> Catalogue:
 
 
 def _bush(name: str, entry: Tables) -> CatalogueBush:
+    """Bush of a card, its values converted to SI; the least friction bound is the friction
+    itself.
+    """
     field, marks = f"cards.bushes.{name}", marks_of(Guide)
     for key in ("friction", "pressure_limit", "pv_limit", "material"):
         if key not in entry:
@@ -111,7 +114,9 @@ def undominated(
 
 
 def better_roller(one: BearingCard, other: BearingCard) -> bool:
-    """Whether a bearing of equal size dominates another in ratings and load limits."""
+    """Whether `one` is as good as `other` or better in every rating and load limit, at equal outer
+    diameter and width.
+    """
     same = (one.outer_diameter, one.width) == (other.outer_diameter, other.width)
     limits = ("radial_limit", "static_radial_limit", "fatigue_load_limit")
     ring = all((getattr(one, name) or 0.0) >= (getattr(other, name) or 0.0) for name in limits)
@@ -138,7 +143,9 @@ def better_spring(
 
 
 def nearest_spring(springs: Sequence[HelicalSpring], rate: float) -> HelicalSpring:
-    """Lightest spring of a rate (N/m), or else the spring of the nearest rate."""
+    """Lightest spring of a rate (N/m), within `SAME_RATE`, or else the spring of the nearest
+    rate.
+    """
     alike = [spring for spring in springs if abs(spring.rate / rate - 1.0) <= SAME_RATE]
     if alike:
         return min(alike, key=lambda spring: spring.mass)

@@ -97,6 +97,7 @@ def without_provenance(card: Tables) -> Tables:
 
 
 def _read(entry: TomlValue, field: str) -> Provenance:
+    """Provenance of an entry of a card; InputError with its field."""
     try:
         return Provenance.model_validate(entry)
     except ValidationError as error:

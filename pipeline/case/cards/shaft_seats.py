@@ -32,7 +32,7 @@ class Seat(Part):
 
 
 def seats() -> tuple[Seat, ...]:
-    """Shipped seats by increasing bore."""
+    """Shipped cam seats with their bearings, by increasing bore."""
     table: Tables = read_toml(_FILE, _FILE.name, _BYTES_MAX)
     rows = table["seat"]
     listed = rows if isinstance(rows, list) else []

@@ -166,7 +166,8 @@ def wire_sources() -> Iterator[tuple[str, Source]]:
 
 
 def sources_in(path: Path, name: str) -> tuple[TomlValue, Tables]:
-    """Sources of a catalogue spring's wire and of its numbers, as table entries.
+    """Sources of a catalogue spring by name: the entry of its wire, "" without one, and entries by
+    key of the numbers of wire and spring.
 
     The numbers of its wire have those of their provenance.
     """
@@ -190,7 +191,9 @@ def sources_in(path: Path, name: str) -> tuple[TomlValue, Tables]:
 def lightest(
     catalogue: tuple[HelicalSpring, ...], demand: SpringDemand[float]
 ) -> tuple[HelicalSpring | None, dict[str, tuple[str, ...]]]:
-    """Lightest spring that meets the demand, or None; reasons of the refused springs."""
+    """Lightest spring that meets the demand, None where none does, and by name the limits that each
+    refused spring breaks.
+    """
     reasons = {spring.name: demand.shortfalls(spring) for spring in catalogue}
     fit = [spring for spring in catalogue if not reasons[spring.name]]
     best = min(fit, key=lambda spring: spring.mass, default=None)
@@ -212,6 +215,7 @@ class _Wire(Part):
 
 
 def _wire(field: str, entry: TomlValue) -> _Wire:
+    """Wire of a table, old names of keys accepted."""
     own = without_provenance(entry) if isinstance(entry, dict) else entry
     return read_part(_Wire, with_new_wire_keys(own, field), field)
 
@@ -233,6 +237,7 @@ def _spring(field: str, entry: TomlValue, wires: Mapping[str, _Wire]) -> Helical
 
 
 def _require_own_keys(field: str, entry: Tables) -> None:
+    """Refuse keys of a spring that are unknown or those of its wire."""
     of_wire = {each.name for each in fields(_Wire)}
     known = {each.name for each in fields(HelicalSpring)} - of_wire | {"wire"}
     for key in entry:

@@ -61,7 +61,7 @@ class Choice:
 
 
 def travel_of(spring: HelicalSpring, case: Case) -> float:
-    """Maximum lift (m) within the limits of a spring in a case; 0 if there is none.
+    """Maximum lift, m, that a spring allows within its limits in a case; 0 if there is none.
 
     All limits of `SpringDemand` without surge, as in the checks: at the upper bounds of rate and
     preload.
@@ -171,6 +171,9 @@ def with_cam_material(case: Case, name: str, folder: Path | None) -> Case:
 
 
 def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
+    """Write another roller into the tables of a case, in place: bearing, radius, pin, fork and end,
+    scaled from those of the old one.
+    """
     old, radius = case.roller, 0.5 * card.outer_diameter
     roller = table_in(data, "roller")
     for replaced in ("roller.bearing", "roller.inertia"):
@@ -205,6 +208,7 @@ def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
 
 
 def _put_spring(data: Tables, case: Case, spring: HelicalSpring) -> None:
+    """Write a catalogue spring into the tables of a case, in place, with the preload as it was."""
     forget_sources(data, "spring.design")
     table_in(data, "spring").update(
         {
@@ -233,6 +237,9 @@ def _heavier(case: Case, card: BearingCard) -> float:
 
 
 def _put_bush(data: Tables, side: str, name: str) -> None:
+    """Write the card of a bush into guide `side` ("a" or "b") of the tables of a case, in place;
+    its dimensions are kept.
+    """
     place = ("length", "diameter", "wall", "clearance", "stiffness", "housing_resistance")
     guides = table_in(data, "guides")
     kept = {key: value for key, value in table_in(guides, side).items() if key in place}
@@ -241,6 +248,9 @@ def _put_bush(data: Tables, side: str, name: str) -> None:
 
 
 def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None:
+    """Write into the tables of a case, in place, that its lift is synthesised with a free prime
+    radius; radius : of the new roller, m.
+    """
     smoothing = case.smoothing
     kept = [n for n in smoothing.free if n not in ("spring_rate", "prime_radius")]
     low = least_prime_radius(case, radius)

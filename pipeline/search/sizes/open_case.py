@@ -148,7 +148,9 @@ def parse_open_case(
 
 
 def _least_roller(tables: Tables) -> str:
-    """Radius of the bearing's ring, or a tenth above that of the hub: the smallest roller."""
+    """Radius of the smallest roller, as text with unit: that of the bearing's ring, or a tenth
+    above that of the hub.
+    """
     ring = _entry(tables, "roller.bearing.ring.outer_diameter")
     if isinstance(ring, str):
         return units.format(0.5 * units.parse(ring, "mm", ROLLER), "mm")
@@ -159,7 +161,9 @@ def _least_roller(tables: Tables) -> str:
 
 
 def _open(tables: Tables, key: str) -> None:
-    """Remove the value of a key from the tables of a file."""
+    """Remove the value of an open key from the tables of a file, in place; InputError for a key
+    that cannot be open.
+    """
     if key not in GAPS:
         raise InputError("--free", key, f"one of: {', '.join(GAPS)}")
     table, _, name = key.rpartition(".")
@@ -171,6 +175,7 @@ def _open(tables: Tables, key: str) -> None:
 
 
 def _entry(tables: Tables, key: str) -> TomlValue | None:
+    """Value at a dotted key of tables; None where a table has none."""
     node: TomlValue | None = tables
     for step in key.split("."):
         node = node.get(step) if isinstance(node, dict) else None

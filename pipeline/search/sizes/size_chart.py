@@ -26,7 +26,9 @@ _CHART_POINTS, _BEST_POINTS = 73, 19
 
 
 def size_figure(case: Case, shapes: Shapes, shape: Shape) -> Figure:
-    """Pressure angle and curvature around a sized shape, in mm and deg."""
+    """Figure of pressure angle, deg, and radius of curvature, mm, or of curvature and undercut
+    factor of a flat face, over base radii around a sized shape.
+    """
     panels = (
         _face_panels(case, shapes, shape)
         if isinstance(shapes, FaceShapes)
@@ -40,7 +42,9 @@ def size_figure(case: Case, shapes: Shapes, shape: Shape) -> Figure:
 
 
 def _about_size(panel: Panel, size: float) -> Panel:
-    """A panel with the point at the size, to `_HEADROOM` of limit and value there."""
+    """Panel with a spot at the size, mm, and its vertical axis cut at `_HEADROOM` times limit and
+    value there.
+    """
     here = [float(np.interp(size, curve.x, curve.y)) for curve in panel.curves]
     reached = [*here, *(line.value for line in panel.limits)]
     spot = Curve(np.array([size]), np.array(here[:1]), colour="ink", look="spot")
@@ -68,6 +72,9 @@ def _curve_record(curve: Curve) -> SizeCurve:
 
 
 def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[Panel]:
+    """Panels of pressure angle, deg, and least convex radius of curvature, mm, of roller cams over
+    the base radius, mm.
+    """
     cam, inset = shapes.cam, shape.roller_radius
     low = max(
         _RADIUS_FROM * shape.prime_radius,
@@ -103,6 +110,9 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[Panel]:
 
 
 def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[Panel]:
+    """Panels of least radius of curvature, mm, and undercut factor of face cams over the base
+    radius, mm.
+    """
     bases, cam = (
         _about(_RADIUS_FROM * shape.prime_radius, shape.prime_radius, _CHART_POINTS),
         shapes.cam,
@@ -126,7 +136,7 @@ def _in(values: Iterable[float], unit: str) -> Array:
 
 
 def _angle_limits(limits: PitchLimits) -> tuple[LimitLine, ...]:
-    """Limits of the pressure angle, deg."""
+    """Lines of the limits of the pressure angle, deg; one where rise and return have the same."""
     rise, back = in_unit(limits.rise, "deg"), in_unit(limits.back, "deg")
     if rise == back:
         return (LimitLine(rise, "limit"),)

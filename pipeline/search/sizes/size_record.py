@@ -73,6 +73,9 @@ def size_lines(sizing: Sizing) -> Iterator[str]:
 
 
 def _spring_line(sizing: Sizing) -> str:
+    """Line on the spring: force at full lift and, without a wound spring, the mass that its coils
+    may have.
+    """
     spring, case = sizing.spring, sizing.case
     stroke = sizing.shapes.parts(sizing.shape).stroke
     words = f"spring: {shown(spring.size.force(stroke), 'N')} at full lift"
@@ -87,6 +90,7 @@ def _spring_line(sizing: Sizing) -> str:
 
 
 def _check_words(check: Check) -> str:
+    """Check as text; of one that is not evaluated its title and the keys that the case lacks."""
     if check.status == "not_evaluated":
         lacks = f"; the case lacks {', '.join(check.missing)}" if check.missing else ""
         return f"not known: {check.title}{lacks}"

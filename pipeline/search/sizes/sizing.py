@@ -256,6 +256,9 @@ class _SizeSearch:
     progress: Progress
 
     def sized(self) -> Sizing:
+        """Sizes of the open case: the smallest shape of the geometry, grown with the spring until
+        the preview passes or no larger one helps.
+        """
         self.progress.stage("geometry")
         exact = self.shapes.smallest()
         spring = self._spring(exact)
@@ -312,7 +315,9 @@ class _SizeSearch:
         return spring_of(self.opened.case, self.opened.gaps, self.shapes.parts(shape), stiff)
 
     def _stiffened(self, exact: Shape, first: _Sized) -> _Sized:
-        """The first of stiffer springs whose winding passes; the given one if none does."""
+        """Case complete with the first of stiffer springs whose winding passes; `first` itself
+        where none does.
+        """
         reason, spring = _titles(failing(first.checks, _WOUND)), first.spring
         for _ in range(_TRIES):
             spring = self._spring(exact, stiffer(spring, _STIFFER, reason))
@@ -328,7 +333,8 @@ class _SizeSearch:
     def _firm(
         self, exact: Shape, start: ChosenSpring, reason: str, raised: Mapping[str, float]
     ) -> _Sized | None:
-        """A spring whose preview holds the follower, 1 % above one that does not.
+        """Case complete with a spring whose preview holds the follower, within 1 % of the weakest
+        such; None where none of those tried does.
 
         None: none of those tried does.
 
@@ -348,11 +354,13 @@ class _SizeSearch:
         return first_passing(holding, 1.0, factors, near=_bracketed, middle=_geometric_mean)
 
     def _values(self, shape: Shape, spring: ChosenSpring) -> dict[str, float]:
+        """Values of the open keys, SI, of a shape and a spring."""
         own = {RATE: spring.rate, PRELOAD: spring.preload}
         own |= values_of(shape, self.opened.gaps)
         return {key: own[key] for key in self.opened.gaps}
 
     def _sources(self, shape: Shape, spring: ChosenSpring) -> dict[str, str]:
+        """Reason of the value of each open key, in words."""
         words = {
             PRIME: f"sized: {shape.governs}",
             OFFSET: f"sized: {shape.offset_governs}",
@@ -406,7 +414,9 @@ class _SizeSearch:
     def _grown(
         self, shape: Shape, spring: ChosenSpring, raised: Mapping[str, float] = NOT_RAISED
     ) -> Shape:
-        """The smallest shape from this one on that passes; the shape itself if none does.
+        """The smallest shape, from this one on in steps of the prime radius, whose checks that a
+        larger cam can cure pass by the screening; `shape` with its dimensions rounded where none
+        does.
 
         raised: utilisation in the preview over that of the screening, by check.
         """
@@ -429,7 +439,7 @@ class _SizeSearch:
         return first_passing(passing, low, primes, _SIZE_HALVINGS) or least
 
     def _judged(self, shape: Shape, spring: ChosenSpring) -> _Sized:
-        """A shape with the judgement of the complete case."""
+        """Case complete with a shape and a spring, judged by a preview."""
         self.progress.stage("preview")
         values = self._values(shape, spring)
         text = self.opened.with_sources(values, self._sources(shape, spring))
@@ -439,7 +449,8 @@ class _SizeSearch:
         return _Sized(spring, shape, text, judgement, checks)
 
     def _at_worst(self, judgement: Judgement) -> tuple[Check, ...]:
-        """The checks with those of the spring also at the worst of all tolerances at once.
+        """Checks of a judged case, in which one on the spring that fails at the worst ends of all
+        tolerances together stands with its values there.
 
         There the closed forms have their limit: within their error bars it is held.
         """
