@@ -304,11 +304,25 @@ class Case(Displayed, Section):
         """Whether the lift follows from a torque to balance; else the case states the lift."""
         return self.lift is None
 
+    def with_spring_on_arm(self) -> Case:
+        """Case whose spring is reduced to the arc of its arm.
+
+        Raises
+        ------
+        InputError
+            If the spring is that of another kind of follower.
+        """
+        arm = self.follower.arm
+        spring = self.spring.on_arm(None if arm is None else arm.length)
+        return self if spring is self.spring else self.model_copy(update={"spring": spring})
+
     @property
     def spring_mass(self) -> float:
         """Part of the spring's mass that moves with the follower, kg; 0 without a spring design."""
         design = self.spring.design
-        return 0.0 if design is None else self.follower.spring_share * design.mass
+        if design is None:
+            return 0.0
+        return self.follower.spring_share * design.mass * self.spring.lever_at_rest**2
 
     @property
     def facing(self) -> FollowerKind:

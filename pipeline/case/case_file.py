@@ -111,6 +111,7 @@ def validated(tables: Tables) -> Case:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
         raise refusal_of(error) from None
+    case = case.with_spring_on_arm()
     case._written = Written(tables)
     check_sections(case)
     return case

@@ -190,7 +190,7 @@ def replaced(case: Case, values: Mapping[str, float]) -> Case:
             # of a part that does not know its place: a guide
             place = ".".join(map(str, table))
             raise InputError(f"{place}.{rest}", error.value, error.limit) from None
-    return case
+    return case.with_spring_on_arm()
 
 
 def _put(node: Any, path: Sequence[str | int], values: Mapping[str | int, Any]) -> Any:

@@ -159,9 +159,9 @@ def _or_zero(value: Any) -> Any:
 
 
 def _spring_mass(case: Case, at: At) -> Any:
-    """Mass of the spring as wound, kg; 0 without a spring design."""
+    """Mass of the spring as wound that moves as the follower, kg; 0 without a spring design."""
     wound = wound_spring(case, at)
-    return 0.0 if wound is None else wound.mass
+    return 0.0 if wound is None else wound.mass * case.spring.lever_at_rest**2
 
 
 def _check_values(case: Case) -> None:

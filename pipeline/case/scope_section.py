@@ -16,7 +16,7 @@ from camwright.pipeline.base.quantities import Known
 from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.section import Section, Text
 from camwright.pipeline.case.toml_text import Tables, TomlValue
-from camwright.pipeline.follower.spring_kinds import SHAPES, SpringPart
+from camwright.pipeline.follower.spring_kinds import TABLES_OF_PARTS, SpringPart
 from camwright.pipeline.records.run_summary import ScopeRecord
 
 PartName = Literal[
@@ -32,7 +32,7 @@ PART_WORDS: dict[PartName, str] = {
     "fork": "fork of the roller",
     "arm": "arm of the follower",
     "spring": "spring design",
-    **{each.part: each.part.replace("_", " ") for each in SHAPES.values()},
+    **{part: part.replace("_", " ") for part in TABLES_OF_PARTS},
     "guides": "guides",
     "pivot": "pivot of the arm",
     "camshaft": "camshaft",
@@ -63,7 +63,7 @@ _KEYS: dict[ScopeName, tuple[str, ...]] = {
     "fork": ("roller.fork",),
     "arm": tuple(f"follower.arm.{key}" for key in ("width", "depth", "material", "*_notch")),
     "spring": ("spring.design", "spring.travel_max"),
-    **{each.part: (each.table,) for each in SHAPES.values()},
+    **dict(TABLES_OF_PARTS.items()),
     "guides": ("guides", "follower.overhang_at_max_lift", "follower.anti_rotation"),
     "pivot": ("follower.pivot",),
     "camshaft": ("camshaft",),

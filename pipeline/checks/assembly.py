@@ -748,6 +748,7 @@ spring_gap = check(
     " lift, and coils from the stem; the length at maximum lift is that of spring_coil_gap",
     moved_by_tolerance=False,
     part="spring",
+    needs="stem",
     load_cases=NONE,
     values=("spring.rate", "spring.preload"),
     levers=(
@@ -825,6 +826,7 @@ torsion_gap = check(
     method="circle of the coil from stem and guides in the plane of the cam",
     moved_by_tolerance=False,
     part="torsion_spring",
+    needs="stem",
     load_cases=NONE,
     levers=(levers.one("spring.torsion.arm", most=2.0),),
     page="Spring",
@@ -851,6 +853,7 @@ gas_gap = check(
     " the stroke that the maker permits is that of gas_stroke",
     moved_by_tolerance=False,
     part="gas_spring",
+    needs="stem",
     load_cases=NONE,
     levers=(levers.one("follower.stem_length", most=2.0), levers.one("spring.gas.volume")),
     page="Spring",

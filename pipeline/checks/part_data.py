@@ -12,7 +12,7 @@ from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.case.scope_section import PART_WORDS, PartName
 from camwright.pipeline.checks.check import NONE, STATED, Declaration, Demand, Kind, Page, check
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.spring_kinds import SHAPES
+from camwright.pipeline.follower.spring_kinds import TABLES_OF_PARTS
 
 Tables = Mapping[str, Part | Follower | None]
 """Tables of a case that describe a part, by their keys; None: not in the case."""
@@ -23,14 +23,14 @@ def _data(
     tables: Callable[[Case], Tables],
     needs: Kind = "",
     described_by: tuple[str, ...] = (),
-    spring: str = "",
+    springs: tuple[str, ...] = (),
     *,
     page: Page,
 ) -> Declaration:
     """Check that a part is described and lacks no datum; None if the scope leaves it out.
 
-    described_by: tables or keys by which the case describes the part; spring: kind of spring
-    with which a case can have it; "": any.
+    described_by: tables or keys by which the case describes the part; springs: kinds of
+    spring with which a case can have it; (): any.
     """
     words: str = name
     coverable: PartName | None = None
@@ -54,7 +54,7 @@ def _data(
     )
     def data(solution: Solution) -> Demand | None:
         machine = solution.machine
-        if spring not in ("", solution.case.spring.kind or "coil"):
+        if springs and (solution.case.spring.kind or "coil") not in springs:
             return None
         if coverable is not None:
             if not machine.scope.covers(coverable):
@@ -76,7 +76,7 @@ def _spring(case: Case) -> Tables:
 
 
 def _shaped_spring(case: Case) -> Tables:
-    shape = case.spring.shape
+    shape = None if case.spring.shape is None else case.spring.shape.own
     return {"spring": case.spring, **({} if shape is None else {shape.table: shape})}
 
 
@@ -138,12 +138,18 @@ data_spring = _data(
     "spring",
     _spring,
     described_by=("spring.design",),
-    spring="coil",
+    springs=("coil",),
     page="Spring",
 )
 data_shaped_springs = tuple(
-    _data(each.part, _shaped_spring, described_by=(each.table,), spring=kind, page="Spring")
-    for kind, each in SHAPES.items()
+    _data(
+        part,
+        _shaped_spring,
+        described_by=tables,
+        springs=tuple(each.removeprefix("spring.") for each in tables),
+        page="Spring",
+    )
+    for part, tables in TABLES_OF_PARTS.items()
 )
 """Of the springs that are not linear, by their kinds."""
 data_guides = _data("guides", _guides, page="Guides")

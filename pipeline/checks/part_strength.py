@@ -471,7 +471,7 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
     elif bar is not None:
         masses["arm"] = bar.mass_at_end(parts.inset)
     if design is not None:
-        masses["spring"] = solution.case.follower.spring_share * design.mass
+        masses["spring"] = machine.spring_mass
     elif machine.spring.shape is None and machine.scope.covers("spring"):
         missing.append("spring.design")
     return masses, tuple(missing)

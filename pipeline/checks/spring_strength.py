@@ -15,6 +15,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.levers import Lever
@@ -36,7 +37,7 @@ from camwright.pipeline.checks.check import (
     check,
     of_key,
 )
-from camwright.pipeline.checks.demands import FatiguePoint, follower_speed, slope_at, slope_over
+from camwright.pipeline.checks.demands import FatiguePoint, slope_at
 from camwright.pipeline.checks.extremes import Extreme, Measure, over_duty, steady
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.contact.tiers import Tier
@@ -58,13 +59,14 @@ from camwright.pipeline.follower.spring import (
     HelicalSpring,
     SpringWork,
     WireLimit,
+    end_travel,
     surge_harmonics,
 )
 from camwright.pipeline.follower.spring_kinds import (
     ATMOSPHERE,
     CHARGED_AT,
     GasSpring,
-    TorsionSpring,
+    TorsionWire,
 )
 
 BENDING_STRENGTH = 0.54  # permissible bending stress over R_m, above 1e6 strokes
@@ -74,7 +76,7 @@ _TURN_SAMPLES = 720  # of the turn, among which the rises of the lift are counte
 _DWELL_SLOPE = 1e-6  # of the greatest slope of the lift: a dwell
 
 
-_HIGH = "spring.preload (1 + spring.preload_tolerance)"
+_HIGH = "spring_preload (1 + spring.preload_tolerance)"
 _STIFF = "spring.design.rate (1 + spring.rate_tolerance)"
 _SOLID_LENGTH = "spring.design.wire_diameter (spring.design.coils + 2) [mm]"
 _WIRE = {
@@ -134,7 +136,8 @@ def _stable(demand: Demand, solution: Solution) -> Demand:
 def _surge_over_speed(demand: Demand, solution: Solution) -> Demand:
     """With the harmonics that the surge meets, and its greatest force."""
     design, lift = _design(solution), solution.contour.pitch.lift.values
-    highest, margin = surge_harmonics(lift, demand.value or 0.0)
+    travel = np.asarray(end_travel(solution.machine.spring.shape, lift))
+    highest, margin = surge_harmonics(travel, demand.value or 0.0)
     sweeps = solution.speed_sweeps
     sweep = sweeps[first_greatest([each.surge_force.max() for each in sweeps])]
     added = float(sweep.surge_force.max())
@@ -298,13 +301,13 @@ spring_solid = check(
     moved_by_tolerance=False,
     part="spring",
     formula="(L0 - Lc - s_max) / s_max >= limits.spring_solid; L0, Lc: free and solid length,"
-    " s_max = P/k + h: deflection at maximum lift h, preload P high",
+    " s_max = P/k + h: deflection at maximum lift, preload P high, h: travel of the ends",
     symbols={
         "L0": "spring.design.free_length",
         "Lc": _SOLID_LENGTH,
         "P": f"{_HIGH} [N]",
         "k": "spring.design.rate [N/mm]",
-        "h": "lift_highest",
+        "h": "spring_travel_highest",
         "s_max": "[mm]",
     },
     reason="A spring that goes solid stops the follower.",
@@ -340,7 +343,7 @@ spring_coil_gap = check(
     symbols={
         "L0": "spring.design.free_length",
         "Lc": _SOLID_LENGTH,
-        "s_max": f"{_HIGH}/spring.design.rate + lift_highest [mm]",
+        "s_max": f"{_HIGH}/spring.design.rate + spring_travel_highest [mm]",
         "n": "spring.design.coils",
         "D": "spring.design.mean_diameter",
         "d": "spring.design.wire_diameter",
@@ -420,7 +423,7 @@ spring_buckling = check(
         "G": "spring.design.shear_modulus",
         "E": f"{STATED} [GPa]",
         "nu": "spring.design.end_factor",
-        "s_max": f"{_HIGH}/spring.design.rate + lift_highest [mm]",
+        "s_max": f"{_HIGH}/spring.design.rate + spring_travel_highest [mm]",
         "s_K": "[mm]",
         "x": "[-]",
     },
@@ -454,7 +457,7 @@ spring_buckling = check(
         "d": "spring.design.wire_diameter",
         "D": "spring.design.mean_diameter",
         "n": "spring.design.coils",
-        "k": "spring.rate",
+        "k": "spring_stiffness",
     },
     reason="All loads are those of spring.rate, all stresses those of the design.",
     load_cases=NONE,
@@ -464,7 +467,7 @@ spring_buckling = check(
 ).measured("case", allowed=of_key("spring.rate_tolerance"), remark=_of_wire, deviation=1e-4)
 def spring_rate(cam: LoadedCam) -> Array:
     """Relative deviation of the spring design's rate from the stated rate."""
-    return np.asarray(cam.wire.rate_error(cam.numbers["spring.rate"]))
+    return np.asarray(cam.wire.rate_error(cam.spring_rate))
 
 
 @check(
@@ -512,7 +515,7 @@ spring_relaxation = check(
     " force lost in 48 h at spring.design.temperature, F_max: force at maximum lift, P: preload",
     symbols={
         "R": "spring.design.relaxation",
-        "F_max": f"{_HIGH} + {_STIFF} lift_highest [N]",
+        "F_max": f"{_HIGH} + {_STIFF} spring_travel_highest [N]",
         "P": f"{_HIGH} [N]",
     },
     reason="A relaxed spring no longer has the preload on which every force is based.",
@@ -586,6 +589,21 @@ def _gas_pressure(cam: LoadedCam) -> Array:
     return np.asarray(cam.hardest.greatest / cam.numbers["spring.gas.area"])
 
 
+def _spring_travel(cam: LoadedCam) -> Array:
+    """Travel of the ends of the spring, m."""
+    return cam.spring_travel
+
+
+def _piston_speed(cam: LoadedCam) -> Array:
+    """Speed of the ends of the spring to one another, m/s."""
+    return magnitude(cam.velocity * cam.spring_lever)
+
+
+def _travel_slope_over(cam: LoadedCam, limit: float) -> Array:
+    """Slope of its travel over its value at the greatest piston speed, see `slope_over`."""
+    return magnitude(cam.jet.slope * cam.spring_lever) / limit
+
+
 def _gas_temperature(cam: LoadedCam) -> Array:
     """Temperature of the gas, degC."""
     return np.asarray(celsius(cam.numbers["spring.gas.temperature"]))
@@ -621,9 +639,9 @@ gas_stroke = _gas_check(
     "gas_stroke",
     title="Stroke of the gas spring",
     unit="mm",
-    method="greatest lift, between samples too",
-    formula="h <= spring.gas.stroke; h: maximum lift",
-    symbols={"h": "lift_highest"},
+    method="travel of its ends at the greatest lift, between samples too",
+    formula="h <= spring.gas.stroke; h: travel of its ends at maximum lift, on a stem the lift",
+    symbols={"h": "spring_travel_highest"},
     reason="a gas spring that strikes its stop breaks.",
     values=("spring.gas.stroke",),
     cured_by=(
@@ -631,17 +649,17 @@ gas_stroke = _gas_check(
         *levers.GENTLER,
     ),
 ).measured("top", allowed=of_key("spring.gas.stroke"), remark=_of_gas, deviation=1e-4, kept=Kept())(
-    lift
+    _spring_travel
 )
 gas_speed = _gas_check(
     "gas_speed",
     title="Maximum piston speed of the gas spring",
     unit="m/s",
-    method="greatest speed of the follower over the load cases",
-    kept_as="lift per radian at the maximum speed of the gas spring",
-    formula="max |v| <= spring.gas.speed_limit over all load cases; v: w s', w: cam speed, s':"
-    " slope of the lift",
-    symbols={"v": "follower_velocity"},
+    method="greatest speed of its ends to one another over the load cases",
+    kept_as="travel per radian at the maximum speed of the gas spring",
+    formula="|v| <= spring.gas.speed_limit over all load cases; v: w s' u', greatest over the turn,"
+    " w: cam speed, s': slope of the lift, u': travel of its ends per lift, 1 on a stem",
+    symbols={"v": "follower_velocity spring_lever [m/s]"},
     reason="a faster seal overheats and wears.",
     values=(*given.MOTION, "spring.gas.speed_limit"),
     cured_by=(
@@ -654,8 +672,8 @@ gas_speed = _gas_check(
     remark=_of_gas,
     deviation=2e-3,
     bound=slope_at,
-    kept=Kept(slope_over, unit="mm", unloaded=True),
-)(follower_speed)
+    kept=Kept(_travel_slope_over, unit="mm", unloaded=True),
+)(_piston_speed)
 gas_temperature = _gas_check(
     "gas_temperature",
     title="Temperature of the gas spring",
@@ -678,7 +696,7 @@ gas_temperature = _gas_check(
 def _lost_force(cam: LoadedCam) -> Array:
     """Share of the preload that is missing at the coldest start after the service interval."""
     numbers = cam.numbers
-    absolute = numbers["spring.preload"] / numbers["spring.gas.area"] + ATMOSPHERE
+    absolute = cam.spring_preload / numbers["spring.gas.area"] + ATMOSPHERE
     warm = numbers.get("spring.gas.temperature")
     cold = numbers["spring.gas.cold_temperature"] / (CHARGED_AT if warm is None else warm)
     left = absolute * (1.0 - numbers["spring.gas.loss"]) * cold
@@ -700,7 +718,7 @@ gas_force_lost = _gas_check(
     " zero lift and T, spring.gas.temperature, p_0: of the surroundings, T_c:"
     " spring.gas.cold_temperature, c: spring.gas.loss",
     symbols={
-        "p": "spring.preload/spring.gas.area + 101325 [MPa]",
+        "p": "spring_preload/spring.gas.area + 101325 [MPa]",
         "c": "spring.gas.loss",
         "T_c": "spring.gas.cold_temperature",
         "T": f"{STATED} [K]",
@@ -825,9 +843,9 @@ gas_stroke_rate = _gas_check(
 )(_stroke_rate)
 
 
-def _torsion(cam: LoadedCam) -> TorsionSpring:
+def _torsion(cam: LoadedCam) -> TorsionWire:
     torsion = cam.spring_shape
-    if not isinstance(torsion, TorsionSpring):
+    if not isinstance(torsion, TorsionWire):
         raise InputError("spring.torsion", "missing", "given for the checks of the spring")
     return torsion
 
@@ -846,19 +864,24 @@ def _stress_range(cam: LoadedCam) -> Array:
 
 
 def _of_torsion(demand: Demand, solution: Solution) -> Demand:
-    torsion = solution.machine.spring.torsion
+    spring = solution.machine.spring
+    torsion = spring.torsion or spring.torsion_pivot
     return replace(demand, figures=() if torsion is None else (torsion.source,), corner=HARDEST)
+
+
+_WOUND = ("torsion", "torsion_pivot")
 
 
 def _torsion_check(
     name: str, measure: Measure, key: str, share: float, *, title: str, source: Source, method: str,
     formula: str, reason: str,
 ) -> Declaration:  # fmt: skip
-    """Check of the bending stress of a torsion spring against a share of the value at a key."""
-    needed = (*(f"spring.torsion.{each}" for each in ("wire_diameter", "mean_diameter")), key)
+    """Check of the bending stress of a torsion spring against a share of a value of its table."""
 
     def allowed(numbers: Numbers) -> Allowed:
-        value = numbers.get(key)
+        table = f"spring.{numbers.known_case.spring.kind}"
+        value = numbers.get(f"{table}.{key}")
+        needed = (f"{table}.{each}" for each in ("wire_diameter", "mean_diameter", key))
         missing = tuple(each for each in needed if numbers.get(each) is None)
         return Allowed(None if value is None else share * value, missing)
 
@@ -876,7 +899,10 @@ def _torsion_check(
         reason=reason,
         load_cases=NONE,
         values=given.SPRING,
-        levers=(levers.one("spring.torsion.wire_diameter", most=2.0), *levers.GENTLER),
+        levers=(
+            *(levers.one(f"spring.{each}.wire_diameter", most=2.0) for each in _WOUND),
+            *levers.GENTLER,
+        ),
         page="Spring",
     ).measured("top", allowed=allowed, remark=_of_torsion, deviation=1e-4, kept=Kept())(measure)
 
@@ -884,7 +910,7 @@ def _torsion_check(
 torsion_stress = _torsion_check(
     "torsion_stress",
     _bending_stress,
-    "spring.torsion.tensile_strength",
+    "tensile_strength",
     BENDING_STRENGTH,
     title="Maximum bending stress of the torsion spring",
     source=Source(
@@ -902,15 +928,60 @@ torsion_stress = _torsion_check(
 torsion_fatigue = _torsion_check(
     "torsion_fatigue",
     _stress_range,
-    "spring.torsion.stress_range",
+    "stress_range",
     1.0,
     title="Range of the bending stress of the torsion spring",
     source=Source(
-        "spring.torsion.stress_range: fatigue diagram of DIN EN 13906-3, or of the maker",
+        "stress_range of the spring: fatigue diagram of DIN EN 13906-3, or of the maker",
         confirmed=True,
     ),
     method="difference of q 32 M/(pi d^3) at maximum and zero lift, preload and rise high",
-    formula="q 32 (M_h - M_0) / (pi d^3) <= spring.torsion.stress_range; M_h, M_0: moments at"
-    " maximum and zero lift with the tolerances high, q: as of `torsion_stress`",
+    formula="q 32 (M_h - M_0) / (pi d^3) <= S; S: stress_range of the table of the spring, M_h,"
+    " M_0: moments at maximum and zero lift with the tolerances high, q: as of `torsion_stress`",
     reason="A broken spring releases the follower.",
 )
+
+
+def _rising(numbers: Numbers) -> Allowed:
+    """Lift up to which the force of a linked spring rises; None without a link."""
+    spring = numbers.known_case.spring
+    return Allowed(None if spring.link is None or spring.shape is None else spring.shape.reach)
+
+
+def _of_link(demand: Demand, solution: Solution) -> Demand:
+    link = solution.machine.spring.link
+    if link is None:
+        return demand
+    swing = shown(link.dead_centre, "deg", 4)
+    note = f"dead centre of the spring at a swing of {swing}"
+    return replace(demand, figures=(link.source,), note=note)
+
+
+link_reach = check(
+    id="link_reach",
+    title="Lift up to which the spring on the arm closes with a rising force",
+    unit="mm",
+    source=Source("lift from energy has one solution", confirmed=True),
+    method="lift at which the lever of the spring falls as fast as its force rises, or the law of"
+    " a gas spring ends; before its dead centre",
+    lift_can_help=True,
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    needs="arm",
+    formula="h <= s_r; h: maximum lift, s_r: lift at which F_s du/ds is greatest, F_s: force of the"
+    " spring, u: travel of its ends",
+    symbols={"h": "lift_highest"},
+    reason="Towards the dead centre the lever of the spring vanishes, and with it the force that"
+    " keeps the follower on the cam.",
+    load_cases=NONE,
+    values=given.SPRING,
+    levers=(levers.one("spring.link.arm_radius", most=2.0), *levers.GENTLER),
+    page="Spring",
+).measured(
+    "top",
+    allowed=_rising,
+    applies=lambda _, numbers: np.array(numbers.known_case.spring.link is not None),
+    remark=_of_link,
+    deviation=1e-4,
+    kept=Kept(),
+)(lift)

@@ -10,7 +10,10 @@ from typing import Literal
 
 from camwright.pipeline.follower.spring_kinds import SHAPES
 
-SPRING = ("spring.rate", "spring.preload", *(f"{each.table}.*" for each in SHAPES.values()))
+SPRING = (
+    *("spring.rate", "spring.preload", "spring.link.*"),
+    *(f"{each.table}.*" for each in SHAPES.values()),
+)
 MOTION = (*SPRING, "follower.mass", "limits.overspeed")
 LOADS = (
     *MOTION,

@@ -37,7 +37,7 @@ from camwright.pipeline.follower.pivot_forces import (
     arm_pivot,
 )
 from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
-from camwright.pipeline.follower.spring import SpringWork, WoundWire
+from camwright.pipeline.follower.spring import SpringWork, WoundWire, end_travel, lever
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise
 
 
@@ -261,6 +261,34 @@ class LoadedCam:
         """Spring force at minimum lift, N."""
         return self._spring_at(self.least_lift)
 
+    def travel_of_spring(self, lift: Value) -> Value:
+        """Travel of the ends of the spring at a lift, m; on a stem the lift."""
+        return end_travel(self.spring_shape, lift)
+
+    @property
+    def spring_travel(self) -> Array:
+        """Travel of the ends of the spring, m."""
+        return np.asarray(self.travel_of_spring(self.jet.lift))
+
+    @property
+    def spring_lever(self) -> Array:
+        """Travel of the ends of the spring per lift; 1 on a stem."""
+        return np.asarray(lever(self.spring_shape, self.jet.lift))
+
+    @property
+    def spring_preload(self) -> Value:
+        """Force of the spring itself at zero lift, N; on a stem `spring.preload`."""
+        return self._own(self.numbers["spring.preload"])
+
+    @property
+    def spring_rate(self) -> Value:
+        """Rate of the spring itself at zero lift, N/m; on a stem `spring.rate`."""
+        shape = self.spring_shape
+        return self.numbers["spring.rate"] * (1.0 if shape is None else shape.own_share)
+
+    def _own(self, preload: Value) -> Value:
+        return preload / lever(self.spring_shape, 0.0)
+
     @cached_property
     def wire(self) -> WoundWire[Value]:
         """Wire of the spring as wound."""
@@ -270,17 +298,18 @@ class LoadedCam:
     def hardest(self) -> SpringWork[Value]:
         """Work of the hardest spring in tolerance up to the lift, without surge.
 
-        With the greatest preload of the load cases; a wound spring has the rate of its wire.
+        With the greatest preload of the load cases; a wound spring has the rate of its wire. Force
+        and travel are those of the spring itself.
         """
-        numbers, lift = self.numbers, self.jet.lift
-        preload = numbers["spring.preload_greatest"]
+        numbers, travel = self.numbers, self.spring_travel
+        preload = self._own(numbers["spring.preload_greatest"])
         spreads = numbers["spring.preload_tolerance"], numbers["spring.rate_tolerance"]
         if numbers.case is not None and numbers.case.spring.design is not None:
-            return self.wire.at_work(preload, lift, *spreads)
-        hard, rate = preload * (1.0 + spreads[0]), numbers["spring.rate"] * (1.0 + spreads[1])
-        shape = self.spring_shape
-        risen = lift if shape is None else rise(shape, lift).travel
-        return SpringWork(hard, hard + rate * risen, lift, rate)
+            return self.wire.at_work(preload, travel, *spreads)
+        hard, rate = preload * (1.0 + spreads[0]), self.spring_rate * (1.0 + spreads[1])
+        law = None if self.spring_shape is None else self.spring_shape.own
+        risen = travel if law is None else rise(law, travel).travel
+        return SpringWork(hard, hard + rate * risen, travel, rate)
 
     @property
     def stressed(self) -> SpringWork[Value]:

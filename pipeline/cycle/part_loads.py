@@ -29,7 +29,7 @@ from camwright.pipeline.follower.guide_friction import (
     friction_power,
 )
 from camwright.pipeline.follower.guide_reactions import Guide
-from camwright.pipeline.follower.spring import natural_frequency, surge_force
+from camwright.pipeline.follower.spring import end_travel, lever, natural_frequency, surge_force
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -171,7 +171,7 @@ def part_loads(
         key_pressure=_key_pressure(machine, loads),
         shaft_bearing_1=None if shaft is None else shaft.load_1,
         shaft_bearing_2=None if shaft is None else shaft.load_2,
-        spring_stress=None if spring is None else spring.stress(loads.spring_force),
+        spring_stress=None if spring is None else spring.stress(_own_force(machine, loads)),
         surge_force=spring_surge(machine, loads.lift),
         pin_stress=machine.follower.pin_stress(loads.normal_force, moment),
         roller_spin=None if motion is None else motion.spin,
@@ -187,11 +187,18 @@ def spring_surge(machine: Machine, lift: Array) -> Array | None:
 
     None without a spring design.
     """
-    rate, design = machine.spring.rate, machine.spring.design
+    rate, shape, design = machine.spring.own.rate, machine.spring.shape, machine.spring.design
     if design is None:
         return None
     frequency = natural_frequency(rate, design.active_mass)
-    return surge_force(lift, machine.cam_speed, rate, frequency, design.damping)
+    travel = np.asarray(end_travel(shape, lift))
+    surge = surge_force(travel, machine.cam_speed, rate, frequency, design.damping)
+    return surge * lever(shape, lift)
+
+
+def _own_force(machine: Machine, loads: Loads) -> Array:
+    """Force of the spring itself (n,), N."""
+    return np.asarray(loads.spring_force / lever(machine.spring.shape, loads.lift))
 
 
 def guide_bodies(machine: Machine, guide: Guide) -> tuple[SolidBar, Bush]:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array, distinct, firsts, freeze, uniform_turn
+from camwright.geometry.arrays import Array, Value, distinct, firsts, freeze, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_greatest, first_greatest_of_rows, first_least
 from camwright.geometry.follower_path import FollowerPath
@@ -23,8 +23,11 @@ from camwright.pipeline.follower.spring import (
     HelicalSpring,
     Spring,
     dynamic_stiffness,
+    end_travel,
+    lever,
     natural_frequency,
 )
+from camwright.pipeline.follower.spring_kinds import SpringShape
 
 ANGLES = 720
 UNIFORM = 61  # speeds at equal distances
@@ -159,9 +162,11 @@ def swept_forces(
     follower = _Follower.of(machine, contour.pitch, rubbing)
     speed = np.array([cam_speed])
     moving = follower.resonant.stiffness(speed).moving
-    surge = np.broadcast_to(follower.resonant.surge(moving)[0], ANGLES)
+    surge = follower.resonant.on_follower(follower.resonant.surge(moving))
     rigid = follower.closing + cam_speed**2 * follower.inertia
-    return SweptForces(surge, follower.elastic(speed[:, None], moving)[0] - rigid)
+    return SweptForces(
+        np.broadcast_to(surge[0], ANGLES), follower.elastic(speed[:, None], moving)[0] - rigid
+    )
 
 
 def spring_sweep(
@@ -182,11 +187,12 @@ def spring_sweep(
     speeds : of float    crank speeds that the sweep contains, rad/s
     """
     spring, spread = machine.spring, machine.spring.rate_tolerance
-    work = design.at_work(preload, 0.0, spring.preload_tolerance, spread)
-    hard = replace(spring, rate=work.rate, preload=work.preload)
+    at_rest = preload / spring.lever_at_rest
+    work = design.at_work(at_rest, 0.0, spring.preload_tolerance, spread)
+    hard = replace(spring.own, rate=work.rate, preload=work.preload)
     # The resonances of the hardest spring lie this much above those of the nominal and softest one.
     nominal, softest = np.sqrt(1.0 + spread), np.sqrt((1.0 + spread) / (1.0 - spread))
-    resonant = _Resonant.of(hard, design, pitch)
+    resonant = _Resonant.of(hard, design, pitch, spring.shape)
     cam_speeds = softest * np.asarray(speeds) / machine.gear_ratio
     grid = resonant.grid(machine, cam_speeds)
     least, greatest = resonant.end_forces(grid)
@@ -202,17 +208,28 @@ def spring_sweep(
 
 @dataclass(frozen=True, eq=False)
 class _Resonant:
-    """Harmonics of the lift, m, and the spring that they drive; None: without mass."""
+    """Harmonics of the travel of a spring, m, which drive it; None: without mass.
 
-    lift: Array
+    lever: force on the follower over that of the spring, (n,) or 1
+    """
+
+    travel: Array
+    lever: Value
     spectrum: NDArray[np.complex128]
     spring: Spring
     design: HelicalSpring | None
 
     @classmethod
-    def of(cls, spring: Spring, design: HelicalSpring | None, pitch: FollowerPath) -> _Resonant:
+    def of(
+        cls,
+        own: Spring,
+        design: HelicalSpring | None,
+        pitch: FollowerPath,
+        shape: SpringShape | None,
+    ) -> _Resonant:
         lift = pitch.lift(uniform_turn(ANGLES))
-        return cls(lift, np.fft.rfft(lift), spring, design)
+        travel = np.asarray(end_travel(shape, lift))
+        return cls(travel, lever(shape, lift), np.fft.rfft(travel), own, design)
 
     @property
     def order(self) -> Array:
@@ -247,9 +264,13 @@ class _Resonant:
             return np.zeros((len(stiffness), 1))
         return np.fft.irfft(stiffness * self.spectrum, ANGLES)
 
+    def on_follower(self, surge: Array) -> Array:
+        """Force of the surge (m, n) on the follower, N."""
+        return surge if np.ndim(self.lever) == 0 or surge.shape[1] == 1 else surge * self.lever
+
     def end_forces(self, cam_speed: Array) -> tuple[Array, Array]:
         """Least and greatest force (2, m) over the turn at moving and fixed end, N."""
-        static = self.spring.force(self.lift)
+        static = self.spring.force(self.travel)
         ends = self.stiffness(cam_speed)
         forces = [static + self.surge(each) for each in (ends.moving, ends.fixed)]
         least, greatest = (
@@ -279,15 +300,16 @@ class _Resonant:
 class _Follower:
     """Follower on its cam: forces (n,) that depend on the speed by powers alone.
 
-    closing: spring, weight and external force; beside: less that of the linear spring of the rate
-    at zero lift; inertia, viscous: per square and per first power of the cam speed; gain: normal
-    force over axial force without friction; arm: cam torque over that force, m; with a pivot, whose
-    friction is no share of that force, over the axial force. pulls: on an arm, at rest and per
-    square of the speed.
+    spectrum: of the lift, m; closing: spring, weight and external force; beside: less that of the
+    linear spring of the rate at zero lift; inertia, viscous: per square and per first power of the
+    cam speed; gain: normal force over axial force without friction; arm: cam torque over that
+    force, m; with a pivot, whose friction is no share of that force, over the axial force. pulls:
+    on an arm, at rest and per square of the speed.
     """
 
     machine: Machine
     resonant: _Resonant
+    spectrum: NDArray[np.complex128]
     theta: Array
     closing: Array
     beside: Array
@@ -314,9 +336,11 @@ class _Follower:
                 still, still, loads.travel, slope, loads.acceleration
             )
             pulls, share = (resting, thrown), np.ones(theta.size)
+        spring = machine.spring
         return cls(
             machine=machine,
-            resonant=_Resonant.of(machine.spring, machine.spring.design, pitch),
+            resonant=_Resonant.of(spring.own, spring.design, pitch, spring.shape),
+            spectrum=np.fft.rfft(pitch.lift(theta)),
             theta=theta,
             closing=loads.closing_force,
             beside=loads.applied_force + _bent(machine.spring, loads.lift),
@@ -343,7 +367,7 @@ class _Follower:
     def extremes(self, cam_speed: Array) -> dict[str, Array]:
         """Arrays (m,) of `SpeedSweep` by name at cam speeds (m,), rad/s."""
         moving = self.resonant.stiffness(cam_speed).moving
-        surge = self.resonant.surge(moving)
+        surge = self.resonant.on_follower(self.resonant.surge(moving))
         speed = cam_speed[:, None]
         push = speed**2 * self.inertia
         push += self.closing
@@ -371,12 +395,13 @@ class _Follower:
 
     def elastic(self, speed: Array, moving: NDArray[np.complex128]) -> Array:
         """Axial contact force (m, n) of the mass on its stem, N; the spring with its surge."""
-        machine, spectrum = self.machine, self.resonant.spectrum
+        machine, spectrum = self.machine, self.spectrum
         stem, rate = machine.axial_stiffness, machine.spring.rate
         mass = machine.mass_without_spring
         damping = 2.0 * machine.damping_ratio * np.sqrt(mass * (stem + rate))
         w = speed * self.resonant.order
-        behind = rate + moving - mass * w**2
+        # the waves of a linked spring act by its mean lever
+        behind = rate + np.mean(self.resonant.lever) ** 2 * moving - mass * w**2
         joint = stem + 1.0j * damping * w
         force = behind * spectrum
         force[:, 0] += ANGLES * machine.spring.preload

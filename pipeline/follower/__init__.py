@@ -6,6 +6,7 @@ In the order of the calculation:
 | ----------------------- | ------------------------------------------ | --------------------- |
 | `stem_beam`             | stem as a chain of beam elements           | E I, N m2; m/N        |
 | `spring_kinds`          | gas, torsion spring; lift from energy      | rho, m; p, Pa         |
+| `spring_link`           | spring between an arm and a fixed point    | u, m; du/ds           |
 | `spring`                | helical spring, strength, buckling, surge  | k, N/m; P, N; tau, Pa |
 | `pivot_forces`          | moments about the pivot of an arm          | R, N; mu, -           |
 | `follower_forces`       | forces with guide friction                 | F_a, N; T, N m        |

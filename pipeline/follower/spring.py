@@ -33,8 +33,10 @@ from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.spring_kinds import (
     SHAPES,
+    TABLES_OF_PARTS,
     CoilDiameter,
     GasSpring,
+    PivotSpring,
     SpringKind,
     SpringShape,
     TorsionSpring,
@@ -42,6 +44,7 @@ from camwright.pipeline.follower.spring_kinds import (
     rise,
     shaped_deflection,
 )
+from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
 
 INDEX_MIN, INDEX_MAX = 3.0, 20.0  # D/d that can be coiled
 DEAD_COILS = 2.0  # of squared and ground ends
@@ -496,7 +499,8 @@ class Spring(Part):
     """Spring of the follower, preloaded at zero lift; linear, or of another kind.
 
     The rate is that at zero lift, its tolerance that of the rise of the force. A gas or torsion
-    spring sets rate and preload, which its case leaves out.
+    spring, and one with a link, set rate and preload, which their case leaves out. All are those on
+    the follower, of an arm on the arc of its reference point.
 
     Raises
     ------
@@ -523,7 +527,8 @@ class Spring(Part):
     )
 
     kind: Annotated[Literal["coil", SpringKind] | None, Known("own choice", "coil")] = None
-    """coil; or gas or torsion with the table of its name, from which rate and preload follow"""
+    """coil; or gas, torsion or torsion_pivot with the table of its name, from which rate and
+    preload follow"""
     rate: Annotated[Rate, Known("spring catalogue or drawing", "24.2 kN/m")]
     """force per deflection"""
     preload: Annotated[Preload, Known("spring drawing", "242 N")]
@@ -545,6 +550,11 @@ class Spring(Part):
     """gas spring, of `kind` gas"""
     torsion: Annotated[TorsionSpring | None, Used("lift, cycle, checks of the spring")] = None
     """torsion spring whose arm presses on the follower, of `kind` torsion"""
+    torsion_pivot: Annotated[PivotSpring | None, Used("lift, cycle, checks of the spring")] = None
+    """torsion spring about the pivot of an arm, of `kind` torsion_pivot"""
+    link: Annotated[SpringLink | None, Used("lift, cycle, checks of the spring")] = None
+    """ends of a coil or gas spring on the arm of an oscillating follower; rate and preload
+    follow"""
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
@@ -558,19 +568,70 @@ class Spring(Part):
                 )
             if kind == owner and not stated and name != "design":
                 raise InputError(f"spring.{name}", "missing", f'given with spring.kind = "{kind}"')
+        if self.link is None:
+            return
+        if kind in SHAPES and not SHAPES[kind].linkable:
+            raise InputError("spring.link", "a table", f'left out with spring.kind = "{kind}"')
+        if self.link.action == "pull" and self.design is not None:
+            limit = "left out with spring.link.action = pull: it is a compression spring"
+            raise InputError("spring.design", "a table", limit)
 
-    @property
+    @cached_property
     def shape(self) -> SpringShape | None:
         """Rise of the force over the lift; None: linear."""
+        if self.link is not None:
+            return LinkedSpring(link=self.link, spring=self._shape)
+        return self._shape
+
+    @property
+    def _shape(self) -> SpringShape | None:
+        """The table of its kind; None of a coil."""
         kind = self.kind or "coil"
         shape: SpringShape | None = getattr(self, kind) if kind in SHAPES else None
         return shape
 
     @property
+    def lever_at_rest(self) -> float:
+        """Travel of its ends per lift, at zero lift."""
+        return float(lever(self.shape, 0.0))
+
+    @property
+    def own(self) -> Spring:
+        """The spring at its own ends, with rate and preload over their travel; see `end_travel`."""
+        shape = self.shape
+        if self.link is None or shape is None:
+            return self
+        preload = self.preload / self.lever_at_rest
+        return replace(self, link=None, rate=self.rate * shape.own_share, preload=preload)
+
+    def on_arm(self, length: float | None) -> Spring:
+        """As it acts on the arc of an arm of a length, m; None: on a stem.
+
+        Raises
+        ------
+        InputError
+            If it is that of a stem on an arm, or that of an arm on a stem.
+        """
+        shape = self.shape
+        if shape is None:
+            return self
+        if shape.carried not in ("", "stem" if length is None else "arm"):
+            limit = f"left out {'unless' if length is None else 'with'}"
+            limit += ' follower.kind = "oscillating"'
+            raise InputError(shape.table, "a table", limit)
+        fitted = shape if length is None else shape.on_arm(length)
+        if fitted is shape:
+            return self
+        stated = {fitted.stated.table.removeprefix("spring."): fitted.stated}
+        return replace(self, **stated).with_derived()  # type: ignore[arg-type]
+
+    @property
     def parts(self) -> dict[str, Part | None]:
         """Tables of the spring by the names of its parts in `[scope]`."""
         parts: dict[str, Part | None] = {"spring": self.design}
-        return parts | {each.part: getattr(self, kind) for kind, each in SHAPES.items()}
+        stated = {kind: getattr(self, kind) for kind in SHAPES}
+        parts |= dict.fromkeys(TABLES_OF_PARTS)
+        return parts | {each.part: each for each in stated.values() if each is not None}
 
     @property
     def derived(self) -> tuple[str, ...]:
@@ -578,7 +639,7 @@ class Spring(Part):
         return () if self.shape is None else ("rate", "preload")
 
     def with_derived(self) -> Spring:
-        """Spring with rate and preload of its gas or torsion spring."""
+        """Spring with rate and preload of its gas or torsion spring, or by its link."""
         shape = self.shape
         return self if shape is None else replace(self, rate=shape.rate, preload=shape.preload)
 
@@ -612,6 +673,16 @@ def spring_energy(
     if shape is None:
         return np.asarray(preload * at + 0.5 * rate * at**2)
     return np.asarray(preload * at + rate * rise(shape, at).work)
+
+
+def end_travel(shape: SpringShape | None, lift: Value) -> Value:
+    """Travel (...) of the ends of a spring at a lift, m; of a linear one the lift."""
+    return lift if shape is None else shape.end_travel(lift)
+
+
+def lever(shape: SpringShape | None, lift: Value) -> Value:
+    """Force on the follower over that of the spring (...) at a lift, m."""
+    return 1.0 if shape is None else shape.lever(lift)
 
 
 def stored_lift(

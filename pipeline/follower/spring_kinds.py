@@ -1,4 +1,4 @@
-"""Springs with nonlinear force, gas and torsion; lift from stored energy.
+"""Springs that are no coils on a stem, gas and torsion; lift from stored energy.
 
 The force over the lift is F(s) = P + k rho(s), with the preload P, the rate k at zero lift and a
 rise rho that is s near zero: rate and preload mean the same as those of a coil spring, and so do
@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Annotated, ClassVar, Literal, NamedTuple
+from typing import Annotated, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base.quantities import (
     In,
@@ -54,20 +54,26 @@ class Rise(NamedTuple):
     travel_d2: Array
 
 
-SpringKind = Literal["gas", "torsion"]
-"""Kinds of spring that are not linear, by `spring.kind` and the table of their name."""
+SpringKind = Literal["gas", "torsion", "torsion_pivot"]
+"""Kinds of spring that are no coils, by `spring.kind` and the table of their name."""
 SpringPart = Literal["gas_spring", "torsion_spring"]
 """What `[scope]` calls them."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpringShape(Part, ABC):
-    """Interface of a nonlinear spring: its table in a case, the rise of its force over the lift.
+    """Interface of a spring: its table in a case, the rise of its force over the lift.
 
-    part: its name in `[scope]`
+    Force and lift are those of the follower. What a linkage between both reduces to the follower
+    has another travel and force at its own ends.
+
+    part: its name in `[scope]`; carried: what it acts on, "": either; linkable: whether it can
+    stand between a point of an arm and a fixed one
     """
 
     part: ClassVar[SpringPart]
+    carried: ClassVar[Literal["", "stem", "arm"]] = ""
+    linkable: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -87,6 +93,33 @@ class SpringShape(Part, ABC):
     @abstractmethod
     def within(self, lift: Array) -> Rise:
         """Rise at a lift (...) up to the reach, m."""
+
+    @property
+    def own(self) -> SpringShape | None:
+        """Rise of its own force over its own travel; None: linear."""
+        return self
+
+    @property
+    def stated(self) -> Part:
+        """Table from which it depends on the arm."""
+        return self
+
+    @property
+    def own_share(self) -> float:
+        """Rate at its own ends over that on the follower, both at zero lift."""
+        return 1.0
+
+    def end_travel(self, lift: Value) -> Value:
+        """Travel (...) of its own ends from zero lift, m."""
+        return lift
+
+    def lever(self, lift: Value) -> Value:  # noqa: ARG002
+        """Travel of its own ends per lift (...): force on the follower over its own."""
+        return 1.0
+
+    def on_arm(self, length: float) -> Self:  # noqa: ARG002
+        """As it acts on the arc of an arm of a length, m."""
+        return self
 
 
 def rise(shape: SpringShape, lift: Array) -> Rise:
@@ -176,6 +209,7 @@ class GasSpring(SpringShape):
 
     table: ClassVar[str] = "spring.gas"
     part: ClassVar[SpringPart] = "gas_spring"
+    linkable: ClassVar[bool] = True
     resolved: ClassVar[Mapping[str, Resolved]] = card_of(
         "card of the gas spring, which fills the keys left out; it states no pressure",
         "gas_springs.toml",
@@ -310,7 +344,56 @@ _ISOTHERMAL = 1e-9  # exponent less 1, below which the compression is isothermal
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorsionSpring(SpringShape):
+class TorsionWire(SpringShape):
+    """Torsion spring: moment, rate, wire and the strength of the wire.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds.
+    """
+
+    moment: Annotated[float, In("N m", above=0, at_most=1e6), Known("spring drawing", "12 N m")]
+    """moment at zero lift"""
+    angular_rate: Annotated[
+        float,
+        In("N m/rad", above=0, at_most=1e6),
+        Known("spring drawing, or DIN EN 13906-3", "20 N m/rad"),
+    ]
+    """moment per angle"""
+    wire_diameter: Annotated[WireDiameter | None, Known("spring drawing", "6 mm")] = None
+    mean_diameter: Annotated[CoilDiameter | None, Known("spring drawing", "48 mm")] = None
+    tensile_strength: Annotated[
+        Pressure | None, Known("EN 10270-1 for the wire diameter", "1700 MPa")
+    ] = None
+    """tensile strength R_m of the wire"""
+    stress_range: Annotated[
+        Pressure | None, Known("fatigue diagram of DIN EN 13906-3, or the maker", "500 MPa")
+    ] = None
+    """permissible range of the bending stress for the target life"""
+
+    @abstractmethod
+    def moment_at(self, force: ArrayLike, lift: ArrayLike) -> Array:
+        """Moment (...), N m, of a force on the follower, N, at a lift, m."""
+
+    def bending_stress(self, moment: ArrayLike) -> Array:
+        """Greatest bending stress (...) at the inside of the coils, Pa; NaN without the wire.
+
+        sigma = q 32 M / (pi d^3), q = (w + 0.07)/(w - 0.75), w = D/d.
+
+        References
+        ----------
+        DIN EN 13906-3; q read second-hand.
+        """
+        if self.wire_diameter is None or self.mean_diameter is None:
+            return np.full_like(moment, np.nan)
+        index = self.mean_diameter / self.wire_diameter
+        curved = (index + 0.07) / (index - 0.75)
+        return np.asarray(curved * 32.0 * np.asarray(moment) / (np.pi * self.wire_diameter**3))
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorsionSpring(TorsionWire):
     """Torsion spring whose arm presses on the follower through a pin that slides across its axis.
 
     Wire, mean diameter, strength and range of the bending stress are for the checks.
@@ -327,30 +410,13 @@ class TorsionSpring(SpringShape):
 
     table: ClassVar[str] = "spring.torsion"
     part: ClassVar[SpringPart] = "torsion_spring"
+    carried: ClassVar[Literal["", "stem", "arm"]] = "stem"
 
-    moment: Annotated[float, In("N m", above=0, at_most=1e6), Known("spring drawing", "12 N m")]
-    """moment at zero lift"""
-    angular_rate: Annotated[
-        float,
-        In("N m/rad", above=0, at_most=1e6),
-        Known("spring drawing, or DIN EN 13906-3", "20 N m/rad"),
-    ]
-    """moment per angle"""
     arm: Annotated[Length, Known("drawing", "40 mm")]
     """length of the arm from the coil axis to the pin on the follower"""
     arm_angle: Annotated[float, In("deg", at_least=-75, at_most=75), Known("drawing")] = 0.0
     """angle of the arm at zero lift from square to the follower axis, positive towards the outward
     stroke"""
-    wire_diameter: Annotated[WireDiameter | None, Known("spring drawing", "6 mm")] = None
-    mean_diameter: Annotated[CoilDiameter | None, Known("spring drawing", "48 mm")] = None
-    tensile_strength: Annotated[
-        Pressure | None, Known("EN 10270-1 for the wire diameter", "1700 MPa")
-    ] = None
-    """tensile strength R_m of the wire"""
-    stress_range: Annotated[
-        Pressure | None, Known("fatigue diagram of DIN EN 13906-3, or the maker", "500 MPa")
-    ] = None
-    """permissible range of the bending stress for the target life"""
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
@@ -406,23 +472,62 @@ class TorsionSpring(SpringShape):
         turned = self.angle(np.where(np.real(at) < self.reach, at, self.reach))
         return np.asarray(np.asarray(force) * self.arm * np.cos(self.arm_angle + turned))
 
-    def bending_stress(self, moment: ArrayLike) -> Array:
-        """Greatest bending stress (...) at the inside of the coils, Pa; NaN without the wire.
 
-        sigma = q 32 M / (pi d^3), q = (w + 0.07)/(w - 0.75), w = D/d.
+@dataclass(frozen=True, kw_only=True)
+class PivotSpring(TorsionWire):
+    """Torsion spring about the pivot of an oscillating follower.
 
-        References
-        ----------
-        DIN EN 13906-3; q read second-hand.
-        """
-        if self.wire_diameter is None or self.mean_diameter is None:
-            return np.full_like(moment, np.nan)
-        index = self.mean_diameter / self.wire_diameter
-        curved = (index + 0.07) / (index - 0.75)
-        return np.asarray(curved * 32.0 * np.asarray(moment) / (np.pi * self.wire_diameter**3))
+    Its moment M_0 + c phi over the swing phi = s/l is the force M/l on the arc at the length l of
+    the arm, with the rate c/l^2.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds.
+    """
+
+    table: ClassVar[str] = "spring.torsion_pivot"
+    part: ClassVar[SpringPart] = "torsion_spring"
+    carried: ClassVar[Literal["", "stem", "arm"]] = "arm"
+    labels: ClassVar[tuple[str, ...]] = ("length",)
+
+    source: TableSource = NO_SOURCE
+    length: float = np.nan
+
+    def on_arm(self, length: float) -> Self:
+        return replace(self, length=length)
+
+    @property
+    def preload(self) -> float:
+        """Force at zero lift, N."""
+        return self.moment / self.length
+
+    @property
+    def rate(self) -> float:
+        """Slope of the force at zero lift, N/m."""
+        return self.angular_rate / self.length**2
+
+    @property
+    def reach(self) -> float:
+        """Lift up to which the law holds, m: half a turn of the arm."""
+        return float(np.pi * self.length)
+
+    def within(self, lift: Array) -> Rise:
+        """Rise of a force that is linear in the lift."""
+        return Rise(0.5 * lift**2, lift, 1.0 + 0.0 * lift, 0.0 * lift)
+
+    def moment_at(self, force: ArrayLike, lift: ArrayLike) -> Array:  # noqa: ARG002
+        return np.asarray(force) * self.length
 
 
 SHAPES: Mapping[str, type[SpringShape]] = MappingProxyType(
-    {"gas": GasSpring, "torsion": TorsionSpring}
+    {"gas": GasSpring, "torsion": TorsionSpring, "torsion_pivot": PivotSpring}
 )
-"""Tables of the kinds of spring that are not linear, by `spring.kind`."""
+"""Tables of the kinds of spring that are no coils, by `spring.kind`."""
+TABLES_OF_PARTS: Mapping[SpringPart, tuple[str, ...]] = MappingProxyType(
+    {
+        part: tuple(each.table for each in SHAPES.values() if each.part == part)
+        for part in {each.part: None for each in SHAPES.values()}
+    }
+)
+"""Tables that describe each of their parts, one in a case."""

@@ -66,6 +66,10 @@ FIGURES: Mapping[str, tuple[str, _Figure]] = {
     "contour_radius_greatest": ("mm", lambda cam: cam.contour.radius_max().value),
     "closing_force": ("N", lambda cam: cam.closing),
     "least_spring_force": ("N", lambda cam: cam.least_spring),
+    "spring_preload": ("N", lambda cam: cam.spring_preload),
+    "spring_stiffness": ("N/mm", lambda cam: cam.spring_rate),
+    "spring_lever": ("", lambda cam: cam.spring_lever),
+    "spring_travel_highest": ("mm", lambda cam: cam.travel_of_spring(cam.highest)),
 }
 """Figures of the cam drawn and its spring at the cam angle of a demand, with their unit."""
 _CYCLE, _CHECKS = "5_cycle.csv", "6_checks.json"

@@ -5,6 +5,7 @@ from functools import cache
 import made_trial as made
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
+from scipy.optimize import minimize_scalar
 from scipy.spatial import cKDTree
 
 WIRE, COIL, COILS, FREE = 6e-3, 40e-3, 8.2, 0.13
@@ -455,3 +456,19 @@ def root_safety() -> float:
     greatest = float(stress.max()) * np.exp(0.4555 * np.log(2.3 / 0.16))
     endurance = 400e6 * 4.51 * 900**-0.265 * (1 - 0.08 * 2.32635)
     return 2.0 / (greatest / endurance + greatest / 900e6)
+
+
+def greatest_moment_swing(a, f, degrees, rate, preload):
+    """Swing at which a spring between radii a and f about a pivot has its greatest moment, rad."""
+
+    def moment(swing):
+        turned = np.radians(degrees) - swing
+        long = np.sqrt(a**2 + f**2 - 2.0 * a * f * np.cos(turned))
+        start = np.sqrt(a**2 + f**2 - 2.0 * a * f * np.cos(np.radians(degrees)))
+        return (preload + rate * (start - long)) * a * f * np.sin(turned) / long
+
+    most = minimize_scalar(
+        lambda swing: -moment(swing), bounds=(0.0, np.radians(degrees)), method="bounded",
+        options={"xatol": 1e-12},
+    )  # fmt: skip
+    return float(most.x)

@@ -95,6 +95,8 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     ("unit/test_torsion_spring.py", "test_stress_of_the_wire"): (
         "torsion_stress", "torsion_fatigue",
     ),
+    ("unit/test_spring_link.py", "test_a_linked_case_has_force_and_limits_of_the_wire_at_its_own"
+     "_travel"): ("link_reach",),
     (_SPRING, "test_rate_and_relaxation_from_the_wire"): ("spring_rate", "spring_relaxation"),
     # contact
     (_CONTACT, "test_pressure_is_that_of_roark"): (

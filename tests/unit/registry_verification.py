@@ -19,6 +19,7 @@ from trial_variants import (
     with_design,
     with_gas_spring,
     with_guides,
+    with_linked_spring,
     with_material,
     with_mesh,
     with_part,
@@ -216,6 +217,17 @@ by_limit(
     "40 mm of arm less half of 48 + 6 of the coil and of 10 of the stem",
     base=lambda: with_torsion_spring(seat_height=0.07),
     missing=lambda: with_torsion_spring(wire_diameter=None),
+)
+# 50 mm and 60 mm to the ends at 70 deg, 50 kN/m and 400 N: the moment rises up to RISEN
+RISEN = by_hand.greatest_moment_swing(0.05, 0.06, 70.0, 50e3, 400.0)
+tried(
+    "link_reach",
+    limited("link_reach", lambda h: with_linked_spring(h / RISEN), with_linked_spring),
+    None,  # without a link there is no check
+    lambda: made.changed_solution(unknown(), case=with_linked_spring().case),
+    10.0,
+    "maximum lift",
+    with_linked_spring,
 )
 tried(
     "spring_rate",

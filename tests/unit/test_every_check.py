@@ -62,7 +62,7 @@ MUST_HAVE = {
     *("guide_temperature_B", "guide_speed_A", "guide_speed_B", "guide_expansion_A"),
     *("guide_expansion_B", "guide_wear_A", "guide_wear_B"),
     *("spring_stress", "spring_fatigue", "spring_solid", "spring_buckling", "gas_stroke_rate"),
-    *("spring_coil_gap", "spring_solid_stress", "spring_relaxation", "spring_rate"),
+    *("spring_coil_gap", "spring_solid_stress", "spring_relaxation", "spring_rate", "link_reach"),
     *("contact_over_speed", "elastic_contact", "friction_power", "contact_temperature"),
     # camshaft
     *("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip"),

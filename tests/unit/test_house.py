@@ -422,9 +422,9 @@ FOLLOWERS = Kinds(
     attributes=frozenset({"roller", "roller_given", "face"}),
 )  # fmt: skip
 SPRINGS = Kinds(
-    classes=frozenset({"HelicalSpring", "GasSpring", "TorsionSpring", "Coil"}),
-    words=frozenset({"coil", "gas", "torsion"}),
-    attributes=frozenset({"gas", "torsion"}),
+    classes=frozenset({"HelicalSpring", "GasSpring", "TorsionSpring", "PivotSpring", "Coil"}),
+    words=frozenset({"coil", "gas", "torsion", "torsion_pivot"}),
+    attributes=frozenset({"gas", "torsion", "torsion_pivot"}),
 )
 _READS, _DRAWS = "reads the tables of a case", "draws the parts of a run on disk"
 ASK_FOR_A_KIND = {

@@ -35,7 +35,8 @@ from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
 from camwright.pipeline.follower.flat_face import FollowerFace
 from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
+from camwright.pipeline.follower.spring_kinds import GasSpring, PivotSpring, TorsionSpring
+from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
 from camwright.pipeline.torque.harmonic_torque import Harmonic, HarmonicTorque
 from camwright.pipeline.torque.machine_torque import Mark
 from camwright.pipeline.torque.motor_line import MotorPoint
@@ -84,8 +85,12 @@ def parts_in(value: object) -> Iterator[Part]:
 def every_part() -> dict[type[Part], Part]:
     """One of each kind of part; those that the made-up case leaves out are made here."""
     steel = case().materials["steel"]
+    link = SpringLink(
+        arm_radius=0.05, fixed_radius=0.06, fixed_angle=1.2, rate=5e4, preload=400.0
+    )  # fmt: skip
     rest = (
         steel,
+        *(link, LinkedSpring(link=link), PivotSpring(moment=1.0, angular_rate=20.0)),
         AxialCrown(kind="circular", radius=0.5),
         FollowerFace(width=0.02, depth=0.01, thickness=0.005, material=steel),
         Crankshaft(inertia=0.01),

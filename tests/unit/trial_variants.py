@@ -21,6 +21,7 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, Reversal
 from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
+from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
 
 NAN = np.full(made.POSITIONS, np.nan)
 TWO_ENDS = np.tile([-1e-4, 1e-4], (made.POSITIONS, 1))
@@ -86,6 +87,21 @@ def on_arm(cycle: Cycle | None = None, **values: Any) -> Solution:
     arm = FollowerArm(centre_distance=0.09, length=0.08, swing="with", **(stated | values))
     case = made.case(follower=made.changed(made.case().follower, arm=arm))
     return made.solution(case=case, cycles=(cycle or made.cycle(),))
+
+
+def with_linked_spring(length: float = 0.1) -> Solution:
+    """The solution on a coil spring between an arm and a fixed point; length: of the arm, m."""
+    link = SpringLink(
+        arm_radius=0.05, fixed_radius=0.06, fixed_angle=np.radians(70.0), rate=50e3, preload=400.0,
+        length=length, source="made up",
+    )  # fmt: skip
+    spring = LinkedSpring(link=link)
+    forces = {"rate": spring.rate, "preload": spring.preload}
+    arm = FollowerArm(centre_distance=0.12, length=length, swing="with", source="made up")
+    return with_case(
+        spring=made.changed(made.case().spring, link=link, design=None, **forces),
+        follower=made.changed(made.case().follower, kind="oscillating", arm=arm),
+    )
 
 
 def with_material(name: str, **values: Any) -> Solution:

@@ -24,7 +24,8 @@ from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import put_sources
 from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.follower.spring_kinds import SHAPES
+from camwright.pipeline.follower.spring_kinds import SHAPES, SpringShape
+from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
 
 SHIPPED = "shipped"
 _REASONS_SHOWN = 3  # refused springs in a message, the nearest
@@ -51,8 +52,9 @@ def put_spring(case: Tables, folder: Path | None) -> None:
     if not isinstance(spring, dict) or "catalogue" not in spring:
         return
     name = spring.pop("catalogue")
-    if "design" in spring:
-        raise InputError("spring.design", "a table", "left out with spring.catalogue")
+    for key in ("design", "link"):
+        if key in spring:
+            raise InputError(f"spring.{key}", "a table", "left out with spring.catalogue")
     if "travel_max" not in spring:
         raise InputError("spring.travel_max", "missing", "given with spring.catalogue")
     demand = _demand(case, spring)
@@ -73,7 +75,7 @@ def put_spring(case: Tables, folder: Path | None) -> None:
 
 
 def put_force(case: Tables) -> None:
-    """Enter rate and preload of a gas or torsion spring into its table, in place.
+    """Enter rate and preload of a gas or torsion spring, or one with a link, in place.
 
     Raises
     ------
@@ -83,16 +85,37 @@ def put_force(case: Tables) -> None:
     spring = case.get("spring")
     if not isinstance(spring, dict):
         return
-    kind = spring.get("kind")
-    part = SHAPES.get(kind) if isinstance(kind, str) else None
-    if part is None or str(kind) not in spring:
+    law = _law(spring)
+    if law is None:
         return  # `Case` refuses a kind without its table
-    shape = read_part(part, spring[str(kind)], f"spring.{kind}")
+    shape = law.on_arm(_arm_length(case))
     for key, value, unit in (("rate", shape.rate, "kN/m"), ("preload", shape.preload, "N")):
         if key in spring:
-            limit = f"left out: by spring.{kind} it is {units.shown(value, unit)}"
+            limit = f"left out: by {shape.table} it is {units.shown(value, unit)}"
             raise InputError(f"spring.{key}", str(spring[key]), limit)
         spring[key] = units.format(value, unit)
+
+
+def _law(spring: Tables) -> SpringShape | None:
+    """Spring whose table gives rate and preload; None: they are stated, or it is refused later."""
+    kind = spring.get("kind", "coil")
+    part = SHAPES.get(kind) if isinstance(kind, str) else None
+    if part is not None and str(kind) not in spring:
+        return None
+    shape = None if part is None else read_part(part, spring[str(kind)], f"spring.{kind}")
+    if "link" not in spring or (shape is not None and not shape.linkable):
+        return shape
+    return LinkedSpring(link=read_part(SpringLink, spring["link"], SpringLink.table), spring=shape)
+
+
+def _arm_length(case: Tables) -> float:
+    """Length of the arm, m; 1 m of a case whose arm or its lack is refused later."""
+    follower = case.get("follower")
+    arm = follower.get("arm") if isinstance(follower, dict) else None
+    try:
+        return units.parse(arm.get("length") if isinstance(arm, dict) else None, "m", "")
+    except InputError:
+        return 1.0
 
 
 def _demand(case: Tables, spring: Tables) -> SpringDemand[float] | None:

@@ -1,0 +1,251 @@
+"""Coil or gas spring between a point of an arm and a fixed point: lever, force on the arc."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, Value
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import In, Known, Length, Part, Preload, Rate, TableSource
+from camwright.pipeline.base.source import NO_SOURCE
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.follower.spring_kinds import Rise, SpringShape, rise
+
+_PLACES, _ROUNDS = 513, 5
+"""Angles at which the slope of the force is tried, and rounds between two of them."""
+
+EndAngle = Annotated[float, In("deg", at_least=-180, at_most=180)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpringLink(Part):
+    """Ends of a spring on the arm of an oscillating follower, and the rate of a coil spring.
+
+    Both ends are stated in polar coordinates about the pivot. Angles are from the arm, the line
+    from the pivot to the reference point, at zero lift, positive in the sense of the outward swing.
+    So the spring is as far compressed at zero lift on a cam of any size.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds, or the spring has no lever at zero lift that brings the
+        follower to the cam.
+    """
+
+    table: ClassVar[str] = "spring.link"
+    labels: ClassVar[tuple[str, ...]] = ("length",)
+    defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"rate": "of `spring.gas`", "preload": "of `spring.gas`"}
+    )
+
+    arm_radius: Annotated[Length, Known("drawing", "60 mm")]
+    """distance of the end on the arm from the pivot"""
+    fixed_radius: Annotated[Length, Known("drawing", "90 mm")]
+    """distance of the fixed end from the pivot"""
+    fixed_angle: Annotated[EndAngle, Known("drawing", "70 deg")]
+    """angle at the pivot from the arm at zero lift to the fixed end, positive outwards: ahead of
+    the outward swing for a spring that pushes, behind it for one that pulls"""
+    arm_angle: Annotated[EndAngle, Known("drawing", "0 deg")] = 0.0
+    """angle at the pivot from the arm to the end on it, positive outwards"""
+    action: Annotated[Literal["push", "pull"], Known("drawing", "push")] = "push"
+    """whether the spring pushes its ends apart, or pulls them together"""
+    rate: Annotated[Rate | None, Known("spring catalogue or drawing", "24.2 kN/m")] = None
+    """force of a coil spring per travel of its ends"""
+    preload: Annotated[Preload | None, Known("spring drawing", "242 N")] = None
+    """force of a coil spring at zero lift"""
+    source: TableSource = NO_SOURCE
+    length: float = np.nan
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.sense * np.sin(self.between) < 0.0:
+            ends = (0.0, np.pi) if self.action == "push" else (-np.pi, 0.0)
+            low, high = (shown(self.arm_angle + each, "deg") for each in ends)
+            limit = f"> {low} and < {high}: the spring brings the follower to the cam"
+            raise InputError(f"{self.table}.fixed_angle", shown(self.fixed_angle, "deg"), limit)
+
+    @property
+    def sense(self) -> float:
+        """Change of the distance of the ends per travel: -1 where the spring pushes."""
+        return 1.0 if self.action == "pull" else -1.0
+
+    @property
+    def between(self) -> float:
+        """Angle at the pivot from the end on the arm to the fixed one at zero lift, rad."""
+        return self.fixed_angle - self.arm_angle
+
+    @property
+    def dead_centre(self) -> float:
+        """Swing to the dead centre, with the pivot in line with the ends, rad."""
+        return float(self.between % np.pi)
+
+    def distance(self, swing: Value) -> Value:
+        """Distance (...) of the ends, m, at a swing, rad."""
+        a, f = self.arm_radius, self.fixed_radius
+        sine = np.sin(0.5 * (self.between - swing))
+        distance: Value = np.sqrt((a - f) ** 2 + 4.0 * a * f * sine**2)
+        return distance
+
+    def travel(self, swing: Value) -> tuple[Value, Value, Value, Value]:
+        """Travel (...) from zero lift, m, and three derivatives by the swing, m/rad^k."""
+        a_f, angle, long = self.arm_radius * self.fixed_radius, self.between, self.distance(swing)
+        # the difference of both cosines keeps the digits of a small swing
+        wide = 4.0 * a_f * np.sin(angle - 0.5 * swing) * np.sin(0.5 * swing)
+        first = -a_f * np.sin(angle - swing) / long
+        second = (a_f * np.cos(angle - swing) - first**2) / long
+        third = (a_f * np.sin(angle - swing) - 3.0 * first * second) / long
+        travel = -wide / (long + self.distance(0.0))
+        w = self.sense
+        return w * travel, w * first, w * second, w * third
+
+    def ends(self, swing: Array) -> tuple[Array, Array]:
+        """Ends on the arm and fixed (2, ...), m, along the arm from the pivot and outwards."""
+        out = (self.arm_angle + 0.0 * swing, self.fixed_angle - swing)
+        radii = (self.arm_radius, self.fixed_radius)
+        on_arm, fixed = (
+            r * np.stack([np.cos(each), np.sin(each)]) for r, each in zip(radii, out, strict=True)
+        )
+        return on_arm, fixed
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkedSpring(SpringShape):
+    """Spring between a point of an arm and a fixed point, as its force on the arc of the arm.
+
+    F(s) = F_s(u) du/ds with the force F_s at the travel u of its ends, and u(s/l) by the distance
+    of the ends; so its energy is that of the spring, and F l its moment about the pivot.
+
+    Raises
+    ------
+    InputError
+        If the spring is described twice or not at all, does not push or pull as it can, or the
+        force on the arc falls at zero lift.
+    """
+
+    table: ClassVar[str] = "spring.link"
+    carried: ClassVar[Literal["", "stem", "arm"]] = "arm"
+
+    link: SpringLink
+    spring: SpringShape | None = None
+
+    def __post_init__(self) -> None:
+        link, spring = self.link, self.spring
+        if spring is not None and link.action == "pull":
+            raise InputError("spring.link.action", "pull", f'"push" with [{spring.table}]')
+        for name in ("rate", "preload"):
+            stated = getattr(link, name)
+            if stated is None and spring is None:
+                raise InputError(f"spring.link.{name}", "missing", "given for a coil spring")
+            if stated is not None and spring is not None:
+                unit = "kN/m" if name == "rate" else "N"
+                limit = f"left out: it follows from {spring.table}"
+                raise InputError(f"spring.link.{name}", shown(stated, unit), limit)
+        if not self._slope(np.zeros(1))[0] > 0.0:
+            _, lever, change, _ = link.travel(0.0)
+            least = shown(float(-self._own[0] * change / lever**2), "kN/m")
+            limit = f"> {least}: the force on the cam must rise with the lift"
+            table = self.table if spring is None else spring.table
+            raise InputError(f"{table}.rate", shown(self._own[1], "kN/m"), limit)
+
+    @property
+    def stated(self) -> Part:
+        return self.link
+
+    @property
+    def own(self) -> SpringShape | None:
+        return self.spring
+
+    @cached_property
+    def _own(self) -> tuple[float, float]:
+        """Force, N, and rate, N/m, of the spring at zero lift."""
+        if self.spring is not None:
+            return self.spring.preload, self.spring.rate
+        return float(self.link.preload or 0.0), float(self.link.rate or 0.0)
+
+    @property
+    def own_share(self) -> float:
+        return self._own[1] / self.rate
+
+    def on_arm(self, length: float) -> Self:
+        return replace(self, link=replace(self.link, length=length))
+
+    def end_travel(self, lift: Value) -> Value:
+        return self.link.travel(lift / self.link.length)[0]
+
+    def lever(self, lift: Value) -> Value:
+        return self.link.travel(lift / self.link.length)[1] / self.link.length
+
+    @cached_property
+    def preload(self) -> float:
+        """Force on the arc at zero lift, N."""
+        return float(self._own[0] * self.lever(0.0))
+
+    @cached_property
+    def rate(self) -> float:
+        """Slope of the force on the arc at zero lift, N/m."""
+        return float(self._slope(np.zeros(1))[0] / self.link.length**2)
+
+    @cached_property
+    def reach(self) -> float:
+        """Lift up to which the force on the arc rises, m, short of the dead centre."""
+        low, high = 0.0, self.link.dead_centre
+        for _ in range(_ROUNDS):
+            swing = np.linspace(low, high, _PLACES)[1:-1]
+            falls = ~(self._slope(swing) > 0.0)
+            k = int(np.argmax(falls)) if falls.any() else falls.size
+            swing = np.concatenate([[low], swing, [high]])
+            low, high = float(swing[k]), float(swing[k + 1])
+        return low * self.link.length
+
+    def _slope(self, swing: Array) -> Array:
+        """Slope of the moment by the swing (...), N m/rad; NaN beyond the law of the spring."""
+        travel, lever, change, _ = map(np.asarray, self.link.travel(swing))
+        force, rate = self._own
+        law = self._risen(travel)
+        slope = rate * law.slope * lever**2 + (force + rate * law.travel) * change
+        return np.asarray(np.where(np.real(travel) <= self._longest, slope, np.nan))
+
+    @property
+    def _longest(self) -> float:
+        """Travel of its ends up to which the law of the spring holds, m."""
+        return np.inf if self.spring is None else self.spring.reach
+
+    def _risen(self, travel: Array) -> Rise:
+        if self.spring is not None:
+            return rise(self.spring, travel)
+        return Rise(0.5 * travel**2, travel, 1.0 + 0.0 * travel, 0.0 * travel)
+
+    def within(self, lift: Array) -> Rise:
+        """Rise of the force on the arc over its slope at zero lift."""
+        length, (preload, rate) = self.link.length, self._own
+        by_swing = self.link.travel(lift / length)
+        travel, first, second, third = (
+            np.asarray(each) / length**k for k, each in enumerate(by_swing)
+        )
+        law = self._risen(travel)
+        force, slope = preload + rate * law.travel, rate * law.slope
+        change = rate * law.travel_d2 * first**3 + 3.0 * slope * first * second + force * third
+        return Rise(
+            (preload * travel + rate * law.work - self.preload * lift) / self.rate,
+            (force * first - self.preload) / self.rate,
+            (slope * first**2 + force * second) / self.rate,
+            change / self.rate,
+        )
+
+    def pull_on_arm(self, force: Array, lift: Array) -> Array:
+        """Resultant of the spring on the arm (2, ...), N, along it from the pivot and outwards.
+
+        Parameters
+        ----------
+        force : array (...)   force on the arc of the arm, N, positive towards the cam
+        """
+        on_arm, fixed = self.link.ends(lift / self.link.length)
+        apart = on_arm - fixed
+        towards = -self.link.sense * apart / np.sqrt((apart**2).sum(axis=0))
+        return np.asarray(force / self.lever(lift) * towards)
