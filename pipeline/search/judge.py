@@ -155,9 +155,7 @@ class Judgement:
 
     @cached_property
     def record(self) -> PreviewJudgement:
-        """Figures of a case with an engine.
-
-        Each check is judged at the corners, unless one that blocks fails nominally.
+        """Figures of a case with an engine; see `preview_figures`.
 
         Raises
         ------
@@ -166,8 +164,7 @@ class Judgement:
         """
         from camwright.pipeline.search.figures import preview_figures
 
-        failing = any(one.blocks and one.status == "fail" for one in self.nominal.checks)
-        return preview_figures(self.nominal if failing else self.trial)
+        return preview_figures(self)
 
 
 @dataclass(frozen=True, eq=False)

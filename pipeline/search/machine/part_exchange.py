@@ -146,6 +146,8 @@ def why_not(point: Solved) -> str:
         return point.record["why"]
     if point.failing:
         return "; ".join(point.failing)
+    if not point.figures["feasible"]:
+        return "; ".join(point.used_up) or "limits of the synthesis"
     lacking = point.record["open"] if is_whole(point.record) else []
     if lacking:
         return f"not known: {'; '.join(DECLARED[name].title for name in lacking)}"
