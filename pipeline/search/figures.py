@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -31,7 +31,6 @@ from camwright.pipeline.torque.torque import Torque
 
 if TYPE_CHECKING:
     from camwright.pipeline.records.trial_contents import SynthesisRecord
-    from camwright.pipeline.search.judge import Judgement
 
 _BINDING_USE = 0.99  # utilisation
 # Of the safety of the keyway root: least over the limit, for tolerance corners and error bar.
@@ -39,7 +38,25 @@ _ROOT_SPARE = 1.06
 _COARSE_PROGRESS = 1e-3  # of the engine's ripple: progress at which a coarse search goes on
 
 
-def preview_figures(judged: Judgement) -> PreviewJudgement:
+class CaseJudgement(Protocol):
+    """A case with its judgements, each made when it is first read."""
+
+    @property
+    def nominal(self) -> Trial:
+        """The case with its nominal checks."""
+        ...
+
+    @property
+    def trial(self) -> Trial:
+        """The case with its checks at the tolerance corners of the judgement."""
+        ...
+
+    def check(self, name: str, *, everywhere: bool = False) -> Check | None:
+        """One check, at every tolerance corner if `everywhere`; None where it does not apply."""
+        ...
+
+
+def preview_figures(judged: CaseJudgement) -> PreviewJudgement:
     """Figures of the preview of a case with an engine, by its nominal checks and its shortfalls.
 
     What costs most is judged last, and only where nothing before it fails: the nominal checks;
@@ -62,9 +79,9 @@ def preview_figures(judged: Judgement) -> PreviewJudgement:
     exceeded = exceeded_limits(record)
     shortfalls = _shortfalls(trial.checks)
     if not shortfalls and exceeded:
-        checks = {check_of(name) for name in exceeded} & DECLARED.keys()
-        made = (judged.check(name, everywhere=True) for name in sorted(checks))
-        shortfalls = _shortfalls([each for each in made if each is not None])
+        names = {check_of(name) for name in exceeded} & DECLARED.keys()
+        checks = (judged.check(name, everywhere=True) for name in sorted(names))
+        shortfalls = _shortfalls([check for check in checks if check is not None])
     elif not shortfalls:
         shortfalls = _root_shortfall(trial)
         if not shortfalls:

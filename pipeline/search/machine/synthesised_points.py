@@ -77,6 +77,13 @@ class PointStudy:
         record = self._judged(design, smoothing, lambda judge: judge.previewed(Change()))
         return Solved(design, record, smoothing)
 
+    def at_nominal(self, design: Machinery) -> Solved:
+        """A design with its record, its checks without the tolerance corners."""
+        record = self._judged(
+            design, SYNTHESIS, lambda judge: judge.previewed(Change(), corners=False)
+        )
+        return Solved(design, record)
+
     def drafted(self, design: Machinery, smoothing: str) -> Solved:
         """A design with the record of its synthesis on few cam angles, cached or solved."""
         record = self._judged(design, smoothing, lambda judge: judge.drafted(Change()))
