@@ -50,7 +50,8 @@ class ArcPolyline:
 
 
 def arc_polyline(contour: Contour, error: float = ARC_ERROR) -> ArcPolyline:
-    """Polyline of tangent arcs, each as long as it stays within `error` of the contour.
+    """Closed polyline of tangent arcs, each as long as it stays within `error`, m, of the
+    contour.
 
     Each pair has points and tangents of the contour at both of its ends; a part of the turn is
     halved until its pair is close enough. The enclosed area is that of the contour to one

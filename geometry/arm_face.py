@@ -123,6 +123,7 @@ class ArmFaceMotion(PlaneMotion):
 
     @property
     def along_face(self) -> Array:
+        """Speed of the contact along the face over cam speed (..., n), m."""
         sense, (_, rate, rate_d1, _) = self.linkage.sense, self.turned
         sine, cosine = self._parts
         change = cosine * rate_d1 / self.turning - sense * sine * rate
@@ -330,6 +331,9 @@ class ArmFaceContour(PlaneContour):
         return np.asarray(motion.curvature_slope * motion.contour_speed)
 
     def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
+        """Heights of the follower at rest on a polygon (2, n), m, at cam angles (m,), rad: arc of
+        the end of the arm from the line of centres (m,), m.
+        """
         arm, offset = self.pitch.arm, self.pitch.offset
 
         def beyond(distance: Array) -> Array:

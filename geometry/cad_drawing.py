@@ -53,7 +53,8 @@ class Outline:
 def clamped_spline(
     curve: CurveLike, error: float, start: float = 0.0, stop: float = FULL_TURN
 ) -> BSpline:
-    """Clamped cubic spline of fewest parts within `error` of a closed curve, by cam angle.
+    """Clamped cubic spline of fewest parts within `error`, m, of a closed curve, over the cam
+    angle: values (2,), m.
 
     It has the curve's tangents at `start` and `stop`, rad: over a turn, or in pieces, it is
     closed and smooth in CAD programs that read clamped splines alone.
@@ -180,7 +181,8 @@ def _add_bore(space: Modelspace, outline: Outline) -> None:
 
 
 def _add_marks(space: Modelspace, reach: float) -> None:
-    """Line of cam angle zero from the axis to the outermost curve, mm, and the arrow of turning.
+    """Draw the line of cam angle zero from the axis to the outermost curve, `reach`, mm, and the
+    arrow of turning.
 
     The cam angle grows counter-clockwise on the cam, past a follower at rest: the cam turns
     clockwise.

@@ -155,7 +155,7 @@ class RollerCam(ABC):
             radii = pitch.convex_radius.value, pitch.concave_radius.value
             return max(bound / radius for bound, radius in zip(least, radii, strict=True))
 
-        offset = _balanced(least_argument(use, -most, most), most)
+        offset = _zero_if_tiny(least_argument(use, -most, most), most)
         if not max(limits.convex_radius, limits.concave_radius) > 0.0 or curved(offset) <= 1.0:
             return offset
 
@@ -163,7 +163,7 @@ class RollerCam(ABC):
             share = curved(offset)
             return use(offset) if share <= 1.0 - _OFFSET_ROUNDING else _REFUSED_USE + share
 
-        return _balanced(least_argument(within, -most, most), most)
+        return _zero_if_tiny(least_argument(within, -most, most), most)
 
     def smallest(self, limits: PitchLimits) -> RollerSize:
         """Smallest prime radius over all offsets, and the offset at which it is reached, m; by
@@ -171,7 +171,7 @@ class RollerCam(ABC):
         """
         most = self.least_prime_radius(limits)
         by_angle = least_argument(lambda each: self._by_angle(limits, each), -most, most)
-        offset = _balanced(by_angle, most)
+        offset = _zero_if_tiny(by_angle, most)
         # Convex in the offset by the angle alone: the least of all if the curvature agrees.
         if not self.least_prime_radius(limits, offset) <= self._by_angle(limits, offset):
             offset = _least_of_scan(lambda each: self.least_prime_radius(limits, each), most)
@@ -390,7 +390,7 @@ def _height_of_curvature(slope: Array, lift_d2: Array, offset: float, curvature:
     return np.asarray(np.max(np.where(fits & (real > 0.0), real, 0.0), axis=-1) / k)
 
 
-def _balanced(offset: float, most: float) -> float:
+def _zero_if_tiny(offset: float, most: float) -> float:
     """The offset, m, or zero where it is round-off of its greatest value `most`, m."""
     return 0.0 if abs(offset) <= _ZERO_OFFSET * most else offset
 

@@ -187,7 +187,9 @@ class Panel:
 
     @property
     def ends(self) -> Array:
-        """Greatest value (rows,) of each horizontal bar, infinity too; NaN without one."""
+        """End of the bar in each row (rows,), in the unit of the axis, infinity too; NaN in a row
+        without one.
+        """
         ends = np.full(
             1 + max((int(np.max(c.y, initial=-1)) for c in self.curves), default=0), -inf
         )

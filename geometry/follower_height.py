@@ -44,6 +44,9 @@ def roller_height(
     """
 
     def support(x: Array, y: Array, angle: Array) -> Array:
+        """Height of the roller centre, m, with the roller on a point (x, y), m, of the cam turned
+        by `angle`, rad; -infinity where the point is out of its reach.
+        """
         along = x * np.cos(angle) + y * np.sin(angle)
         across = y * np.cos(angle) - x * np.sin(angle) - offset
         square = roller_radius**2 - across**2
@@ -95,6 +98,9 @@ def arm_angle(
     centre_distance, sense = pivot
 
     def support(x: Array, y: Array, angle: Array) -> Array:
+        """Arm angle, rad, with the follower on a point (x, y), m, of the cam turned by `angle`,
+        rad.
+        """
         along = centre_distance - x * np.cos(angle) - y * np.sin(angle)
         across = sense * (y * np.cos(angle) - x * np.sin(angle))
         angles: Array = np.arctan2(across, along) + beyond(np.hypot(along, across))

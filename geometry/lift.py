@@ -89,6 +89,7 @@ class Lift(Displayed):
         return {"samples": self.values.size, "lift_max": f"{1e3 * self.highest.value:.4g} mm"}
 
     def __post_init__(self) -> None:
+        """Refuse angles that are not equal steps of one turn, negative lifts and NaN."""
         theta, values = finite("lift.theta", self.theta), finite("lift.values", self.values)
         require_uniform_turn("lift.theta", theta)
         if values.shape != theta.shape:

@@ -79,7 +79,9 @@ class LiftParts:
 
     @classmethod
     def of_motion(cls, motion: SegmentMotion) -> LiftParts:
-        """Segments by their motion laws, in closed form; each law in two halves."""
+        """Lift of segments by their motion laws in closed form; each segment as two parts, for laws
+        whose derivatives jump in the middle.
+        """
         ends = np.cumsum([segment.stroke for segment in motion.segments])
         levels = np.concatenate([[0.0], ends[:-1]])
         levels = levels - min(float(levels.min()), 0.0)

@@ -36,6 +36,7 @@ class SliderCrank:
     offset: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse a linkage that cannot rotate fully."""
         if not 0 < self.crank_radius < np.inf:
             raise InputError("crank_radius", self.crank_radius, "> 0 m")
         if not abs(self.offset) < np.inf:
@@ -81,7 +82,7 @@ class SliderCrank:
         return np.asarray(r * sin + across * r * cos / along)
 
     def travel_acceleration(self, theta: ArrayLike) -> Array:
-        """Second derivative of the travel, m/rad^2."""
+        """Second derivative of the travel by the crank angle (...), m/rad^2."""
         sin, cos, across, along = self._rod(theta)
         r = self.crank_radius
         rod_part = ((r * cos) ** 2 - across * r * sin) / along + (across * r * cos) ** 2 / along**3

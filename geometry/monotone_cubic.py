@@ -36,6 +36,9 @@ class MonotoneCubic:
     values: Array
 
     def __post_init__(self) -> None:
+        """Refuse fewer than three places, places that do not increase, and values that are not
+        finite.
+        """
         freeze(
             self,
             places=finite("interpolation.places", self.places),

@@ -45,6 +45,7 @@ def _polynomial(coefficients: ArrayLike) -> Piece:
     ]
 
     def piece(x: Values, order: int) -> Values:
+        """Polynomial or its derivative of an order at x (...), by Horner's scheme."""
         value = np.zeros_like(x)
         for coefficient in derivatives[order][::-1]:
             value = value * x + coefficient
@@ -311,7 +312,8 @@ class SegmentMotion:
         return inside or max(steps) > 1e-9 * size
 
     def lift(self, count: int | None = None) -> Lift:
-        """Lift as a periodic quintic on `count` equal angles.
+        """Lift as a periodic quintic on `count` equal angles; None: 1440 or, with a discontinuous
+        acceleration, 2880.
 
         With a continuous acceleration the spline interpolates the law at 1440 angles; its error
         is of order count^-6. With a discontinuous one an interpolating spline oscillates and has

@@ -43,7 +43,9 @@ class PeriodicPolynomial:
         freeze(self, coefficients=self.coefficients)
 
     def __call__(self, theta: ArrayLike, derivative: int = 0) -> Array:
-        """Value, or derivative of order `derivative`, at any angle, rad; read-only if kept."""
+        """Value, or derivative of order `derivative` by the angle, at any angles (...), rad; the
+        array is read-only where it is kept for the next call.
+        """
         angles = np.asarray(theta, dtype=float)
         if _KEPT_FROM <= angles.size <= _KEPT_TO:
             rows = _kept.get(self, {}).get((angles.shape, angles.tobytes()))

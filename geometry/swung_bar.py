@@ -78,7 +78,9 @@ class SwungBar(NamedTuple):
         return self.arm.centre_distance - along, self.arm.sense * across
 
     def _at(self, angle: Value, towards: Value, aside: Value) -> Value:
-        """Distance of a point from the piece at an arm angle, m."""
+        """Distance, m, of a point from the piece of the centre line at an arm angle, rad; towards,
+        aside : coordinates of the point from the pivot, m, to the cam axis and square to it.
+        """
         cos, sin = np.cos(angle), np.sin(angle)
         length, square = towards * cos + aside * sin, aside * cos - towards * sin
         beyond = length - np.clip(length, self.inner, self.outer)

@@ -65,6 +65,7 @@ def main() -> NoReturn:
     received: dict[int, float] = {}
 
     def interrupt(number: int, _: object) -> None:
+        """Raise KeyboardInterrupt at a signal; the same signal shortly after is ignored."""
         now = time.monotonic()
         if now - received.get(number, -_ONCE_S) < _ONCE_S:
             return

@@ -123,7 +123,8 @@ class Tried(NamedTuple):
 
 
 def synthesize(case: Case, *, progress: Progress = SILENT) -> Synthesis:
-    """Cam of a case: torque, lift, contour.
+    """Cam of a case: lift from the smoothed torque or as stated, or by a constrained synthesis, and
+    its contour.
 
     The smoother is that of the case; `run_case` widens it until the cam passes. A constrained
     synthesis minimises the ripple within all limits, corrected by previews.
@@ -280,6 +281,9 @@ def _forecast_of(task: _Task) -> Forecast:
     known: dict[Smoother, tuple[Check, ...]] = {}
 
     def forecast(smoothers: Sequence[Smoother]) -> list[tuple[Check, ...]]:
+        """Checks of the cams of smoothers in their order; those that are not known yet are computed
+        in the worker processes.
+        """
         left = [each for each in dict.fromkeys(smoothers) if each not in known]
         count = task.workers.workers
         parts = [part for part in (left[k::count] for k in range(count)) if part]

@@ -97,6 +97,9 @@ def _kept(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Tria
     solved: list[Trial] = []
 
     def compute() -> disk_cache.Arrays:
+        """Arrays of the cam of a new synthesis for the disk cache: spring rate, N/m, preload, N,
+        prime radius, m, lift, gain and record.
+        """
         trial = _synthesised(case, torques, progress)
         solved.append(trial)
         spring, lift = trial.case.spring, trial.contour.pitch.lift

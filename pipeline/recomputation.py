@@ -367,7 +367,8 @@ def _check_differences(final: TrialRecord, checks: Sequence[Mapping[str, Any]]) 
 
 
 def _is_round_off(record: Mapping[str, Any]) -> bool:
-    """Whether a demand is that of round-off, which is another one on another computer.
+    """Whether the demand of a recorded check is a matter of round-off, and differs on another
+    computer.
 
     A residual within its limit, or evidence of less than a thousandth of its limit.
     """
@@ -468,7 +469,7 @@ class _Files:
     def compare(self) -> None:
         """Compare every file but the pages by its class, and the records by their entries."""
         with tempfile.TemporaryDirectory(prefix="camwright-") as home:
-            self._solved(Path(home) / "run")
+            self._compare_solved(Path(home) / "run")
         for name, each in self._classes.items():
             if each.origin is Origin.ELSEWHERE:
                 self.differences.append(f"{name}: {_ELSEWHERE}")
@@ -476,7 +477,7 @@ class _Files:
                 own = name.startswith(f"{self._final}/")
                 self.unseen.append(name if own else f"{name.partition('/')[0]}/")
 
-    def _solved(self, folder: Path) -> None:
+    def _compare_solved(self, folder: Path) -> None:
         """Write the run again into a folder and compare the files that follow from case and
         lift.
         """
@@ -495,12 +496,14 @@ class _Files:
             for name, each in self._classes.items()
             if each.origin is Origin.SOLVED and name not in solved
         )
-        self._trial_record()
-        self._summary(summary, case)
+        self._compare_trial_record()
+        self._compare_summary(summary, case)
         self.differences += _recorded_limits(run)
 
-    def _trial_record(self) -> None:
-        """Compare ``trial.json``; the hashes of a mesh are those of its last bits."""
+    def _compare_trial_record(self) -> None:
+        """Compare ``trial.json`` with that of the trial computed again; hashes of a mesh are not
+        compared, since they depend on its last bits.
+        """
         file, record = f"{self._final}/trial.json", self._run.final.record
         words = list(record_differences(cast("Json", record), trial_record(self._trial)))
         of_bits = [line for line in words if line.startswith(_HASHES)]
@@ -514,8 +517,10 @@ class _Files:
         if any(check["id"] == synthesis_converged.id for check in checks):
             self.unseen.append(f"{self._final}/6_checks.json: {synthesis_converged.id}")
 
-    def _summary(self, again: Mapping[str, object], case: Case) -> None:
-        """Compare ``run.json``; its hashes are compared with the files by the sign-off record."""
+    def _compare_summary(self, again: Mapping[str, object], case: Case) -> None:
+        """Compare ``run.json`` with its contents computed again; its hashes are compared with the
+        files by the sign-off record.
+        """
         stored = dict[str, Any](self._run.summary)
         here: Mapping[str, Any] = {"platform": signoff.environment(), "versions": versions()}
         for key in (*_BY_THE_SEARCH, *_OF_THE_COMPUTER):

@@ -43,7 +43,8 @@ _OPTIONAL = (
 
 
 def with_added(case: Tables) -> Tables:
-    """Tables of a case file with the ``[[added]]`` ones merged in.
+    """Tables of a case file with those below ``[[added]]`` merged into the tables of their names,
+    in a copy.
 
     Raises
     ------
@@ -113,7 +114,9 @@ def _completing(rows: Sequence[tuple[str, Key]]) -> str:
 
 
 def _rows(paths: Iterable[str]) -> list[tuple[str, Key]]:
-    """Paths with their keys in the order of a case file; a table as the keys that it needs."""
+    """Dotted paths with their keys in the order of a case file; a table is replaced by the keys
+    that it requires.
+    """
     rows: dict[str, Key] = {}
     for path in paths:
         for key in keys_at(path)[:1]:

@@ -69,7 +69,9 @@ def with_arm(tables: Tables) -> Tables:
 
 
 def _mass(arm: Tables) -> float:
-    """Mass at the roller centre that has the moment of inertia about the pivot, kg."""
+    """Mass at the end of the arm that has the stated moment of inertia about the pivot, kg: inertia
+    over length squared.
+    """
     inertia = units.parse(arm["inertia"], "kg m^2", _INERTIA)
     length = units.parse(arm.get("length"), "mm", "follower.arm.length")
     if not inertia > 0.0:
@@ -80,7 +82,8 @@ def _mass(arm: Tables) -> float:
 
 
 def _prime_radius(arm: Tables, face: TomlValue | None) -> float:
-    """Distance of roller centre or flat face from the cam axis at the start angle, m.
+    """Distance from the cam axis, m, of the roller centre or, with the table `face` of a flat face,
+    of that at the start angle of the arm.
 
     Raises
     ------
@@ -105,9 +108,12 @@ def _prime_radius(arm: Tables, face: TomlValue | None) -> float:
 
 
 def _as_arcs(lift: Tables, arm: Tables) -> Tables:
-    """Lift whose strokes and points that are angles are arcs; others are read later."""
+    """Lift table whose strokes and points that are stated as angles are written as arcs, mm, at the
+    length of the arm; other values are left for the reader to refuse.
+    """
 
     def arc(value: TomlValue) -> TomlValue:
+        """An angle as text of the arc at the length of the arm; anything else as it is."""
         try:
             swing = units.parse(value, "deg", "")
             return units.format(swing * units.parse(arm.get("length"), "mm", ""), "mm")

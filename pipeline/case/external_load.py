@@ -15,7 +15,8 @@ from camwright.pipeline.torque.tabled_torque import require_cycle
 
 
 def external_force(case: Case) -> ExternalForce:
-    """External force of the machine on the follower over the cam angle.
+    """External force of the machine on the follower, N, over the cam angle; zero where the case has
+    none.
 
     Raises
     ------
@@ -62,7 +63,9 @@ def require_closing(key: str, preload: float, dead: float) -> None:
 
 @lru_cache(maxsize=8)
 def _from_file(path: Path, _content: bytes) -> ExternalForce:
-    """Force of a file; its contents tell whether it has changed."""
+    """External force of a file; `_content`: its bytes, by which a changed file is read anew, see
+    the cache.
+    """
     trace = read_trace(path, "force", period=FULL_TURN, part="cam")
     if not trace.values.any():
         text = f"{trace.source}, {trace.column}"

@@ -106,7 +106,7 @@ class LiftEccentric(Section):
 def _kind(
     lift: TomlValue | LiftTable | LiftSegments | LiftPoints | LiftEccentric,
 ) -> str | None:
-    """The kind of a lift; a table may leave it out. None for what is no table."""
+    """Kind of a lift section; "table" where a table states none, None for anything but a table."""
     if isinstance(lift, dict):
         return str(lift.get("kind", "table"))
     if isinstance(lift, (LiftTable, LiftSegments, LiftPoints, LiftEccentric)):

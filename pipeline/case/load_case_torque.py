@@ -183,6 +183,7 @@ def _cylinder_torque(engine: CylinderEngine, speed: float) -> Torque:
     """Torque of a cylinder model over a cycle at a crank speed, rad/s; kept in the disk cache."""
 
     def compute() -> dict[str, Array]:
+        """Angles, rad, components of the torque, N m, and varying inertia, kg m2, by name."""
         torque = torque_from_cylinder(engine, speed)
         arrays = {_COMPONENT + name: part for name, part in torque.components.items()}
         if torque.varying_inertia is not None:
@@ -205,7 +206,9 @@ def has_torque(case: TorqueSource, state: LoadCase) -> bool:
 
 
 def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
-    """The engine at the intake pressure of a load case; unfired, its fuel releases no heat."""
+    """Engine with the intake pressure of the load case; if that is not fired, without heat of
+    combustion and with its stated friction or none.
+    """
     if state.intake_pressure is not None:
         engine = replace(engine, intake_pressure=state.intake_pressure)
     if state.fired:
@@ -273,7 +276,7 @@ def crank_speed(case: TorqueSource, engine: SpeedTable | VoltageTable) -> SpeedT
 
 
 def measurement_record(case: TorqueSource) -> Measurement | None:
-    """Statistics of a measurement for ``run.json``; None for a model."""
+    """Statistics of a measured pressure or speed for ``run.json``; None for a model."""
     engine = case.engine
     if isinstance(engine, PressureTable):
         balance, trace = pressure(case, engine)

@@ -101,6 +101,7 @@ class Follower(Section):
 
     @model_validator(mode="after")
     def _has_its_face(self) -> Self:
+        """Refuse a flat follower without a face, and a roller with one."""
         if self.kind == "flat" and self.face is None:
             raise InputError("follower.face", "missing", 'given with follower.kind = "flat"')
         if self.kind == "roller" and self.face is not None:
@@ -110,6 +111,9 @@ class Follower(Section):
 
     @model_validator(mode="after")
     def _has_a_face_of_its_kind(self) -> Self:
+        """Refuse a face with the keys of another kind: offset or radius belong to an arm, which
+        needs exactly one of them.
+        """
         if self.face is None:
             return self
         shape = {name: getattr(self.face, name) for name in ("offset", "radius")}
@@ -127,6 +131,9 @@ class Follower(Section):
 
     @model_validator(mode="after")
     def _has_its_arm(self) -> Self:
+        """Refuse an oscillating follower without arm, an arm or pivot of another, and the gravity
+        angle of a stem with an arm.
+        """
         if self.pivot is not None and self.arm is None:
             raise InputError("follower.pivot", "a table", "left out, or given with follower.arm")
         if (self.kind == "oscillating") == (self.arm is not None):
@@ -142,6 +149,7 @@ class Follower(Section):
 
     @model_validator(mode="after")
     def _has_one_force(self) -> Self:
+        """Refuse an external force that is stated both as a number and as a file."""
         if self.external_force_file is not None and self.external_force is not None:
             value = units.shown(self.external_force, "N")
             limit = "left out with follower.external_force_file"

@@ -49,7 +49,7 @@ def with_new_keys(tables: Tables) -> Tables:
 
 
 def with_new_wire_keys(wire: TomlValue, field: str) -> Tables:
-    """Table of a spring wire with old names replaced; `field` names it in messages.
+    """Table of a spring wire with old names replaced; `field` is its dotted name for messages.
 
     Raises
     ------

@@ -188,7 +188,10 @@ class Smoothing(Section):
 
     @model_validator(mode="after")
     def _uses_what_is_stated(self) -> Self:
-        """Several filters may be stated, for a study of kinds; one alone is that of the kind."""
+        """Refuse keys of filters without a kind, and a kind of which no key is stated beside those
+        of another. Several filters may be stated, for a study of kinds; one alone is that of the
+        kind.
+        """
         every = dict.fromkeys(key for keys in _OF_FILTER.values() for key in keys)
         stated = [key for key in every if key in self.model_fields_set]
         if stated and "kind" not in self.model_fields_set:

@@ -80,6 +80,7 @@ class FromText:
         """
 
         def made(entry: object, text: ValidatorFunctionWrapHandler) -> Source:
+            """Source of an entry; its text is checked by the validator `text`."""
             read = entry if isinstance(entry, Source) else source_in(entry)
             if isinstance(entry, dict) and not read:
                 raise refusal(FORM)
@@ -119,7 +120,9 @@ class Section(BaseModel):
     @model_validator(mode="wrap")
     @classmethod
     def _know_every_key(cls, table: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        """Refuse unknown keys beside wrong values; missing ones later: a misspelt key is both."""
+        """Refuse unknown keys, together with wrong values of the known ones. Missing keys are
+        reported only once all are known: a misspelt key is both unknown and missing.
+        """
         known = [field.alias or name for name, field in cls.model_fields.items()]
         unknown: list[InitErrorDetails] = [
             {
@@ -153,7 +156,9 @@ _TOLD = 6
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
-    """Closest known word for a message, else a list of the known ones."""
+    """End of a message on an unknown word: the closest known word, else a list of the known
+    ones.
+    """
     words = list(known)
     if close := difflib.get_close_matches(word, words, n=1):
         return f"; did you mean {close[0]}?"
@@ -259,7 +264,9 @@ def number_in(field: FieldInfo) -> In | Count | None:
 
 
 def _in_section(hint: Any) -> Any:
-    """The type of a part's field as a section reads it."""
+    """Type hint of a part's field as its section needs it for reading: names of materials, tables
+    of parts, bounds without descriptions.
+    """
     if hint is str:
         return Text
     if hint is Source:
@@ -290,6 +297,7 @@ class MaterialName:
         """Validation of a name, into the material card of this name in the context."""
 
         def card(name: str, info: ValidationInfo) -> Material:
+            """Material card of a name; refused if the case has none of it."""
             known: Mapping[str, Material] = (info.context or {}).get("materials", {})
             if name not in known:
                 raise refusal(f"one of the materials: {', '.join(sorted(known))}")

@@ -45,7 +45,7 @@ class FirstCase(NamedTuple):
 
 
 def first_case(name: str, kind: str = "cylinder") -> FirstCase:
-    """First case of a kind.
+    """Case file of a kind with the name of the case, and its data file.
 
     Raises
     ------

@@ -74,7 +74,9 @@ def values_at(tables: Tables, path: str) -> tuple[str, ...]:
 
 
 def source_of(tables: Tables, value: str) -> Source:
-    """Source of a value by dotted name; empty if none is stated."""
+    """Source of a value by its dotted name: that in [sources], of its limit or of its table, the
+    first stated; empty if none is.
+    """
     *parents, key = value.split(".")
     table: TomlValue = tables
     for part in parents:

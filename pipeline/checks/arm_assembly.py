@@ -64,7 +64,9 @@ class _Pair(NamedTuple):
 
 
 def _discs(tip: Value, numbers: Numbers) -> dict[str, _Disc]:
-    """Parts about the camshaft and its pinion; the cam by its maximum radius."""
+    """Parts about the camshaft, and the pinion of its gear, by name; the cam has its maximum radius
+    `tip`, m.
+    """
     case, centre = numbers.known_case, (0.0, 0.0)
     discs = {
         "cam": _Disc(centre, tip, (0.0, 0.5 * numbers["cam.width"])),
@@ -89,7 +91,9 @@ def _discs(tip: Value, numbers: Numbers) -> dict[str, _Disc]:
 
 
 def _pairs(tip: Value, numbers: Numbers) -> Iterator[tuple[str, _Pair]]:
-    """Arm, fork and hub with each part about the camshaft, but arm and fork with the cam."""
+    """Gaps of arm, fork and hub to each part about the camshaft, with the names of both; those of
+    arm and fork to the cam are judged apart.
+    """
     bodies = swung_bodies(numbers)
     for name, disc in _discs(tip, numbers).items():
         for which, words in _WORDS.items():
@@ -104,7 +108,9 @@ def _pair(body: SwungBody, disc: _Disc) -> _Pair:
 
 
 def _least(tip: Value, numbers: Numbers) -> Value:
-    """Least gap of an arm about the camshaft, m; NaN where a width that is not stated decides."""
+    """Least gap, m, of arm, fork and hub to the parts about the camshaft; tip : maximum radius of
+    the cam, m. NaN where a width that is not stated decides.
+    """
     limit = numbers.limit(ASSEMBLY_GAP)
     gaps = (each.gap(limit) for _, each in _pairs(tip, numbers))
     least: Value = reduce(np.minimum, gaps) + 0.0 * tip
@@ -112,7 +118,9 @@ def _least(tip: Value, numbers: Numbers) -> Value:
 
 
 def _stated(pair: _Pair) -> dict[str, float]:
-    """Numbers of the formula; without an axial gap that in the plane."""
+    """Numbers of the formula by symbol; where the parts have no axial gap, "a" is the gap in the
+    plane.
+    """
     plane, half, radius = one(pair.plane), *map(one, pair.sizes)
     axial = one(pair.axial)
     stated = {"d": plane + half + radius, "h": half, "r": radius}
@@ -120,6 +128,9 @@ def _stated(pair: _Pair) -> dict[str, float]:
 
 
 def _in_words(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the pair of parts that governs and its numbers, or with the missing width of the
+    arm.
+    """
     numbers = solution.numbers | with_swing(solution.cams.values())
     if demand.missing:
         return replace(demand, at=None)
@@ -189,7 +200,9 @@ arm_gap = check(
     page="Follower",
 )
 def arm_cam_gap(solution: Solution) -> Demand | None:
-    """Least gap between arm or fork and cam over the turn, m; None of a face."""
+    """Least gap between arm or fork and cam over the turn, m, with the cam angle of the nearest
+    point; None of a face on an arm.
+    """
     numbers, limit = solution.numbers, solution.machine.limits[ASSEMBLY_GAP]
     if solution.machine.follower.slides:
         return None

@@ -62,6 +62,7 @@ def _lacking(arm: FollowerArm, *keys: str) -> tuple[str, ...]:
 
 
 def _arm_of(numbers: Numbers) -> FollowerArm:
+    """Arm of the case; InputError where it has none."""
     arm = numbers.known_case.follower.arm
     if arm is None:
         raise InputError(_ARM, "missing", "given for its checks")
@@ -101,7 +102,9 @@ def _sections(bar: ArmBar, place: str) -> tuple[ArmSection, ...]:
 
 
 def _strength(section: ArmSection, bar: ArmBar, reliability: float) -> tuple[float, ...]:
-    """Endurance of a section, Pa, and its factors k_a, k_b, k_e; NaN without a strength."""
+    """Endurance of a section, Pa, and its factors of surface k_a, size k_b and reliability k_e; all
+    NaN without a strength of the material.
+    """
     card = bar.material
     tensile, endured = card.tensile_strength, card.fatigue_bending
     if tensile is None or endured is None:
@@ -112,6 +115,7 @@ def _strength(section: ArmSection, bar: ArmBar, reliability: float) -> tuple[flo
 
 
 def _arm_fatigue(place: Literal["pivot", "roller"], needs: Literal["", "roller"]) -> Declaration:
+    """Check of the fatigue of the arm at its pivot or roller."""
     notch = f"{place}_notch"
 
     @check(
@@ -146,6 +150,7 @@ def _arm_fatigue(place: Literal["pivot", "roller"], needs: Literal["", "roller"]
         scales_with=(NORMAL_FORCE, 1.0),
     )
     def fatigue(solution: Solution) -> Demand:
+        """Least fatigue safety factor over the sections at the place and the load cases."""
         machine, limit = solution.machine, solution.machine.limits[ARM_SAFETY]
         arm, bar = _arm_of(solution.numbers), bar_of(solution.numbers)
         missing = _lacking(arm, notch)
@@ -161,6 +166,7 @@ def _arm_fatigue(place: Literal["pivot", "roller"], needs: Literal["", "roller"]
             return section.amplitude_and_mean(bar.loads(section, forces))
 
         def safety_of(section: ArmSection) -> Callable[[Cycle], float]:
+            """Function for the fatigue safety factor of a section over the turn of a load case."""
             endured = np.array([_strength(section, bar, rest)[0]])
 
             def safety(cycle: Cycle) -> float:
@@ -210,6 +216,7 @@ arm_fatigue_roller = _arm_fatigue("roller", "roller")
 
 
 def _yield_allowed(numbers: Numbers) -> Allowed:
+    """Allowed stress of the arm, Pa: yield strength over the safety; its missing keys."""
     arm, holds_pin = _arm_of(numbers), "pin" in numbers.known_case.facing.parts
     missing = _lacking(arm, "pivot_notch", *(("roller_notch",) if holds_pin else ()))
     if arm.material is None or missing:
@@ -218,7 +225,7 @@ def _yield_allowed(numbers: Numbers) -> Allowed:
 
 
 def _with_section(demand: Demand, solution: Solution) -> Demand:
-    """With the governing section and its loads."""
+    """Demand with the section that governs, its loads, N and N m, and its moduli."""
     bar = bar_of(solution.numbers)
     if demand.at is None or bar is None:
         return demand
@@ -281,7 +288,9 @@ def _with_section(demand: Demand, solution: Solution) -> Demand:
     kept=Kept(unit="MPa"),
 )
 def arm_yield(cam: LoadedCam) -> Array:
-    """Greatest von Mises stress of the arm, Pa."""
+    """Greatest von Mises stress over the sections of the arm at each cam angle (..., n), Pa; NaN
+    where the arm is not described.
+    """
     bar, forces = bar_of(cam.numbers), arm_forces(cam)
     if bar is None:
         return np.full_like(cam.normal, np.nan)

@@ -120,7 +120,7 @@ def gear_of(shaft: Camshaft) -> CamshaftGear:
     return shaft.gear
 
 
-def _described(machine: Machine) -> _Shaft | tuple[str, ...]:
+def _strength_data(machine: Machine) -> _Shaft | tuple[str, ...]:
     """Camshaft with its diameter, material and sections to be judged, or else the dotted keys that
     the case lacks.
     """
@@ -176,7 +176,7 @@ def _place(section: ShaftSection) -> str:
 def shaft_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety factor over the camshaft sections, in bending and torsion."""
     machine, limit = solution.machine, solution.machine.limits[SHAFT_SAFETY]
-    shaft = _described(machine)
+    shaft = _strength_data(machine)
     if isinstance(shaft, tuple):
         return Demand(None, limit, missing=shaft)
     card = shaft.material
@@ -247,9 +247,11 @@ def _at_sections(cycle: Cycle, shaft: _Shaft, sections: Sections) -> tuple[Array
 
 
 def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
-    """Goodman points of each camshaft section: its most utilised fibre over all load cases."""
+    """Stress amplitude and mean of each camshaft section, Pa, at its most utilised fibre over all
+    load cases, for the Goodman diagram; empty without data.
+    """
     machine = solution.machine
-    if machine.camshaft is None or isinstance(shaft := _described(machine), tuple):
+    if machine.camshaft is None or isinstance(shaft := _strength_data(machine), tuple):
         return []
     endurance, tensile = shaft.material.fatigue_bending, shaft.material.tensile_strength
     if endurance is None or tensile is None:
@@ -304,7 +306,7 @@ def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
 )
 def shaft_yield(solution: Solution) -> Demand:
     """Greatest von Mises stress over the camshaft sections, Pa."""
-    safety, shaft = solution.machine.limits[SHAFT_YIELD_SAFETY], _described(solution.machine)
+    safety, shaft = solution.machine.limits[SHAFT_YIELD_SAFETY], _strength_data(solution.machine)
     if isinstance(shaft, tuple):
         return Demand(None, None, missing=shaft)
 
@@ -358,7 +360,7 @@ def shaft_yield(solution: Solution) -> Demand:
 )
 def shaft_deflection(solution: Solution) -> Demand:
     """Greatest deflection of the camshaft at the cam over the bearing spacing."""
-    limit, shaft = solution.machine.limits[SHAFT_DEFLECTION], _described(solution.machine)
+    limit, shaft = solution.machine.limits[SHAFT_DEFLECTION], _strength_data(solution.machine)
     if isinstance(shaft, tuple):
         return Demand(None, limit, missing=shaft)
     spacing = shaft.camshaft.bearing_spacing
@@ -392,7 +394,7 @@ def shaft_deflection(solution: Solution) -> Demand:
 )
 def shaft_slope(solution: Solution) -> Demand:
     """Greatest slope of the camshaft at its bearings, rad."""
-    limit, shaft = solution.machine.limits[SHAFT_SLOPE], _described(solution.machine)
+    limit, shaft = solution.machine.limits[SHAFT_SLOPE], _strength_data(solution.machine)
     if isinstance(shaft, tuple):
         return Demand(None, limit, missing=shaft)
 
@@ -477,7 +479,10 @@ def shaft_bearing_life(solution: Solution) -> Demand:
         return Demand(None, target, missing=missing)
 
     def of_bearing(load_of: Callable[[ShaftLoads], Array]) -> Extreme:
+        """Life of a bearing over the load cases, s; load_of : its load over the turn, N."""
+
         def life(cycle: Cycle) -> float:
+            """Life in one load case, s; NaN for a load above C/2."""
             load = load_of(_loads(cycle))
             if not (load <= RATED * rating).all():
                 return float(np.nan)
@@ -537,6 +542,7 @@ def _tooth_bending(
         return float(tooth_root_stress(_push(numbers), gear.width, module, teeth))
 
     def allowed(numbers: Numbers) -> Allowed:
+        """Allowed tooth root stress, Pa, of a load that reverses; its missing key."""
         limit = numbers.get(key)
         if limit is None:
             return Allowed(None, (key,))
@@ -618,7 +624,9 @@ pinion_bending = _tooth_bending(
 
 
 def _flank(numbers: Numbers) -> float:
-    """Hertz pressure of the teeth at a torque of 1 N m, Pa; it grows with its root."""
+    """Hertz pressure of the teeth at a torque of 1 N m, Pa; that at any torque is in proportion to
+    its root.
+    """
     shaft, gear = _geared(numbers)
     card, mate = gear.material, gear.pinion_material or gear.material
     ratio = max(gear.teeth, gear.pinion_teeth) / min(gear.teeth, gear.pinion_teeth)
@@ -777,7 +785,9 @@ def _mesh_stiffness(gear: CamshaftGear) -> float:
     page="Camshaft",
 )
 def gear_impact(solution: Solution) -> Demand:
-    """Root stress of the teeth that cross their backlash at a reversal of the torque."""
+    """Greatest root stress, Pa, of teeth that cross their backlash at a reversal of the torque and
+    meet on the other flank.
+    """
     shaft = camshaft_of(solution.machine)
     gear = gear_of(shaft)
     safety = solution.machine.limits[GEAR_BENDING_SAFETY]

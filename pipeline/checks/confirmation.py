@@ -43,7 +43,7 @@ def with_values_to_confirm(
     InputError
         If the case confirms the source of an unknown check.
     """
-    weaker = _weaker(case)
+    weaker = _weaker_limits(case)
     tables, tight = case.tables(), tuple(tightened_tolerances(case))
     unusual = {*tight, *(each.title for each in beyond_ranges(case))}
     confirmed = {each.value for each in case.confirmed}
@@ -82,7 +82,7 @@ def _limits_of(one: Check) -> Iterator[str]:
     yield from dict.fromkeys((*names, *(v for v in one.declaration.values if v.startswith(_LIMIT))))
 
 
-def _weaker(case: Case) -> dict[str, str]:
+def _weaker_limits(case: Case) -> dict[str, str]:
     """Limits of a case that are weaker than their defaults: value and default in words, by dotted
     key.
     """

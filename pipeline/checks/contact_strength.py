@@ -138,14 +138,14 @@ def pressure_allowables(machine: Machine, cycles: LoadCycles) -> dict[str, float
     endurance = _least_endurance(machine)
     allowed = {}
     if ends is not None:
-        allowed[edge_pressure.id] = _times(endurance, 1.0 / ends)
+        allowed[edge_pressure.id] = _scaled(endurance, 1.0 / ends)
     if follower.friction is not None:
         factor = float(shakedown_factors(follower.friction, least_poisson(machine))[1][-1])
-        allowed[shakedown_traction.id] = _times(shear, factor)
+        allowed[shakedown_traction.id] = _scaled(shear, factor)
         if ends is not None:
-            allowed[edge_shakedown.id] = _times(shear, factor / ends)
+            allowed[edge_shakedown.id] = _scaled(shear, factor / ends)
     if limits[TARGET_LIFE] is not None and ends is not None:
-        allowed[contact_pressure_at_life.id] = _times(_life_limit(machine, cycles), 1.0 / ends)
+        allowed[contact_pressure_at_life.id] = _scaled(_life_limit(machine, cycles), 1.0 / ends)
     return {name: each.value for name, each in allowed.items() if each.value is not None}
 
 
@@ -153,13 +153,15 @@ def _life_limit(machine: Machine, cycles: LoadCycles) -> LeastLimit:
     """Least endurance pressure of cam and follower at the target life."""
     return least_of_bodies(
         machine.bodies,
-        lambda body, card: _at_life(machine, body, card, cycles),
+        lambda body, card: _life_pressure(machine, body, card, cycles),
         lambda body, card: _life_lacks(machine, body, card, cycles),
     )
 
 
 def _least_endurance(machine: Machine) -> LeastLimit:
-    return _times(_endurance(machine.bodies, machine.follower), 1.0, machine.limits[CONTACT_SAFETY])
+    return _scaled(
+        _endurance(machine.bodies, machine.follower), 1.0, machine.limits[CONTACT_SAFETY]
+    )
 
 
 def _endurance(bodies: Mapping[str, Material], follower: FollowerKind) -> LeastLimit:
@@ -187,7 +189,7 @@ def _shakedown_allowed(numbers: Numbers) -> Allowed:
     return Allowed(SHAKEDOWN * (yields / (math.sqrt(3.0) * numbers.limit(SHAKEDOWN_SAFETY))))
 
 
-def _at_life(machine: Machine, body: str, card: Material, cycles: LoadCycles) -> float | None:
+def _life_pressure(machine: Machine, body: str, card: Material, cycles: LoadCycles) -> float | None:
     """Allowed contact pressure of a body, Pa, at its load cycles in the target life: by its line of
     endurance or, without one, its endurance pressure up to the number of load cycles of that. None
     where neither is known.
@@ -215,7 +217,7 @@ def _life_lacks(machine: Machine, body: str, card: Material, cycles: LoadCycles)
     return lacking_of_card(card, *line)
 
 
-def _times(limit: LeastLimit, factor: float, safety: float = 1.0) -> LeastLimit:
+def _scaled(limit: LeastLimit, factor: float, safety: float = 1.0) -> LeastLimit:
     """The limit, Pa, times a factor and over a safety; unchanged where it is not known."""
     value = limit.value
     return limit if value is None else limit._replace(value=factor * value / safety)
@@ -664,7 +666,7 @@ def edge_shakedown(solution: Solution) -> Demand:
     """Contact pressure with ends, tilt and traction equivalent in shakedown, Pa."""
     machine = solution.machine
     worst = greatest(solution.cycles, lambda each: each.signed_pressure * _traction_factor(each))
-    limit = _times(shear_yield(machine), SHAKEDOWN)
+    limit = _scaled(shear_yield(machine), SHAKEDOWN)
     missing = (*lacking_along_line(machine), *no_friction(machine))
     judged = _judged(worst, limit, missing=missing, note=signed_sentence(solution, worst))
     stated = _shakedown_stated(solution, worst) | of_elements(solution, worst)
@@ -707,7 +709,7 @@ def shakedown_traction(solution: Solution) -> Demand:
     """Maximum equivalent contact pressure with traction, Pa, against shakedown."""
     machine = solution.machine
     worst = greatest(solution.cycles, equivalent_pressure)
-    limit = _times(shear_yield(machine), SHAKEDOWN)
+    limit = _scaled(shear_yield(machine), SHAKEDOWN)
     judged = _judged(worst, limit, missing=no_friction(machine))
     return replace(judged, stated=_shakedown_stated(solution, worst))
 

@@ -37,6 +37,7 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
     guides = None if beam in ([], [None]) else float(beam[0] or 0.0)
 
     def share(one: Check) -> float | None:
+        """Relative error of the demand of a check; None where it is not known."""
         plane = contact_error(solution, one.declaration.certified_by or None)
         contact = None if plane is None else plane + centre
         meshes: dict[Error, float | None] = {
@@ -56,7 +57,8 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
 
 
 def contact_error(solution: Solution, figure: str | None = None) -> float | None:
-    """Greatest relative difference of cycle and certificate plus the certificate's uncertainty.
+    """Greatest relative error of the contact: difference of cycle and certificate plus the grid
+    convergence index of the certificate.
 
     Of one certified quantity, or of all. None without a certificate, NaN where a certified value
     is not known.

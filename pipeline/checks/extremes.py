@@ -132,10 +132,11 @@ def worst_case(
         return np.array([measure(cycle)])
 
     def error(cycle: Cycle, value: float) -> float:
+        """Grid convergence index of the value of a load case with respect to coarser turns."""
         if not integral:
             return 0.0
         coarse = {step: measure(each) for step, each in cycle.thinned.items()}
-        return max(_index(value, each, step) for step, each in coarse.items())
+        return max(_convergence_index(value, each, step) for step, each in coarse.items())
 
     return _extreme(cycles, values, -1.0 if at_least else 1.0, error)
 
@@ -171,7 +172,7 @@ def over_duty(
         steps = set.intersection(*(set(cycle.thinned) for cycle in running))
         for step in steps:
             coarse = duty_parts([cycle.thinned[step] for cycle in running], measure, life=life)
-            error = max(error, _index(value, _mean(coarse, life), step))
+            error = max(error, _convergence_index(value, _mean(coarse, life), step))
     return Extreme(value, most, None, error)
 
 
@@ -199,7 +200,7 @@ def _mean(parts: Mapping[str, float], life: bool) -> float:
     return 1.0 / total if total != 0.0 else np.inf
 
 
-def _index(value: float, coarse: float, ratio: int) -> float:
+def _convergence_index(value: float, coarse: float, ratio: int) -> float:
     """Relative grid convergence index of a value on two meshes whose element sizes have a ratio, at
     order 2.
     """

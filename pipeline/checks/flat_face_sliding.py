@@ -172,7 +172,9 @@ def face_pv(cam: LoadedCam) -> Array:
     page="Flat face",
 )
 def contact_temperature(solution: Solution) -> Demand:
-    """Contact temperature of greatest utilisation, degC; at standstill that of the oil."""
+    """Contact temperature, degC, at the cam angle where it is greatest over its limit; at
+    standstill that of the oil.
+    """
     oil, missing = solution.machine.lubricant, heat_missing(solution.machine, *OF_OIL)
     cold, top, bare = (
         (None,) * 3
@@ -250,7 +252,9 @@ def _film(cycle: Cycle) -> Array:
     page="Flat face",
 )
 def bulk_temperature(solution: Solution) -> Demand:
-    """Greatest bulk temperature over the load cases, degC."""
+    """Greatest bulk temperature of the surface over the load cases, degC: that of the oil and of
+    the mean flash.
+    """
     machine = solution.machine
     oil, limit = machine.lubricant, machine.limits[SURFACE_TEMPERATURE]
     allowed = float(bulk_allowed(machine, limit))

@@ -78,7 +78,6 @@ def _rubbing_load(cycle: Cycle, side: Side) -> Array:
 
 
 def _heat_in(side: Side) -> Measure:
-    """Measure of the friction power of guide A or B."""
     index = GUIDES.index(side)
 
     def heat(cam: LoadedCam) -> Array:
@@ -105,7 +104,7 @@ def _temperature(side: Side, power: Value, numbers: Numbers) -> Value:
 
 
 def power_at(side: Side, temperature: float | None, numbers: Numbers) -> float | None:
-    """Mean friction power of a guide, W, at which its steady temperature is `temperature`, K.
+    """Mean friction power of a guide at which it has a steady temperature (K), W.
 
     None where it is not known, and below the ambient temperature: no lift has it.
     """
@@ -170,7 +169,6 @@ def _at_temperature(
 
 
 def _guide_pressure(side: Side) -> Declaration:
-    """Check of the mean bearing pressure of guide A or B."""
     index = GUIDES.index(side)
 
     def at_its_temperature(demand: Demand, solution: Solution) -> Demand:
@@ -238,9 +236,7 @@ def _maker(guide: Guide) -> Source:
 
 
 def _loaded_side(solution: Solution, side: Side, worst: Extreme) -> dict[str, float]:
-    """Force on the more loaded side of the bore, N, as "F", and its loaded length, m, as "l", at
-    the worst angle.
-    """
+    """Push in the bore that governs, N, and the loaded length of its greater side, m."""
     cycle, k = row_of(solution.cycles, worst)
     index = GUIDES.index(side)
     push, length = cycle.guides.loaded_side(index, k)
@@ -250,8 +246,7 @@ def _loaded_side(solution: Solution, side: Side, worst: Extreme) -> dict[str, fl
 
 
 def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
-    """Note on the forces on both sides of the bore at the greatest pressure, and on the pressure by
-    the reaction alone.
+    """Pushes on both sides of the bore at the maximum pressure, and the pressure by the reaction.
 
     Their sum is the rubbing load, their difference the reaction.
     """
@@ -268,7 +263,6 @@ def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
 
 
 def _pv_in(side: Side) -> Measure:
-    """Measure of the PV value of guide A or B."""
     index = GUIDES.index(side)
 
     def pv(cam: LoadedCam) -> Array:
@@ -288,7 +282,7 @@ def _pv_of_reaction(cycle: Cycle, side: Side) -> float:
 
 
 def _pv_allowed(side: Side, numbers: Numbers) -> Allowed:
-    """Allowed PV value, Pa m/s: as stated, or of nylon by its lubrication."""
+    """PV limit as stated, or of nylon by its lubrication."""
     key, case = f"{table_of(side)}.pv_limit", numbers.case
     stated = numbers.get(key)
     if stated is None and case is not None:
@@ -297,8 +291,6 @@ def _pv_allowed(side: Side, numbers: Numbers) -> Allowed:
 
 
 def _guide_pv(side: Side) -> Declaration:
-    """Check of the mean PV value of guide A or B."""
-
     def in_words(demand: Demand, solution: Solution) -> Demand:
         guide = guide_of(solution.machine, side)
         alone = worst_case(solution.cycles, lambda cycle: _pv_of_reaction(cycle, side))
@@ -351,7 +343,6 @@ def pv_limit(guide: Guide) -> float | None:
 
 
 def _pv_source(guide: Guide) -> Source:
-    """Source of the PV limit: the maker's, or the table of nylon."""
     state = _graded_state(guide)
     if state is None:
         return _maker(guide)
@@ -367,9 +358,7 @@ def _graded_state(guide: Guide) -> str | None:
 
 
 def _lubrication(guide: Guide, demand: float) -> list[str]:
-    """Note on the least lubrication at which nylon bears a PV value, Pa m/s; empty for other
-    materials.
-    """
+    """Least lubrication of nylon for a PV value, Pa m/s; empty for other materials."""
     if not _is_nylon(guide):
         return []
     states = [state.replace("_", " ") for state, limit in NYLON_PV.items() if demand <= limit]
@@ -381,8 +370,6 @@ def _is_nylon(guide: Guide) -> bool:
 
 
 def _guide_edge_pressure(side: Side) -> Declaration:
-    """Check of the greatest pressure between stem and bore of guide A or B."""
-
     @check(
         id=f"guide_edge_pressure_{side}",
         title=f"Guide edge pressure in guide {side} vs. yield strength",
@@ -435,8 +422,6 @@ def _edge(parts: PartLoads, side: Side) -> Array:
 
 
 def _guide_temperature(side: Side) -> Declaration:
-    """Check of the steady temperature of guide A or B."""
-
     def of_card(numbers: Numbers) -> float | None:
         case = numbers.case
         return None if case is None else dict(case.guides.both)[side].material.temperature_limit
@@ -506,7 +491,7 @@ def _guide_temperature(side: Side) -> Declaration:
 
 
 def heat_path_lacks(machine: Machine, side: Side) -> tuple[str, ...]:
-    """Dotted keys that the case lacks for the temperature of a guide."""
+    """Missing keys for the temperature of a guide."""
     guide, ambient = guide_of(machine, side), "ambient_temperature"
     missing = lacking("guides", machine.guides, ambient)
     if guide.thermal_resistance is not None:

@@ -40,8 +40,6 @@ from camwright.pipeline.follower.guide_reactions import Guide
 
 
 def _guide_expansion(side: Side) -> Declaration:
-    """Check that guide A or B, as it warms and swells, keeps a clearance to the stem."""
-
     @check(
         id=f"guide_expansion_{side}",
         title=f"Thermal and moisture expansion vs. clearance in guide {side}",
@@ -148,7 +146,6 @@ def seizure_temperature(guide: Guide, stem: Material) -> float | None:
 
 
 def _guide_wear(side: Side) -> Declaration:
-    """Check of the wear depth of guide A or B at the target life."""
     rate, life = f"{table_of(side)}.wear_rate", f"limits.{TARGET_LIFE.id}"
 
     def depth(worst: Value, numbers: Numbers) -> Value:

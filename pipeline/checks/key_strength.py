@@ -117,6 +117,7 @@ def _key_check(
     """
 
     def stress(numbers: Numbers) -> tuple[float]:
+        """Stress of the key per torque, Pa/(N m), NaN without dimensions."""
         cam = _cam_of(numbers)
         key, flanks = cam.key or ParallelKey(), cam.key_flanks
         if flanks is None:
@@ -127,6 +128,9 @@ def _key_check(
         return numbers.each(stress, _BORE)[0]
 
     def allowed_in(numbers: Numbers) -> Allowed:
+        """Allowed stress, Pa: share of the lower yield strength of key and mate, less under a
+        torque that reverses; its missing keys.
+        """
         case = numbers.known_case
         mate, key = mate_of(case), case.cam.key or ParallelKey()
         if mate is None:
@@ -138,6 +142,9 @@ def _key_check(
         return Allowed(None, missing) if missing else Allowed(factor * (share * min(yields)))
 
     def in_words(demand: Demand, solution: Solution) -> Demand:
+        """Demand with the sources of the materials and, under a torque that reverses, of its
+        factor.
+        """
         case, mate = solution.case, mate_of(solution.case) or _Mate(None)
         figures = tuple(card.source.of(card.name) for card in _cards(case.cam.key, mate))
         reverses = any(cam.reverses for cam in solution.cams.values())
@@ -393,14 +400,16 @@ def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
     deviation=1e-4,
 )
 def fit_yield(cam: LoadedCam) -> Array:
-    """Von Mises stress at the bore of the cam taken as a ring of its least radius, Pa."""
+    """Von Mises stress at the bore of the cam by the greatest interference of the fit, Pa, the cam
+    taken as a ring of its least radius; NaN without a fit.
+    """
     ring, greatest = fitted_ring(cam.numbers), greatest_interference(cam.numbers)
     if ring is None or greatest is None:
         return np.asarray(np.nan)
     return np.asarray(ring.von_mises(ring.pressure(greatest)))
 
 
-def _no_fit(numbers: Numbers) -> tuple[str, ...]:
+def _fit_lacks(numbers: Numbers) -> tuple[str, ...]:
     """Keys of the fit that a case lacks that states a slip torque of its own."""
     case = numbers.known_case
     shaft = case.camshaft
@@ -421,7 +430,7 @@ def _root_in_words(demand: Demand, solution: Solution) -> Demand:
     if np.isnan(root.per_stress):
         missing = *_no_key_data(cam), *lacking_of_card(card, "fatigue_bending", "tensile_strength")
         missing += () if cam.keyway_root_radius is not None else ("cam.keyway.root_radius",)
-        missing += _no_fit(numbers)
+        missing += _fit_lacks(numbers)
         if cam.fit is not None and fitted_ring(numbers) is None:
             missing += ("camshaft.material",)
         return Demand(None, limit, missing=missing)
@@ -619,7 +628,7 @@ def _root_of(numbers: Numbers) -> KeywayRoot:
         return unknown
     if endurance is None or tensile is None or not numbers.known_case.scope.covers("key"):
         return unknown
-    if _no_fit(numbers):
+    if _fit_lacks(numbers):
         return unknown
     pressure = key_stress(key.application_factor, 2.0 * cam.bore_radius, flanks).hub
     if presses(numbers):

@@ -54,12 +54,14 @@ def _end(cycle: Cycle) -> tuple[float, str] | None:
 def checks_on_sound_loads(
     declarations: Iterable[Declaration], solution: Solution
 ) -> Iterator[Check]:
-    """Checks of a solution, from its load cases with valid loads where they rest on loads."""
+    """Checks of a solution; those that rest on loads are made in the load cases whose loads hold
+    over the turn, and fail or stay open for the others.
+    """
     ends = load_ends(solution)
     left = tuple(end for end in ends if end.why != LOCKS)
     parts = {"loads": _Parts.of(solution, ends), "contact": _Parts.of(solution, left)}
     for declared in declarations:
-        check = _made(declared, solution, parts.get(declared.rests_on))
+        check = _on_sound_loads(declared, solution, parts.get(declared.rests_on))
         if check is not None:
             yield check
 
@@ -84,9 +86,13 @@ class _Parts(NamedTuple):
         return cls(_in(solution, names), _in(solution, others) if others else None, words)
 
 
-def _made(declared: Declaration, solution: Solution, parts: _Parts | None) -> Check | None:
-    """Check made of the sound load cases, unless it is not made in the others."""
-    if parts is None or not _judges(declared, parts.lost):
+def _on_sound_loads(
+    declared: Declaration, solution: Solution, parts: _Parts | None
+) -> Check | None:
+    """Check of a declaration made in the sound load cases alone, or in all where it does not judge
+    the lost ones. None where it does not apply.
+    """
+    if parts is None or not _judges_lost(declared, parts.lost):
         return declared(solution)
     rest = None if parts.sound is None else declared(parts.sound)
     if rest is not None:
@@ -97,8 +103,10 @@ def _made(declared: Declaration, solution: Solution, parts: _Parts | None) -> Ch
     return replace(check, demand=None, error_share=None, without=parts.words)
 
 
-def _judges(declared: Declaration, lost: Solution) -> bool:
-    """Whether a check of a machine that it concerns judges one of its lost load cases."""
+def _judges_lost(declared: Declaration, lost: Solution) -> bool:
+    """Whether a check applies to one of the load cases with lost loads; lost : solution in
+    these.
+    """
     if declared.load_cases == RIPPLE:
         return declared(lost) is not None
     if declared.load_cases == FIRED:

@@ -139,7 +139,7 @@ def _modified_damage(cam: LoadedCam) -> Array:
     """|n| (P/C)^3/a_ISO, rad/s; NaN where the viscosity ratio is outside of ISO 281."""
     kappa = _viscosity_ratio(cam.spin_mean, cam.numbers)
     within = np.real(kappa) >= bearing_life.LEAST_VISCOSITY_RATIO
-    return _used(cam, np.where(within, kappa, np.nan))
+    return _damage_rate(cam, np.where(within, kappa, np.nan))
 
 
 def _modified_kept(cam: LoadedCam, limit: float) -> Array | None:
@@ -149,10 +149,10 @@ def _modified_kept(cam: LoadedCam, limit: float) -> Array | None:
     if cam.numbers.get(_VISCOSITY) is None:
         return None
     kappa, least = _viscosity_ratio(cam.spin_mean, cam.numbers), bearing_life.LEAST_VISCOSITY_RATIO
-    return _used(cam, np.where(np.real(kappa) > least, kappa, least)) / limit
+    return _damage_rate(cam, np.where(np.real(kappa) > least, kappa, least)) / limit
 
 
-def _used(cam: LoadedCam, kappa: Array) -> Array:
+def _damage_rate(cam: LoadedCam, kappa: Array) -> Array:
     """Damage per time, |n| (P/C)^3/a_ISO (n,), rad/s, at a viscosity ratio `kappa`; zero of a
     roller at rest.
     """
@@ -315,7 +315,9 @@ _AXES = f"limits.{AXIS_PARALLELISM.id}", f"limits.{CAM_RUN_OUT.id}"
     page="Roller",
 ).measured("angles", remark=_with_slope, deviation=0.01)
 def roller_misalignment(cam: LoadedCam) -> Array:
-    """Angle between the rings of the roller's bearing, rad; one on a machine roller likewise."""
+    """Angle between the rings of the roller's bearing (..., n), rad: slope of the camshaft,
+    parallelism, run-out and clearance of the guides.
+    """
     numbers = cam.numbers
     guides = numbers.known_case.guides.tilt_at(numbers["guides.spacing"])
     run_out = numbers.limit(CAM_RUN_OUT) / (2.0 * base_radius(numbers))
@@ -650,7 +652,7 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     page="Roller",
 )
 def grease_life(solution: Solution) -> Demand | None:
-    """Life of the grease, s; None for oil."""
+    """Life of the grease, s, stated or estimated; None for oil."""
     bearing = solution.machine.roller.bearing
     if bearing.lubrication == "oil":
         return None

@@ -90,7 +90,9 @@ def _terms_of(unit: str) -> dict[str, str]:
     certified_by="half_width",
 )
 def held_distance(solution: Solution) -> Demand:
-    """Least distance of the contact from a fixed boundary over the half-width."""
+    """Distance of the contact from the nearest fixed boundary of a body over the greatest
+    half-width.
+    """
     machine = solution.machine
     wall = solution.contour.radius_min().value - machine.cam.held_radius
     depth = machine.follower.held_depth
@@ -118,7 +120,9 @@ def held_distance(solution: Solution) -> Demand:
     load_cases=NONE,
 )
 def excluded_zone(solution: Solution) -> Demand | None:
-    """Radius of the excluded zones at the keyway edges, m; None without a keyway."""
+    """Greatest radius of the zones at the keyway edges, m, whose stresses are not judged; None
+    without a keyway.
+    """
     key, bores = solution.machine.cam.keyway, _bores(solution)
     if key is None or not bores:
         return None
@@ -193,6 +197,7 @@ def subsurface_depth(solution: Solution) -> Demand:
     """Least depth of the maximum von Mises stress over the half-width."""
 
     def share(cycle: Cycle) -> Array:
+        """Depth of the maximum over the half-width (n,); infinite without contact."""
         half = cycle.contact.half_width
         loaded = half > 0
         depth = cycle.contact.von_mises_depth / np.where(loaded, half, 1.0)
@@ -212,7 +217,8 @@ def _residual(
     formula: str,
     needs: Literal["", "stem"] = "",
 ) -> Declaration:
-    """Check of a relative residual; of one within its limit no place: it is that of round-off.
+    """Check of a relative residual. It has no cam angle while it is within its limit: which angle
+    has the greatest is then a matter of round-off.
 
     Without a row of the table its limit is `CONTACT_EQUILIBRIUM`.
     """
@@ -232,6 +238,7 @@ def _residual(
         needs=needs,
     )
     def residual(solution: Solution) -> Demand:
+        """Greatest residual over the load cases and cam angles."""
         worst = greatest(solution.cycles, measure)
         limit = CONTACT_EQUILIBRIUM if row is None else solution.machine.limits[row]
         at = Extreme(worst.value) if worst.value <= limit else worst
@@ -442,6 +449,7 @@ def _mesh(
         tier=Tier.CYCLE,
     )
     def quality(solution: Solution) -> Demand:
+        """Figure of the quality of the mesh of both bodies; not evaluated without a mesh."""
         if solution.mesh is None:
             note = "this trial has no mesh"
             return Demand(None, allowed, note=note, must_have=solution.tier is Tier.CERTIFIED)
@@ -506,6 +514,7 @@ def _uncertainty(
         tier=Tier.CERTIFIED,
     )
     def uncertainty(solution: Solution) -> Demand:
+        """Greatest grid convergence index of the quantity over the certified angles, relative."""
         points, allowed = solution.certificate, solution.machine.limits[MESH_UNCERTAINTY]
         if not points:
             return Demand(None, allowed, note=NO_CERTIFICATE)
@@ -538,7 +547,9 @@ mesh_tau_max = _uncertainty("tau_max", lambda point: point.tau_max)
     needs="stem",
 )
 def mesh_reaction(solution: Solution) -> Demand:
-    """Relative discretisation uncertainty of the guide reaction."""
+    """Relative discretisation uncertainty of the reaction of guide A at its greatest, from beams of
+    several numbers of knots.
+    """
     reactions = [np.abs(cycle.guides.reaction_a) for cycle in solution.cycles]
     worst = first_greatest([each.max() for each in reactions])
     cycle, k = solution.cycles[worst], first_greatest(reactions[worst])
@@ -561,7 +572,9 @@ def mesh_reaction(solution: Solution) -> Demand:
 
 
 def _benchmark(name: str, *, title: str, source: str) -> Declaration:
-    """Check of a contact with a reference solution, solved by the libraries of this run."""
+    """Check of a known contact against its reference solution, solved by the libraries of this
+    run.
+    """
 
     @check(
         id=f"benchmark_{name}",
@@ -578,6 +591,7 @@ def _benchmark(name: str, *, title: str, source: str) -> Declaration:
         tier=Tier.CERTIFIED,
     )
     def benchmark(solution: Solution) -> Demand:
+        """Greatest relative difference of peak pressure and half-width from the reference."""
         differences = solution.benchmarks
         if differences is None:
             note = "no benchmark was solved with this trial"
@@ -617,7 +631,9 @@ def _gci(figure: Convergence) -> float:
 
 
 def _order(figure: Convergence) -> str:
-    """Order of convergence in words; on two meshes it is assumed."""
+    """Order of convergence in words: observed on three meshes, assumed on two, or none in
+    scatter.
+    """
     assumed = len(figure.values) == 2
     if figure.order is None:
         return f"scatter, no order observed{' at the worst angles' if assumed else ''}"

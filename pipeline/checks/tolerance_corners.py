@@ -52,7 +52,9 @@ class Outcome(Displayed):
 
 
 def corners_of(case: Case) -> tuple[Corner, ...]:
-    """Corners with one tolerance at its limit each, then a seeded sample of all together."""
+    """Corners with one tolerance at its low or high limit each, then a seeded random sample of all
+    together.
+    """
     ranges = _ranges(case)
     alone = []
     for label, bounds in ranges.items():
@@ -117,7 +119,7 @@ def outcomes(
     try:
         solved = _turns_at(states, contour, corners, declarations)
     except CamError:  # of one corner at least: each on its own
-        return tuple(_alone(case, states, contour, each, declarations) for each in corners)
+        return tuple(_outcome_alone(case, states, contour, each, declarations) for each in corners)
     return tuple(_outcomes(case, solved, declarations))
 
 
@@ -201,7 +203,9 @@ def _plain(demands: Mapping[str, float]) -> dict[str, float | None]:
 
 
 def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
-    """Bounds of the fields of `Corner` by tolerance; zero tolerances are left out."""
+    """Least and greatest value of each field of `Corner`, by tolerance and field; zero tolerances
+    are left out.
+    """
     tolerances, spring = case.tolerances, case.spring
     friction = friction_range(case)
 
@@ -250,7 +254,7 @@ def _turns_at(
     corners: Sequence[Corner],
     declarations: Sequence[Declaration],
 ) -> list[tuple[_Tried, tuple[Turn, ...]]]:
-    """Turns of every load case at each corner, solved at once.
+    """Turns of every load case at each corner, all solved together, in the order of the corners.
 
     The bounds of the friction as well, where every check is made there.
     """
@@ -263,13 +267,14 @@ def _turns_at(
     return [(each, every[k * count : (k + 1) * count]) for k, each in enumerate(tried)]
 
 
-def _alone(
+def _outcome_alone(
     case: Case,
     states: Sequence[Machine],
     contour: Contour,
     corner: Corner,
     declarations: Sequence[Declaration],
 ) -> Outcome:
+    """Demands at one corner solved on its own; the reason where it is refused."""
     try:
         solved = _turns_at(states, contour, (corner,), declarations)
     except CamError as error:
@@ -284,7 +289,7 @@ def _solution(case: Case, tried: _Tried, solved: Sequence[Turn]) -> Solution:
     advance = corner.phase / case.mechanism.gear_ratio
     return solved_turns(
         case, shape, tuple(_phased(each, corner) for each in solved), Tier.PREVIEW,
-        body=True, speed_contour=_early(shape, advance), advance=advance, error_bars=False,
+        body=True, speed_contour=_advanced(shape, advance), advance=advance, error_bars=False,
     )  # fmt: skip
 
 
@@ -293,6 +298,9 @@ def _outcomes(
     turns_at: Sequence[tuple[_Tried, tuple[Turn, ...]]],
     declarations: Sequence[Declaration],
 ) -> Iterator[Outcome]:
+    """Demands at each corner from its turns, in their order; contacts of finite length are solved
+    for all corners together.
+    """
     solved: list[tuple[Corner, Solution | CamError]] = []
     first: dict[Corner, Solution] = {}  # of each set of loads
     for tried, turns_there in turns_at:
@@ -323,6 +331,9 @@ def _of_loads(corner: Corner) -> Corner:
 def _outcome(
     corner: Corner, solved: Solution | CamError, declarations: Sequence[Declaration]
 ) -> Outcome:
+    """Demands of the checks at a solved corner by id, NaN left out; the reason where it is
+    refused.
+    """
     if isinstance(solved, CamError):
         return Outcome(corner, {}, str(solved))
     try:
@@ -345,8 +356,8 @@ def _shape(contour: Contour, corner: Corner) -> Contour:
     return replace(contour, pitch=contour.pitch.enlarged(corner.profile))
 
 
-def _early(contour: Contour, advance: float) -> Contour:
-    """Contour advanced by `advance`, rad of cam, against the engine."""
+def _advanced(contour: Contour, advance: float) -> Contour:
+    """Contour whose lift comes earlier by `advance`, rad of cam, than the nominal one."""
     if advance == 0.0:
         return contour
     lift = contour.pitch.lift
@@ -355,7 +366,7 @@ def _early(contour: Contour, advance: float) -> Contour:
 
 
 def _phased(each: Turn, corner: Corner) -> Turn:
-    """Turn with the engine torque delayed by the phase, rad of crank."""
+    """Turn whose engine torque is delayed by the phase of the corner, rad of crank."""
     before, ratio = each.torque_before, each.machine.gear_ratio
     if before is None or corner.phase == 0.0:
         return each
@@ -365,7 +376,8 @@ def _phased(each: Turn, corner: Corner) -> Turn:
 
 
 def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
-    """Check with its worst corner; a demand without a value at a solved corner is missing.
+    """Check with the corner that governs it, and the demand there; NaN where a solved corner has no
+    value.
 
     The demand of the run times the ratio of the closed forms at the corner and without it; that at
     the corner where the nominal one lacks a load case. Where a load case has no loads at a corner,

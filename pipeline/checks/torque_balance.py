@@ -69,7 +69,9 @@ NO_MEAN = 1e-6
     page="Torque",
 )
 def torque_reduction(solution: Solution) -> Demand | None:
-    """Reduction of the torque ripple by the cam; None without an engine."""
+    """Least relative reduction of the torque ripple by the cam over the load cases that require
+    one; None without an engine.
+    """
     least = least_reduction(solution, _reduction)
     if least is None:
         return None
@@ -159,7 +161,9 @@ drive_torque = check(
     page="Torque",
 )
 def speed_reduction(solution: Solution) -> Demand | None:
-    """Reduction of the crank speed ripple by the cam; None without a crankshaft."""
+    """Least relative reduction of the crank speed ripple by the cam over the load cases; None
+    without a crankshaft.
+    """
     required = {
         machine.load_case: machine.speed_reduction
         for machine in solution.machines
@@ -204,6 +208,7 @@ def _reduced(before: float, after: float) -> float:
 
 
 def _reduction(cycle: Cycle) -> float:
+    """Relative reduction of the torque ripple by the cam in a load case; NaN without an engine."""
     before, after = cycle.turn.torque_before, cycle.turn.torque_after
     if before is None or after is None:
         return np.nan
@@ -227,7 +232,9 @@ def _reduction(cycle: Cycle) -> float:
     " shows in no other balance.",
 )
 def contact_torque(solution: Solution) -> Demand:
-    """Greatest difference of the cam torque from pressures to that from forces, relative."""
+    """Greatest difference of the cam torque by contact pressures from that by forces, over the
+    greatest torque of the turn.
+    """
 
     def share(cycle: Cycle) -> Array:
         torque = cycle.loads.cam_torque
@@ -265,7 +272,9 @@ def _greatest_torque(cycle: Cycle) -> float:
     reason="Energy must not appear or vanish between the contact and the guides.",
 )
 def contact_work(solution: Solution) -> Demand:
-    """Cam work by pressures less friction heat, over the work exchanged."""
+    """Difference of the cam work by contact pressures and the friction heat over the work
+    exchanged, of a turn.
+    """
 
     def works(cycle: Cycle) -> tuple[float, float, float]:
         """Work of the pressures, heat, and work exchanged, J."""
@@ -327,7 +336,9 @@ def _integral(values: Array, at: Array) -> Array:
     moved_by_tolerance=False,
 )
 def friction_balance(solution: Solution) -> Demand:
-    """Relative difference of friction work and heat of guides and face."""
+    """Greatest relative difference, over the load cases, of the work that friction takes from the
+    cam and the heat of guides, pivot and face.
+    """
     worst = worst_case(solution.cycles, _heat_mismatch, integral=False)
     allowed = solution.machine.limits[FRICTION_BALANCE]
     words = (*map(_loss, solution.cycles), *_applied_work(solution.cycles))
@@ -359,7 +370,9 @@ def friction_balance(solution: Solution) -> Demand:
     page="Torque",
 )
 def friction_power(solution: Solution) -> Demand | None:
-    """Greatest friction power over the power of the machine; None without a torque."""
+    """Greatest mean friction power over the power of the machine; None without a fired load
+    case.
+    """
     states = {state.name: state for state in solution.case.load_cases}
     running = fired(solution)
     if not running:
@@ -428,7 +441,9 @@ _STATED = (
     page="Torque",
 )
 def mechanism_temperature(solution: Solution) -> Demand | None:
-    """Steady temperature of the mechanism, degC; None without a temperature of any part."""
+    """Steady temperature of the mechanism, degC, by its friction and cooling, against the least
+    temperature for which a part is stated; None where no part has one.
+    """
     cooling, stated = solution.machine.cooling, stated_temperatures(solution.numbers)
     if not stated:
         return None
@@ -457,7 +472,7 @@ def mechanism_temperature(solution: Solution) -> Demand | None:
 
 
 def stated_temperatures(numbers: Numbers) -> dict[str, float]:
-    """Temperatures at which parts are judged by key or material, K."""
+    """Temperatures, K, for which values of parts are stated, by key or material."""
     case = numbers.known_case
     # warmer than around the guides, by their own friction
     bushes = {guide.material.name for _, guide in case.guides.both}
@@ -483,7 +498,9 @@ def _friction_power(solution: Solution, cycle: Cycle) -> float:
 
 
 def _power(cycle: Cycle, stated: float | None) -> float:
-    """Mean power of the machine, W; NaN where the torque has no mean, and none is stated."""
+    """Mean power of the machine in a load case, W: stated, or that of the mean torque; NaN where
+    this has no mean, and none is stated.
+    """
     throughput, before = cycle.turn.throughput, cycle.turn.torque_before
     if stated is not None:
         return stated
@@ -493,7 +510,7 @@ def _power(cycle: Cycle, stated: float | None) -> float:
 
 
 def _applied_work(cycles: Sequence[Cycle]) -> tuple[str, ...]:
-    """Net work of an external force that depends on the angle, in words; none of a constant one."""
+    """Note on the work of an external force over a turn; empty for a constant force."""
     if not cycles[0].machine.external.varies:
         return ()
     work = cycles[0].loads.applied_work
@@ -535,6 +552,7 @@ def _friction_loss(cycle: Cycle, torque: Array) -> float:
 
 
 def _heat_mismatch(cycle: Cycle) -> float:
+    """Relative difference of friction work and friction heat over a turn; zero within round-off."""
     heat = _heat(cycle)
     loss = _friction_loss(cycle, cycle.loads.cam_torque)
     share = _relative(loss - heat, max(heat, 1e-9 * _stored(cycle)))

@@ -47,6 +47,9 @@ def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int
     wanted: list[tuple[int, int]] = []
 
     def take(case: int, index: int) -> None:
+        """Add a position of a load case, unless it is unloaded, near one that is chosen, or beyond
+        the count.
+        """
         loaded = cycles[case].contact.p0[index] > 0
         near = any(c == case and abs(i - index) < 4 for c, i in wanted)
         if loaded and not near and len(wanted) < count:
@@ -130,7 +133,7 @@ def _length_load(cycles: Sequence[Cycle], at: tuple[int, int]) -> LengthLoad:
     )
 
 
-def _change(history: ContactHistory) -> Array:
+def _curvature_change(history: ContactHistory) -> Array:
     """Change of the curvature of the contact about each position (n,), 1/m."""
     curvature = 1 / history.relative_radius
     return np.abs(np.roll(curvature, -1) - np.roll(curvature, 1))
@@ -141,7 +144,7 @@ _EXTREMES: tuple[Callable[[ContactHistory], Array], ...] = (
     lambda h: h.line_load,
     lambda h: h.relative_radius,
     lambda h: -h.relative_radius,
-    _change,
+    _curvature_change,
     lambda h: np.nan_to_num(h.half_width),
     lambda h: -np.where(h.line_load > 0, h.line_load, np.inf),
 )
@@ -192,6 +195,9 @@ class BegunCertificate:
             advance(len(solved), len(self.tasks))
 
         def point(at: tuple[int, int], worst: Sequence[CertificatePoint] = ()) -> CertificatePoint:
+            """Certificate point at (load case, position) from its solved meshes; `worst`: points on
+            three meshes, whose order holds for one on two.
+            """
             case, index = at
             meshes = [solved[at, edges] for edges in EDGES if (at, edges) in solved]
             theta = float(self.cycles[case].theta[index])
@@ -227,6 +233,9 @@ def begun(
     """
 
     def submitted(at: tuple[int, int], edges: float, number: int) -> PendingCall:
+        """Pending figures of a mesh at (load case, position); number : of the piece in the
+        store.
+        """
         cycle, index = cycles[at[0]], at[1]
         force = float(cycle.contact.line_load[index]) * pair.width
         theta = float(cycle.theta[index])

@@ -207,7 +207,8 @@ class DrivenCam(NamedTuple):
 
 
 def driven_cam(machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> DrivenCam:
-    """Cam speed at equal angles of the turn, driven through the crank's inertia.
+    """Cam speed (n,), rad/s, at equal angles of the turn, with the cam driven through the inertia
+    of the crank, and the angle of a stall.
 
     With a torque and a crankshaft the speed is that of the crank with the cam; constant without
     them, and where the crank stalls, whose loads no check may rest on.

@@ -94,7 +94,8 @@ def elastic_history(
 
 
 def _held(contact_force: Array) -> int:
-    """Index of a position in the longest contact (n,); of the greatest force without any.
+    """Number of a position in the longest contact of a turn by the contact force (n,), N; that of
+    the greatest force where there is no contact.
 
     `_START_BEFORE` its end, at least in its middle: the response with the contact kept is least
     disturbed there by what would follow a loss of contact.
@@ -113,6 +114,7 @@ def _law(cam_speed: Array) -> float | PeriodicPolynomial:
 
 
 def _method(cam_speed: Array) -> str:
+    """Method of the solution in words, by cam speeds (n,), rad/s."""
     if is_steady(cam_speed):
         return "harmonic balance at constant speed"
     low, high = cam_speed.min(), cam_speed.max()

@@ -107,7 +107,9 @@ def _rounded(values: Iterable[float]) -> list[float]:
 
 
 def stress_peaks(pair: FinitePair, tier: TierResult) -> list[dict[str, StressPeakRecord]]:
-    """Greatest stresses below middle and ends over plane-strain p0, and their depths, by body."""
+    """Greatest von Mises and shear stress below middle and ends over plane-strain p0, and their
+    depths, mm, by place; one mapping per body.
+    """
     force, stretch = float(tier.contact.force[0]), tier.factors.mean_length
     half_width, p0 = plane_strain(pair, force)
     records: list[dict[str, StressPeakRecord]] = []

@@ -52,7 +52,7 @@ class LineTilt:
         return np.asarray(self.imposed + self.roller + self.guides)
 
     def parts(self, place: int) -> Iterator[tuple[str, float]]:
-        """Parts of the tilt by name at one angle, rad."""
+        """Name and size, rad, of each part of the tilt at the position of this number."""
         yield "camshaft", abs(float(self.shaft[place]))
         yield "parallelism", float(self.parallelism)
         yield "run-out", float(self.run_out)

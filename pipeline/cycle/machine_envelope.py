@@ -22,7 +22,7 @@ from camwright.pipeline.follower.camshaft_loads import Counterweight
 
 
 def stem_layout(lift: Value, numbers: Numbers, preload: Value) -> StemLayout:
-    """Layout of guides, stem and coil spring at a maximum lift and preload.
+    """Layout of guides, stem and coil spring at a maximum lift, m, and preload, N; lengths in m.
 
     Raises
     ------
@@ -101,7 +101,9 @@ def counterweight_body(
 
 
 def sizes_of(case: Case, cam_radius: float, lift: float) -> MechanismSizes:
-    """Dimensions of a case's mechanism at a maximum cam radius and lift, m."""
+    """Dimensions of a case's mechanism, m, at a maximum cam radius and lift, m; dimensions that are
+    not stated are estimated or zero.
+    """
     numbers, state = Numbers({}, case), machine(case, case.load_cases[0])
 
     def number(key: str, other: float = 0.0) -> float:
@@ -146,7 +148,9 @@ def sizes_of(case: Case, cam_radius: float, lift: float) -> MechanismSizes:
 
 
 def _discs(case: Case) -> tuple[Disc, ...]:
-    """Shaft with its bearings, counterweight of stated size, and gear, along the camshaft."""
+    """Bearings on the shaft, counterweight of stated size and gear: distance from the cam along the
+    shaft, width, diameter, m; empty without a camshaft.
+    """
     shaft = case.camshaft
     if shaft is None:
         return ()

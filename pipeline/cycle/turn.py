@@ -140,7 +140,9 @@ class _Strokes:
     _together: bool = True
 
     def of(self, turn_input: TurnInput, system: FollowerSystem) -> Guided:
-        """A follower in its guides, with the bounds of the friction of every load case."""
+        """Follower moving in its guides with the friction of `system`; all load cases are solved
+        with it, at the bounds of their friction too.
+        """
         key = _key(turn_input, system)
         if key not in self._known and self._together:
             try:
@@ -156,7 +158,7 @@ class _Strokes:
         return self._known[key]
 
     def solve(self, wanted: Iterable[tuple[TurnInput, FollowerSystem]]) -> None:
-        """Solve the followers that are not known.
+        """Solve those of the wanted followers that are not solved yet, and keep them.
 
         Raises
         ------
@@ -189,7 +191,9 @@ def _turn(
     *,
     coarse: bool,
 ) -> Turn:
-    """Turn of one load case; `before` (n,), N m, is the torque of the engine less its mean."""
+    """Loads over the turn of one load case at cam angles (n,), rad; before (n,) : torque of the
+    engine less its mean, N m, None without an engine; coarse : with constant cam speed.
+    """
     machine, contour = turn_input
     nominal = strokes.of(turn_input, machine.system)
     loads, driving = nominal.loads, replace(machine, torque=None) if coarse else machine

@@ -191,6 +191,7 @@ class ElasticValve:
     spring_travel: float
 
     def __post_init__(self) -> None:
+        """Refuse a mass or stiffness that is not positive, and a negative spring."""
         for name in ("mass", "stiffness"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise InputError(f"valve.{name}", getattr(self, name), "> 0")

@@ -31,6 +31,7 @@ class Ring:
     ball_stiffness: float
 
     def __post_init__(self) -> None:
+        """Refuse sizes that are not positive, a thick ring and fewer than three balls."""
         for name in ("radius", "thickness", "width", "modulus", "ball_stiffness"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise InputError(f"ring.{name}", getattr(self, name), "> 0")

@@ -87,7 +87,8 @@ class RingElements:
 
 
 def _nodes(basis: Basis, radius: float, sections: int) -> tuple[NDArray[np.intp], Array]:
-    """Degrees of freedom (sections, x and y, nodes outwards) of the sections; heights, m.
+    """Degrees of freedom of the nodes of each section, (sections, 2, nodes), x and y, the nodes
+    from inside outwards, and heights of the nodes over the mean radius (sections, nodes), m.
 
     Heights (sections, nodes) are those of the nodes over the mean radius.
     """

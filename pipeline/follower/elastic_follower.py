@@ -46,6 +46,9 @@ class ElasticFollower:
     load: ExternalForce = NO_FORCE
 
     def __post_init__(self) -> None:
+        """Refuse a mass or stiffness that is not positive, and a negative damping, rate or
+        preload.
+        """
         for name, unit in (("mass", "kg"), ("stiffness", "N/m")):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise InputError(f"follower.{name}", getattr(self, name), f"> 0 {unit}")
@@ -199,7 +202,8 @@ def is_steady(cam_speed: Array) -> bool:
 
 
 def _differentiation(n: int) -> Array:
-    """Differentiation matrix (n, n) of the trigonometric interpolant at equal angles, 1/rad.
+    """Matrix (n, n), 1/rad, that differentiates the trigonometric interpolant of n values at equal
+    angles of the turn.
 
     References
     ----------

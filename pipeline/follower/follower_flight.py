@@ -185,11 +185,11 @@ class _Motion:
         landing; the greatest gap is refined between steps.
         """
         solution = self._integrated(angle, angle + LONGEST * FULL_TURN, state, touching=False)
-        theta, gaps, shut = self._look(solution)
+        theta, gaps, shut = self._gaps(solution)
         early = np.flatnonzero(shut & (theta > angle) & (theta < solution.t[-1]))
         if early.size:  # on a nose of the cam within one step, which shows no change of sign
             solution = self._integrated(angle, theta[early[0]], state, touching=False)
-            theta, gaps, _ = self._look(solution)
+            theta, gaps, _ = self._gaps(solution)
         landing, closing = np.inf, np.nan
         if solution.status == 1 or early.size:
             landing = float(solution.t[-1])
@@ -214,7 +214,7 @@ class _Motion:
         held = indentation + f.damping / f.stiffness * (foot_speed - velocity)
         return np.minimum(indentation, held)
 
-    def _look(
+    def _gaps(
         self, solution: scipy.optimize.OptimizeResult
     ) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Cam angles (k,), rad, of samples of a flight, the gaps there (k,), m, and whether the
@@ -236,6 +236,7 @@ class _Motion:
         f = self.follower
 
         def rates(at: float, y: Array) -> list[float]:
+            """Derivative of the state by the cam angle, per rad, at cam angle `at`, rad."""
             pace, load = 1.0 / float(self.speed(at)), self.load(at)
             drag, work = f.guide_damping * y[1], -load * y[1]
             force, lost = -f.spring_rate * y[0] - f.preload - load - drag, drag * y[1]

@@ -121,7 +121,8 @@ class BearingLine:
         return np.asarray(np.divide(miss, scale, out=np.zeros_like(scale), where=scale > 0.0))
 
     def settled(self, push: Array, rigid: Array) -> NDArray[np.bool_]:
-        """Where the contact law holds (n,), bool, to `TOLERANCE` of the indentation.
+        """Whether the contact law holds at each position (n,), to `TOLERANCE` of the indentation,
+        with bore forces `push` (k, n), N, and end motions `rigid` (2, n), m and rad.
 
         Plus the round-off of the deflection, which dominates at small indentations.
         """
@@ -198,7 +199,8 @@ class BearingLine:
 
     @cached_property
     def slack_corners(self) -> Array:
-        """End motions (2, corners) of a rigid beam in contact with two edges of the guides.
+        """End motions (2, corners), m and rad, of a rigid beam in contact with two edges of the
+        guides.
 
         The corners of the motions within the clearance, indented slightly at both edges.
         """
@@ -334,7 +336,8 @@ def _linear_step(
 def _bound_solution(
     line: BearingLine, touch: NDArray[np.bool_], offset: Array, load: Array
 ) -> tuple[Array, Array]:
-    """Bore forces (k, n) and end motions (2, n) of loads (2, n) on knots bound to the bore.
+    """Bore forces (k, n), N, and end motions (2, n), m and rad, under loads (2, n), N and N m, with
+    given knots bound to the bore and the others free.
 
     The knots of `touch` (k, n) are indented by `offset` (k, n), m, before the load acts.
     """
@@ -356,7 +359,8 @@ def _bound_solution(
 def _reduced(
     line: BearingLine, push: Array, rigid: Array, load: Array, enlargement: Array
 ) -> tuple[Array, Array]:
-    """Bore forces and end motions of loads (2, n), those that were scaled up at their own size.
+    """Bore forces (k, n), N, and end motions (2, n), m and rad, of loads (2, n) that were solved
+    enlarged by `enlargement` (n,), >= 1, brought back to their own size.
 
     Bore forces are in proportion to so small a load; so is what it adds to the end motion of the
     unloaded beam in contact. Neither has the round-off of the clearance then.
@@ -394,11 +398,15 @@ def _best_length(
     length_best = np.ones(load.shape[1])
     far = np.flatnonzero(last > TOLERANCE * np.abs(first))
     if far.size:
-        length_best[far] = _zero(line, before[:, far], change[:, far], first[far], spread[far])
+        length_best[far] = _slope_zero(
+            line, before[:, far], change[:, far], first[far], spread[far]
+        )
     return length_best
 
 
-def _zero(line: BearingLine, before: Array, change: Array, first: Array, spread: Array) -> Array:
+def _slope_zero(
+    line: BearingLine, before: Array, change: Array, first: Array, spread: Array
+) -> Array:
     """Zero (n,) of the slope of the energy along a step, which is `first` (n,) at length 0 and
     positive at 1.
 

@@ -71,6 +71,7 @@ class FrictionRange:
     greatest: tuple[float, float]
 
     def __post_init__(self) -> None:
+        """Refuse bounds that do not enclose the nominal coefficients."""
         ranges = zip("ab", self.least, self.nominal, self.greatest, strict=True)
         for name, low, middle, high in ranges:
             if not 0.0 <= low <= middle <= high:
@@ -193,7 +194,8 @@ def thermal_resistance(guide: Guide) -> float | None:
 
 
 def bush_resistance(bore: float, wall: float, length: float, conductivity: float) -> float:
-    """Thermal resistance of a bush wall, ln(1 + 2 t/D)/(2 pi lambda l), K/W.
+    """Thermal resistance of a bush wall, ln(1 + 2 t/D)/(2 pi lambda l), K/W; bore D, wall t and
+    length l, m, conductivity lambda, W/(m K).
 
     Raises
     ------

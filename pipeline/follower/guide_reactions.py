@@ -152,7 +152,9 @@ class Guide(Part):
 
     @cached_property
     def foundation_modulus(self) -> float:
-        """Force per length and deflection of the guide, N/m2; see `bush_foundation_modulus`."""
+        """Force of the bore per length and deflection, N/m2: by the stated stiffness or the
+        elasticity of the bush, see `bush_foundation_modulus`.
+        """
         if self.stiffness is not None:
             return self.stiffness / self.length
         bore, card = self.diameter, self.material
@@ -558,7 +560,8 @@ def guide_reactions(
 
 
 def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> None:
-    """Check that the stem fits in its guides at overhangs (n,), m.
+    """Check that the stem fits in its guides at overhangs (n,), m, and that `knots`, per guide, are
+    odd and at least 3.
 
     Raises
     ------
@@ -584,9 +587,9 @@ def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> N
 
 @lru_cache(maxsize=8)
 def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine, Array, float]:
-    """Stem as a beam in both guides from the edge of guide A nearer to the roller, slopes of the
-    stem at the middles of the guides per unit force at each knot, rad/N, and half the length of
-    guide A, m; knots : per guide.
+    """Stem as a beam in both guides from the edge of guide A nearer to the roller; slope of the
+    stem at each knot per unit force at each (2 k, 2 k), rad/N, clamped at that edge; half the
+    length of guide A, m. knots : k, per guide.
     """
     unit, weight = lobatto(knots)
     half_a, half_b = 0.5 * guides.a.length, 0.5 * guides.b.length

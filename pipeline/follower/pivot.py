@@ -110,6 +110,7 @@ class Pivot(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a pivot without or with both of its bearings."""
         super().__post_init__()
         if (self.bush is None) == (self.needle_bearing is None):
             both = "neither" if self.bush is None else "both"
@@ -118,7 +119,7 @@ class Pivot(Part):
 
     @property
     def bearing(self) -> Guide | NeedleBearing:
-        """Its bush or needle bearing."""
+        """Bush or needle bearing of the pivot, whichever it has."""
         if self.needle_bearing is not None:
             return self.needle_bearing
         if self.bush is not None:

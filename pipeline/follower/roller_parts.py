@@ -64,6 +64,7 @@ class OuterRing(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a ring without room for its balls, balls that overlap, and a thick ring."""
         super().__post_init__()
         if not self.ball_diameter > 0.0:
             least = self.outer_diameter - self.ball_diameter
@@ -225,7 +226,9 @@ class Fork(Part):
         return inner, inner + self.cheek_width
 
     def mass(self, pin: Pin) -> float | None:
-        """Mass of cheeks and bridge, blocks of one height, kg; None without a dimension."""
+        """Mass of the fork, kg, as blocks of one height: cheeks, and bridge between them; None
+        without a dimension.
+        """
         height, length, bridge = self.cheek_height, self.cheek_length, self.bridge_length
         if height is None or length is None or bridge is None:
             return None

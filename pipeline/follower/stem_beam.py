@@ -33,6 +33,7 @@ class Stem:
     length: float = np.inf
 
     def __post_init__(self) -> None:
+        """Refuse sizes out of bounds, and a bore as wide as the stem."""
         for name, unit in (("diameter", "m"), ("elastic_modulus", "Pa")):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise InputError(f"stem.{name}", getattr(self, name), f"> 0 {unit}")

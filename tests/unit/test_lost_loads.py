@@ -139,7 +139,7 @@ def test_a_check_judges_the_load_cases_that_it_declares(machine: str, duty: floa
         for there in apart.values():
             one = declared(there)
             made = one is not None and not lost_loads._lacks_data(one)
-            assert made == lost_loads._judges(declared, there), declared.id
+            assert made == lost_loads._judges_lost(declared, there), declared.id
             tried += 1
     assert tried > 60
 

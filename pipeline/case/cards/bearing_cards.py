@@ -77,7 +77,9 @@ class BearingCard(Part):
 
     @property
     def bearing(self) -> Bearing:
-        """Bearing of a roller, with its outer ring if the card describes it."""
+        """Bearing of a roller with the ratings of the card, and its outer ring if the card
+        describes it.
+        """
         ring = None
         if self.balls is not None and self.pitch_diameter and self.ring_thickness:
             ring = OuterRing(

@@ -58,7 +58,9 @@ def fill_cards(case: Tables, folder: Path | None) -> None:
 
 
 def _fill_places(case: Tables, folder: Path | None) -> None:
-    """Complete each table that names a card."""
+    """Complete, in place, each table of a case that names a card by the values of the card; values
+    that the table states are kept.
+    """
     named = [place for place in _places(case) if "card" in place[2]]
     if not named:
         return
@@ -101,7 +103,7 @@ def _fill_places(case: Tables, folder: Path | None) -> None:
 
 
 def known_cards(folder: Path | None) -> Cards:
-    """Cards by kind and name, the shipped ones overridden by the user's in `folder`."""
+    """Cards by kind and name: the shipped ones, and those of `folder`, which take precedence."""
     cards = {kind: dict(cards) for kind, cards in _shipped().items()}
     path = None if folder is None else folder / USER_FILE
     if path is None or not path.is_file():
@@ -145,7 +147,7 @@ def _shipped() -> Cards:
 
 
 def _sourced(card: TomlValue, field: str) -> Tables:
-    """A card; refused without the source of its values."""
+    """The card; InputError if it is no table or states no source of its values."""
     if not isinstance(card, dict):
         raise InputError(field, str(card), "a table")
     if not source_in(card.get("source")):
@@ -178,7 +180,9 @@ def _places(case: Tables) -> Iterator[tuple[str, str, Tables]]:
 
 
 def _with_material(case: Tables, name: TomlValue, cards: Mapping[str, Tables]) -> None:
-    """Put the card of a bush's material among the materials, unless one has its name."""
+    """Put the card of the material that a bush names among the materials of the case, in place,
+    unless one has its name.
+    """
     materials = case.setdefault("materials", {})
     if isinstance(materials, dict) and isinstance(name, str) and name not in materials:
         card = cards.get(name)
@@ -196,7 +200,9 @@ def _from_card(name: str, source: TomlValue) -> TomlValue:
 
 
 def _oil_words(words: Mapping[str, Source]) -> dict[str, Source]:
-    """Sources of the values of a lubricant, from those of its oil."""
+    """Sources of the values of a lubricant by key, from those of its oil; its viscosity has those
+    of the values it is interpolated from.
+    """
     made_of = ("viscosity_40", "viscosity_100", "density")
     used = dict.fromkeys(words[key] for key in made_of if key in words)
     text = "; ".join(dict.fromkeys(source.text for source in used))
@@ -233,7 +239,8 @@ def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
 
 
 def _wire(card: Tables, table: Tables, name: str, field: str) -> Tables:
-    """The values of a wire's card, which hold for its diameters and up to its temperature.
+    """Values of a wire's card by key, after a check that the wire of `table` has a diameter and a
+    temperature for which the card holds.
 
     Raises
     ------
@@ -276,6 +283,7 @@ def wire_values(card: Tables) -> Tables:
 
 
 def _positive(card: Tables, key: str, field: str) -> float:
+    """Value of a key of a card, a number above zero without unit; InputError otherwise."""
     value = _entry(card, key, field)
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 < value < math.inf:
         raise InputError(f"{field}.{key}", str(value), "> 0, a number without a unit")

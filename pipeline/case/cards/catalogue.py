@@ -72,8 +72,8 @@ def catalogue_of(folder: Path | None) -> Catalogue:
 
 
 def _bush(name: str, entry: Tables) -> CatalogueBush:
-    """Bush of a card, its values converted to SI; the least friction bound is the friction
-    itself.
+    """Bush of a card, its values converted to SI; its greatest friction is the stated friction
+    where the card has no bound.
     """
     field, marks = f"cards.bushes.{name}", marks_of(Guide)
     for key in ("friction", "pressure_limit", "pv_limit", "material"):

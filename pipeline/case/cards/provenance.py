@@ -40,7 +40,9 @@ class Provenance(Section):
 
     @property
     def stated(self) -> Source:
-        """Title, place and condition; confirmed if the number was read in the source."""
+        """Source of the value: title, place and condition as its text, confirmed if the number was
+        read there.
+        """
         title = titles().get(self.source, self.source)
         placed = ", ".join(each for each in (title, self.at) if each)
         words = "; ".join(each for each in (placed, self.condition) if each)

@@ -103,7 +103,7 @@ class SpringDemand(Generic[Number]):
         return rest._replace(greatest=room.greatest * rest.greatest)
 
     def kept(self, wire: WoundWire[Number]) -> Mapping[str, NDArray[np.bool_]]:
-        """Whether springs (...) keep each limit, by the words of a refused spring.
+        """Whether springs (...) keep each limit, by the name of the limit in messages.
 
         Relaxation is judged where the wire states it.
         """
@@ -157,7 +157,7 @@ def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
 
 
 def wire_sources() -> Iterator[tuple[str, Source]]:
-    """Name and source of each number of the wires of the shipped catalogue."""
+    """Dotted name and source of each number of the wires of the shipped catalogue."""
     wires = read_toml(CATALOGUE, CATALOGUE.name, _BYTES).get("wires")
     for name, wire in wires.items() if isinstance(wires, dict) else ():
         card = with_new_wire_keys(wire, f"catalogue.wires.{name}")
@@ -221,7 +221,7 @@ def _wire(field: str, entry: TomlValue) -> _Wire:
 
 
 def _spring(field: str, entry: TomlValue, wires: Mapping[str, _Wire]) -> HelicalSpring:
-    """Spring of an entry: its own keys and those of its wire."""
+    """Spring of an entry of the catalogue: its own keys and those of the wire that it names."""
     if not isinstance(entry, dict):
         raise InputError(field, str(entry), "a table")
     own = dict(entry)

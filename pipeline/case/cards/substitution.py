@@ -126,7 +126,8 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
 
 
 def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -> Case:
-    """Case with another roller on the same base circle.
+    """Case with another roller, by the name of its card, on the same base circle; the moving mass
+    changes with it.
 
     Raises
     ------
@@ -157,7 +158,7 @@ def with_bush(case: Case, side: Literal["a", "b"], name: str, folder: Path | Non
 
 
 def with_cam_material(case: Case, name: str, folder: Path | None) -> Case:
-    """Case with the cam of another material card.
+    """Case whose cam is of another material, by the name of its card.
 
     Raises
     ------

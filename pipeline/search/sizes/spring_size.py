@@ -62,6 +62,7 @@ class HoldingCondition:
     preload_factor: float = 1.0
 
     def __post_init__(self) -> None:
+        """Refuse values out of bounds."""
         for name, unit in (("mass", "kg"), ("cam_speed", "rad/s"), ("damping", "N s/m")):
             if not 0.0 <= getattr(self, name) < np.inf:
                 raise InputError(name, getattr(self, name), f">= 0 {unit}")
