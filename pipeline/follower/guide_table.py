@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ContactError
 from camwright.pipeline.follower.follower_forces import Push, levers
 from camwright.pipeline.follower.guide_reactions import (
     GuidePair,
@@ -31,6 +32,7 @@ _FORCES = np.geomspace(0.1, 1e6, 155)
 _OVERHANG_STEP = 0.03  # of the overhang over the spacing
 _DIRECTION_STEP = np.pi / 120.0  # of the angle of moment over spacing against side force
 _COUPLE_ALONE = 60.0  # steps of the direction: a right angle
+_TOGETHER = 4  # nodes of a spacing that are solved at once
 _SPACING_STEP = 0.03  # of the logarithm of the spacing
 
 
@@ -74,7 +76,8 @@ def _between_forces(load: Array) -> tuple[NDArray[np.intp], Array]:
 class GuideTable(ABC):
     """Interpolation tables of guide loads of a stem, rows computed on demand.
 
-    The values depend on the stem and the guides alone, not on the places looked up before.
+    The values depend on the stem and the guides alone, not on the places looked up before: nodes
+    next to one another are solved together, those of one spacing in fixed groups.
     """
 
     stem: Stem
@@ -84,8 +87,8 @@ class GuideTable(ABC):
     _flats: dict[int, Array] = field(default_factory=dict)
 
     @abstractmethod
-    def _node(self, along: int, guides: GuidePair) -> GuideLoads:
-        """Loads over their units (forces,) at a node of the place, in guides of a spacing."""
+    def _nodes(self, along: NDArray[np.intp], guides: GuidePair) -> GuideLoads:
+        """Loads over their units (nodes, forces) at nodes (nodes, 1), in guides of a spacing."""
 
     def between(self, along: Array, spacing: float | Array) -> Place:
         """Nodes about places (...), in steps, and spacings (...), m, for `ratios`."""
@@ -145,17 +148,25 @@ class GuideTable(ABC):
         for each in needed:
             key = int(low[0] + each // extent[1]), int(low[1] + each % extent[1])
             if key not in self._number:
-                self._number[key] = len(self._tables)
-                self._tables.append(self._solved(*key))
+                self._solve(*key)
             numbers[each] = self._number[key]
         return np.asarray(numbers[flat].reshape(along.shape))
 
-    def _solved(self, along: int, across: int) -> Array:
-        """Ratios at a node (6, forces)."""
+    def _solve(self, along: int, across: int) -> None:
+        """Add the ratios (6, forces) at a node and at the others of its group."""
         guides = self.guides
         if across != _STATED:
             guides = replace(guides, spacing=float(np.exp(across * _SPACING_STEP)))
-        return np.stack(self._node(along, guides))
+        group = along // _TOGETHER * _TOGETHER + np.arange(_TOGETHER)
+        try:
+            solved = self._nodes(group[:, None], guides)
+        except ContactError:  # of another node of the group
+            group = np.array([along])
+            solved = self._nodes(group[:, None], guides)
+        for k, node in enumerate(group.tolist()):
+            if (node, across) not in self._number:
+                self._number[node, across] = len(self._tables)
+                self._tables.append(np.stack([ratio[k] for ratio in solved]))
 
     @property
     def _long(self) -> Stem:
@@ -165,35 +176,39 @@ class GuideTable(ABC):
 class OverhangTable(GuideTable):
     """Guide loads over side force and overhang, in units of point-support reactions."""
 
-    def _node(self, along: int, guides: GuidePair) -> GuideLoads:
+    def _nodes(self, along: NDArray[np.intp], guides: GuidePair) -> GuideLoads:
         # The roller does not enter guide A: positions just outside take the node at its mouth.
-        overhang = max(along * _OVERHANG_STEP * guides.spacing, 0.5 * guides.a.length)
-        reactions = guide_reactions(_FORCES, np.full(_FORCES.size, overhang), self._long, guides)
-        on_a, on_b = (_FORCES * each for each in levers(np.asarray(overhang), guides.spacing))
+        overhang = np.maximum(along * _OVERHANG_STEP * guides.spacing, 0.5 * guides.a.length)
+        force, reach = np.broadcast_arrays(_FORCES, overhang)
+        reactions = guide_reactions(force.ravel(), reach.ravel(), self._long, guides)
+        on_a, on_b = (_FORCES * each for each in levers(overhang, guides.spacing))
         return _over(reactions, on_a, on_b)
 
 
 class MomentTable(GuideTable):
     """Guide loads over size and direction of side force and moment over spacing."""
 
-    def _node(self, along: int, guides: GuidePair) -> GuideLoads:
+    def _nodes(self, along: NDArray[np.intp], guides: GuidePair) -> GuideLoads:
         angle = along * _DIRECTION_STEP
-        side, moment = _FORCES * np.cos(angle), _FORCES * np.sin(angle) * guides.spacing
+        side = np.ravel(_FORCES * np.cos(angle))
+        moment = np.ravel(_FORCES * np.sin(angle) * guides.spacing)
         mouth = 0.5 * guides.a.length
-        reach = np.full(_FORCES.size, mouth)
+        reach = np.full(side.size, mouth)
         reactions = guide_reactions(side, reach, self._long, guides, side * mouth - moment)
-        return _over(reactions, _FORCES, _FORCES)
+        units = np.broadcast_to(_FORCES, (along.size, _FORCES.size))
+        return _over(reactions, units, units)
 
 
 def _over(reactions: GuideReactions, on_a: Array, on_b: Array) -> GuideLoads:
-    """Loads (forces,) over their units, N."""
+    """Loads over their units (nodes, forces), N."""
+    shape = on_a.shape
     return GuideLoads(
-        rubbing_a=reactions.rubbing_load_a / on_a,
-        rubbing_b=reactions.rubbing_load_b / on_b,
-        bearing_a=reactions.bearing_load_a / on_a,
-        bearing_b=reactions.bearing_load_b / on_b,
-        net_a=np.abs(reactions.reaction_a) / on_a,
-        net_b=np.abs(reactions.reaction_b) / on_b,
+        rubbing_a=reactions.rubbing_load_a.reshape(shape) / on_a,
+        rubbing_b=reactions.rubbing_load_b.reshape(shape) / on_b,
+        bearing_a=reactions.bearing_load_a.reshape(shape) / on_a,
+        bearing_b=reactions.bearing_load_b.reshape(shape) / on_b,
+        net_a=np.abs(reactions.reaction_a).reshape(shape) / on_a,
+        net_b=np.abs(reactions.reaction_b).reshape(shape) / on_b,
     )
 
 

@@ -37,7 +37,7 @@ class SynthesisedCam(TypedDict):
     lift_max_mm: float
     """Maximum lift."""
     binding: list[str]
-    """Ids of the limits that are used up, the most binding first."""
+    """Ids of the limits that are used up, or exceeded if it is not feasible, the worst first."""
 
 
 @form()

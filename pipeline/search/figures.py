@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -14,17 +15,22 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import KEYWAY_SAFETY, TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.key_strength import keyway_root
+from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.cycle.cam_balance import design_mass
 from camwright.pipeline.cycle.hub_history import hub_fatigue
 from camwright.pipeline.records.judgement_record import DraftJudgement, PreviewJudgement, Shortfall
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
+from camwright.pipeline.smoothing.constraints import check_of
 from camwright.pipeline.smoothing.multistart import continued
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.scenario import redrawn
 from camwright.pipeline.smoothing.synthesis_problem import coarsened
 from camwright.pipeline.torque.torque import Torque
+
+if TYPE_CHECKING:
+    from camwright.pipeline.records.trial_contents import SynthesisRecord
 
 _BINDING_USE = 0.99  # utilisation
 # Of the safety of the keyway root: least over the limit, for tolerance corners and error bar.
@@ -32,28 +38,57 @@ _ROOT_SPARE = 1.06
 _COARSE_PROGRESS = 1e-3  # of the engine's ripple: progress at which a coarse search goes on
 
 
-def preview_figures(trial: Trial) -> PreviewJudgement:
-    """Figures of the preview of a case with an engine.
+class CaseJudgement(Protocol):
+    """A case with its judgements, each made when it is first read."""
 
-    Where no blocking check fails, the keyway root is judged by finite elements, if its bound does
-    not prove it.
+    @property
+    def nominal(self) -> Trial:
+        """The case with its nominal checks."""
+        ...
+
+    @property
+    def trial(self) -> Trial:
+        """The case with its checks at the tolerance corners of the judgement."""
+        ...
+
+    def check(self, name: str, *, everywhere: bool = False) -> Check | None:
+        """One check, at every tolerance corner if `everywhere`; None where it does not apply."""
+        ...
+
+
+def preview_figures(judged: CaseJudgement) -> PreviewJudgement:
+    """Figures of the preview of a case with an engine, by its nominal checks and its shortfalls.
+
+    What costs most is judged last, and only where nothing before it fails: the nominal checks;
+    those whose limits an infeasible synthesis exceeds, at the tolerance corners; of a feasible one
+    the keyway root by finite elements, if its bound does not prove it, and every check at the
+    corners.
 
     Raises
     ------
     InputError
         If the case has no engine.
     """
+    trial = judged.nominal
     drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
     rest, torque = turn.torque_after, turn.torque_before
     if rest is None or torque is None:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
     record = trial.synthesis
-    blocking = [check for check in in_order(within_depth(trial.checks)) if check.blocks]
-    shortfalls = [_shortfall(check) for check in blocking if check.status == "fail"]
-    if not shortfalls:
-        shortfalls = _root_shortfall(trial)
-    left = [check.id for check in blocking if check.status == "not_evaluated"]
     feasible = record is not None and record["feasible"]
+    exceeded = exceeded_limits(record)
+    shortfalls = _shortfalls(trial.checks)
+    if not shortfalls and exceeded:
+        names = {check_of(name) for name in exceeded} & DECLARED.keys()
+        checks = (judged.check(name, everywhere=True) for name in sorted(names))
+        shortfalls = _shortfalls([check for check in checks if check is not None])
+    elif not shortfalls:
+        shortfalls = _root_shortfall(trial)
+        if not shortfalls:
+            trial = judged.trial
+            shortfalls = _shortfalls(trial.checks)
+    blocking = (check for check in in_order(within_depth(trial.checks)) if check.blocks)
+    left = [check.id for check in blocking if check.status == "not_evaluated"]
     before, after = float(np.std(torque)), float(np.std(rest))
     figures = headline(trial.solution)
     return {
@@ -74,8 +109,19 @@ def preview_figures(trial: Trial) -> PreviewJudgement:
         "failing": [each["check"] for each in shortfalls],
         "shortfalls": shortfalls,
         "open": left,
-        "binding": [] if record is None else [price["limit"] for price in record["prices"]],
+        "binding": exceeded or _binding(record),
     }
+
+
+def exceeded_limits(record: SynthesisRecord | None) -> list[str]:
+    """Limits that an infeasible synthesis exceeds, the worst first."""
+    if record is None or record["feasible"]:
+        return []
+    return [name for name, used in record["utilisation"].items() if used > 1.0]
+
+
+def _binding(record: SynthesisRecord | None) -> list[str]:
+    return [] if record is None else [price["limit"] for price in record["prices"]]
 
 
 def verdict_of(feasible: bool, shortfalls: Collection[Shortfall], left: Collection[str]) -> Verdict:
@@ -133,6 +179,12 @@ def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> D
             (name for name in uses if uses[name] > _BINDING_USE), key=lambda n: -uses[n]
         ),
     }
+
+
+def _shortfalls(checks: Sequence[Check]) -> list[Shortfall]:
+    """Of the blocking checks that fail, in their order."""
+    blocking = (check for check in in_order(within_depth(checks)) if check.blocks)
+    return [_shortfall(check) for check in blocking if check.status == "fail"]
 
 
 def _shortfall(check: Check) -> Shortfall:

@@ -155,9 +155,7 @@ class Judgement:
 
     @cached_property
     def record(self) -> PreviewJudgement:
-        """Figures of a case with an engine.
-
-        Each check is judged at the corners, unless one that blocks fails nominally.
+        """Figures of a case with an engine; see `preview_figures`.
 
         Raises
         ------
@@ -166,8 +164,7 @@ class Judgement:
         """
         from camwright.pipeline.search.figures import preview_figures
 
-        failing = any(one.blocks and one.status == "fail" for one in self.nominal.checks)
-        return preview_figures(self.nominal if failing else self.trial)
+        return preview_figures(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,17 +262,28 @@ class Judge:
         CamError
             As by `judged`.
         """
-        return self._synthesised(self.case(change))
+        return self._synthesised(self.case(change), corners=True)
 
-    def _synthesised(self, case: Case) -> Judgement:
+    def _synthesised(self, case: Case, *, corners: bool) -> Judgement:
         from camwright.pipeline.preview import preview_case
 
         drawn = preview_case(case, corners=False, kept=True, torques=self.torques)
-        return Judgement(drawn.solution, whole=True, drawn=drawn)
+        return Judgement(drawn.solution, whole=corners, drawn=drawn)
 
-    def previewed(self, change: Applicable) -> PreviewJudgement | RefusedJudgement:
-        """Record of the judgement with the cam of the synthesis, from the store or judged."""
-        return self.stored(change, "preview", lambda case: self._synthesised(case).record)
+    def previewed(
+        self, change: Applicable, *, corners: bool = True
+    ) -> PreviewJudgement | RefusedJudgement:
+        """Record of the judgement with the cam of the synthesis, from the store or judged.
+
+        Parameters
+        ----------
+        corners : bool   judge each check at its worst tolerance corner
+        """
+
+        def record(case: Case) -> PreviewJudgement:
+            return self._synthesised(case, corners=corners).record
+
+        return self.stored(change, "preview" if corners else "nominal", record)
 
     def drafted(
         self, change: Applicable, *, fine: bool = False

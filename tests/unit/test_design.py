@@ -6,6 +6,7 @@ import json
 import shlex
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NoReturn
@@ -375,7 +376,7 @@ def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) 
         tried.append(design)
         return exchange_of(design, *(["Fatigue"] if design in (60, 50, 90, 4, 3, 2) else []))
 
-    study: Any = SimpleNamespace(solved=solved, text=str)
+    study: Any = SimpleNamespace(at_nominal=solved, solved=exchange_of, text=str)
     result = part_exchange.exchanged(study, exchange_of(12), ALONE, SILENT)
     assert result.point.size == 5
     assert [each.becomes for each in result.kept] == ["11", "9", "7", "6", "5"]
@@ -389,6 +390,33 @@ def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(part_exchange, "_EXCHANGES_MAX", 2)
     stopped = part_exchange.exchanged(study, exchange_of(12), ALONE, SILENT)
     assert not stopped.complete and "may pass" in stopped.sentence
+
+
+def test_exchanges_are_judged_at_the_corners_where_the_last_one_fails_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Shafts that pass nominally down to 7, at the tolerance corners down to 9 or to 7."""
+
+    def smaller(design: Any, _: Any, stride: int) -> Any:
+        if design - stride >= 5:
+            yield part_exchange.Exchange("shaft", str(design), "", design - stride)
+
+    monkeypatch.setattr(part_exchange, "_EXCHANGES", (smaller,))
+    monkeypatch.setattr(part_exchange.SortedParts, "of", lambda _: None)
+    for least in (9, 7):
+        whole: list[Any] = []
+
+        def to(passing: int, design: Any) -> Any:
+            return exchange_of(design, *(["Fatigue"] if design < passing else []))
+
+        def at_corners(design: Any, whole: list[Any] = whole, least: int = least) -> Any:
+            whole.append(design)
+            return to(least, design)
+
+        study: Any = SimpleNamespace(at_nominal=partial(to, 7), solved=at_corners, text=str)
+        result = part_exchange.exchanged(study, exchange_of(12), ALONE, SILENT)
+        assert result.point.size == least and result.complete
+        assert (whole == [7]) == (least == 7)  # the last one alone, where it passes
 
 
 def test_the_next_smaller_parts_follow_the_catalogues(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from camwright.pipeline.checks.registry import CHECKS, DECLARED
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.follower_forces import Push
 from camwright.pipeline.follower.guide_reactions import guide_reactions
-from camwright.pipeline.follower.guide_table import SupportOfMany
+from camwright.pipeline.follower.guide_table import OverhangTable, SupportOfMany
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.screening.design_screening import screen_designs, synthesis
@@ -328,3 +328,19 @@ def test_the_tables_of_the_guides_agree_with_their_solution() -> None:
             scale = np.maximum(size, other)
             assert np.abs(mine - other).max() <= share * scale.max()
             np.testing.assert_allclose(mine, other, rtol=share, atol=share * np.median(scale))
+
+
+def test_guide_loads_do_not_depend_on_the_places_solved_before() -> None:
+    """A node is solved in the same group, whichever place needs it first."""
+    case = read_case(CASES / "gx120.toml")
+    state = machine(case, case.load_cases[0])
+    steps, spacing, load = (9.1, 11.7, 12.4), 0.9 * state.guides.spacing, np.geomspace(1.0, 3e3, 7)
+    rising, falling = (OverhangTable(state.stem, state.guides) for _ in range(2))
+    for each in steps[::-1]:
+        falling.between(np.full(7, each), spacing)
+    for each in steps:
+        first, last = (
+            table.ratios(load, table.between(np.full(7, each), spacing))
+            for table in (rising, falling)
+        )
+        np.testing.assert_array_equal(first, last)

@@ -352,8 +352,7 @@ def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[So
     if points:
         near = points[0]
         failing = near.failing or ["the limits of the synthesis at the ends of the tolerances"]
-        binding = [DECLARED[name].title for name in near.figures["binding"] if name in DECLARED]
-        return failing + [title for title in binding if title not in failing][:_BINDING_NAMED]
+        return failing + [title for title in near.used_up if title not in failing][:_BINDING_NAMED]
     if screened:
         counts = Counter(each.governing for each in screened if each.excess > 0.0)
         return [DECLARED[name].title for name, _ in counts.most_common(3)]

@@ -1,6 +1,7 @@
 """Exchange of a passing design's parts for smaller ones while it passes.
 
-Each exchange is solved and judged as the points of the front are: preview at all tolerance corners.
+Each exchange is solved as the points of the front are; the last one is judged as they are, too:
+preview at all tolerance corners.
 """
 
 from __future__ import annotations
@@ -98,15 +99,36 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
     circle less by as much, then with the same one; oil, fork and housing follow from the parts. An
     exchange that passes is kept; the search ends when the next smaller of every part of the same
     design has failed, or after `_EXCHANGES_MAX` designs.
+
+    Most designs on the way are followed by a smaller one: only the last is judged at the tolerance
+    corners. Where it fails there, the search is made again with each judged at them.
     """
+    smallest = _smallest(study, study.at_nominal, point, workers, progress)
+    if not smallest.kept:
+        return smallest
+    last: Solved = workers.submit(study.solved, smallest.point.design).result()
+    if last.has_cam and last.passes:
+        return replace(smallest, point=last)
+    return _smallest(study, study.solved, point, workers, progress)
+
+
+def _smallest(
+    study: PointStudy,
+    judged: Callable[[Machinery], Solved],
+    point: Solved,
+    workers: Crew,
+    progress: Progress,
+) -> Exchanged:
+    """As `exchanged`, by one depth of judgement."""
     catalogues, kept = SortedParts.of(study), list[Exchange]()
     failing: dict[str, tuple[Exchange, str]] = {}
+    failed = set[str]()
     begun: dict[str, PendingCall] = {}
 
     def solving(design: Machinery) -> PendingCall:
         text = study.text(design)
         if text not in begun:
-            begun[text] = workers.submit(study.solved, design)
+            begun[text] = workers.submit(judged, design)
         return begun[text]
 
     place = unchanged = tried = 0
@@ -118,8 +140,8 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
             progress.advance(tried, _EXCHANGES_MAX)
             tried += 1
             solution = solving(each.design)
-            if unchanged and then is not None:  # likely to fail: solved while another waits
-                solving(then.design)
+            if unchanged and then is not None and then.part in failed:
+                solving(then.design)  # likely to fail again: needed as the design is the same then
             solved: Solved = solution.result()
             if solved.has_cam and solved.passes and solved.size <= point.size + _EQUAL_LENGTHS:
                 kept.append(each)
@@ -128,6 +150,7 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
                 break
             if stride == 1:
                 failing[each.part] = each, why_not(solved)
+                failed.add(each.part)
         else:
             if stride == 1 or not ways:
                 unchanged += 1
@@ -146,6 +169,8 @@ def why_not(point: Solved) -> str:
         return point.record["why"]
     if point.failing:
         return "; ".join(point.failing)
+    if not point.figures["feasible"]:
+        return "; ".join(point.used_up) or "limits of the synthesis"
     lacking = point.record["open"] if is_whole(point.record) else []
     if lacking:
         return f"not known: {'; '.join(DECLARED[name].title for name in lacking)}"

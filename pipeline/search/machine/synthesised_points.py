@@ -13,6 +13,7 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.key_strength import keyway_root
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.records.design_document import DesignOptions
 from camwright.pipeline.records.judgement_record import (
@@ -75,6 +76,13 @@ class PointStudy:
         """A design with its record, cached or solved, its checks judged at all tolerance ends."""
         record = self._judged(design, smoothing, lambda judge: judge.previewed(Change()))
         return Solved(design, record, smoothing)
+
+    def at_nominal(self, design: Machinery) -> Solved:
+        """A design with its record, its checks without the tolerance corners."""
+        record = self._judged(
+            design, SYNTHESIS, lambda judge: judge.previewed(Change(), corners=False)
+        )
+        return Solved(design, record)
 
     def drafted(self, design: Machinery, smoothing: str) -> Solved:
         """A design with the record of its synthesis on few cam angles, cached or solved."""
@@ -198,6 +206,17 @@ class Solved:
         return [title for title, _ in self._shortfalls]
 
     @property
+    def root_fails(self) -> bool:
+        """Whether the keyway root fails by finite elements."""
+        return is_whole(self.record) and keyway_root.id in self.record["failing"]
+
+    @property
+    def used_up(self) -> list[str]:
+        """Titles of the checks whose limits the synthesis uses up, or exceeds if not feasible."""
+        checks = dict.fromkeys(check_of(name) for name in self.figures["binding"])
+        return [DECLARED[check].title for check in checks if check in DECLARED]
+
+    @property
     def shortfall(self) -> float:
         """Sum of the utilisations of the checks that fail; 99 for an infinite one."""
         return sum(self._uses)
@@ -305,10 +324,10 @@ def synthesised(study: PointStudy, point: Solved) -> Solved:
     """Draft solved in full, prime radius and preload rounded as in a drawing.
 
     Where a check fails by little, both are first those of the full synthesis, with the corrections
-    for the guides.
+    for the guides. Not where it is the keyway root: under a fit the synthesis does not keep it.
     """
     drawn = settled(study, point)
-    if not drawn.has_cam or drawn.passes or drawn.use > _SHORT:
+    if not drawn.has_cam or drawn.passes or drawn.use > _SHORT or drawn.root_fails:
         return drawn
     corrected = study.solved(point.design, point.smoothing)
     return settled(study, corrected) if corrected.has_cam and corrected.passes else drawn
