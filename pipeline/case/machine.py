@@ -240,8 +240,10 @@ class Machine(Displayed):
     @property
     def tilting(self) -> FollowerTilt:
         """Tilt of the follower across the plane of the cam."""
-        bar = self.arm_bar
-        return StemTilt(self.stem, self.guides) if bar is None else ArmTilt(bar, None)
+        arm, bar, bush = self.arm, self.arm_bar, None if self.pivot is None else self.pivot.bush
+        if arm is None or (bar is None and bush is None):
+            return StemTilt(self.stem, self.guides)
+        return ArmTilt(0.0 if bar is None else bar.couple_compliance, arm.plane_offset, bush)
 
     @property
     def contact_width(self) -> float:
@@ -368,18 +370,27 @@ class Machine(Displayed):
     def compliances(self) -> dict[str, float]:
         """Compliances by name of the described members from cam to follower mass, m/N.
 
-        The stem counts to its far guide; an arm bends with its fork. The line contact and the cam,
-        and an arm that is not described, are taken as rigid.
+        The stem counts to its far guide; an arm bends with its fork, on the bush of its pivot. The
+        line contact and the cam, an arm that is not described and needles are taken as rigid.
         """
         parts, held = self.follower.elastic(self.contact_width, self.spring.preload)
         reach, bar = self.overhang_at_max_lift + self.guides.spacing - held, self.arm_bar
         members = {
             **parts,
             **({} if bar is None else {"fork": None, "arm": bar.compliance}),
+            "pivot": self._pivot_compliance,
             "stem": stem_compliance_along(self.stem, reach) if self.arm is None else None,
             "camshaft": None if self.camshaft is None else shaft_compliance(self.camshaft),
         }
         return {name: each for name, each in members.items() if each is not None}
+
+    @property
+    def _pivot_compliance(self) -> float | None:
+        """Of the bush of a pivot at the end of its arm, m/N; None without one."""
+        if self.arm is None or self.pivot is None or self.pivot.bush is None:
+            return None
+        bush = self.pivot.bush
+        return self.arm.pivot_share**2 / (bush.foundation_modulus * bush.length)
 
     @property
     def axial_stiffness(self) -> float:

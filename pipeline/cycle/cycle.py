@@ -500,7 +500,7 @@ def turn_of_line(cycle: Cycle) -> TurnOfLine:
     """Inputs of the pressure along the line of contact of a cycle."""
     force = cycle.loads.normal_force
     turn = cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt
-    return TurnOfLine(*turn, np.zeros(force.shape))
+    return TurnOfLine(*turn, np.hypot(*cycle.loads.pivot_load))
 
 
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:

@@ -29,6 +29,7 @@ from camwright.pipeline.follower.guide_friction import (
     friction_power,
 )
 from camwright.pipeline.follower.guide_reactions import Guide
+from camwright.pipeline.follower.pivot_bush import pressed_bush
 from camwright.pipeline.follower.spring import end_travel, lever, natural_frequency, surge_force
 
 
@@ -38,6 +39,8 @@ class PartLoads(Displayed):
 
     guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest;
     heat_* is the friction power of the guides, heat_max_* that at the greatest friction of both.
+    pivot_edge_pressure is that of the pin in the bush of an arm's pivot where its line load is
+    greatest.
     ring_amplitude and ring_mean are of the stress in the groove of the bearing's outer ring, which
     rotates under the load; ring_correction is the relative change of the maximum contact pressure
     from a contact over a ball, as solved, to one between two balls.
@@ -64,6 +67,7 @@ class PartLoads(Displayed):
     ring_amplitude: Array | None
     ring_mean: Array | None
     ring_correction: Array | None
+    pivot_edge_pressure: Array | None = None
 
     def __post_init__(self) -> None:
         for name in self.__dataclass_fields__:
@@ -80,6 +84,9 @@ class PartLoads(Displayed):
             Column(
                 "guide_edge_pressure_B", "MPa", "Maximum pressure of the stem in guide B"
             ): self.guide_edge_pressure_b,
+            Column(
+                "pivot_edge_pressure", "MPa", "Maximum pressure of the pin in the bush of the pivot"
+            ): self.pivot_edge_pressure,
             Column("guide_friction_power_A", "W", "Friction power of guide A"): self.heat_a,
             Column("guide_friction_power_B", "W", "Friction power of guide B"): self.heat_b,
             Column("viscous_force", "N", "Viscous drag on the follower"): self.viscous_force,
@@ -179,7 +186,30 @@ def part_loads(
         ring_amplitude=amplitude,
         ring_mean=mean,
         ring_correction=correction,
+        pivot_edge_pressure=_pivot_edge(machine, loads, moment),
     )
+
+
+def _pivot_edge(machine: Machine, loads: Loads, moment: Array) -> Array | None:
+    """Greatest pressure (n,), Pa, of the pin in the bush of a pivot, tilted by the contact.
+
+    The couple of the contact is in the plane of its normal. None without a bush or the material of
+    its pin.
+
+    moment : array (n,)   of the contact about the middle of the follower, N m
+    """
+    if machine.arm is None or machine.pivot is None:
+        return None
+    bush, pin = machine.pivot.bush, machine.pivot.pin_material
+    if bush is None or pin is None:
+        return None
+    cos, sin = np.cos(loads.pressure_angle), np.sin(loads.pressure_angle)
+    along, across = loads.pivot_load
+    couple = moment + machine.arm.plane_offset * np.maximum(loads.normal_force, 0.0)
+    pressed = pressed_bush(bush, np.abs(along * cos + across * sin), couple)
+    aside = (across * cos - along * sin) / bush.length
+    load = np.hypot(pressed.line_load, aside)
+    return _in_bore(SolidBar(pin.E, pin.nu), bush, bush.diameter)(load)
 
 
 def spring_surge(machine: Machine, lift: Array) -> Array | None:
@@ -211,9 +241,14 @@ def guide_bodies(machine: Machine, guide: Guide) -> tuple[SolidBar, Bush]:
 
 def edge_pressure_of(machine: Machine, guide: Guide) -> Callable[[Array], Array]:
     """Pressure of the stem in a guide's bore (...), Pa, by its line load, N/m."""
-    radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
-    bodies = guide_bodies(machine, guide)
-    return lambda line_load: peak_pressure(line_load, radius, clearance, *bodies)[0]
+    return _in_bore(guide_bodies(machine, guide)[0], guide, machine.stem.diameter)
+
+
+def _in_bore(pin: SolidBar, guide: Guide, diameter: float) -> Callable[[Array], Array]:
+    """Pressure of a pin of a diameter, m, in a bore (...), Pa, by its line load, N/m."""
+    bore = Bush(guide.material.E, guide.material.nu, 2.0 * guide.wall_share)
+    radius, clearance = 0.5 * diameter, 0.5 * guide.clearance
+    return lambda line_load: peak_pressure(line_load, radius, clearance, pin, bore)[0]
 
 
 def _key_pressure(machine: Machine, loads: Loads) -> Array | None:

@@ -108,6 +108,12 @@ class FollowerArm(Part):
         return self.width is not None or self.depth is not None
 
     @property
+    def pivot_share(self) -> float:
+        """Force on the pivot per force across the end of the arm, held where the spring acts."""
+        held = self.spring_distance
+        return abs(self.length / held - 1.0) if held else 1.0
+
+    @property
     def sense(self) -> float:
         """Sense of the outward swing: 1 with the rotation of the cam, -1 against it."""
         return 1.0 if self.swing == "with" else -1.0

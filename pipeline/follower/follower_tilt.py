@@ -8,9 +8,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from camwright.geometry.arrays import Array, Value
-from camwright.pipeline.follower.arm_beam import ArmBar
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
-from camwright.pipeline.follower.pivot_bush import pressed_bush
 from camwright.pipeline.follower.stem_beam import Stem
 
 
@@ -84,10 +82,17 @@ class ArmTilt:
     """Arm that its twist and the clearance of the bush in its pivot let tilt.
 
     Its pivot stays flat on the pin up to the couple of its load at the end of the bush. A pivot
-    without a bush neither yields nor has clearance.
+    without a bush neither yields nor has clearance, an arm without a stated section does not twist.
+
+    Parameters
+    ----------
+    twist : float    slope of its end per couple there, rad/(N m)
+    offset : float   of its middle from that of the roller, m
+    bush : Guide     of its pivot; None: of needles, or not described
     """
 
-    bar: ArmBar
+    twist: float
+    offset: float
     bush: Guide | None
 
     def within(self, spacing: Value) -> Value:
@@ -95,12 +100,16 @@ class ArmTilt:
         play = 0.0 if self.bush is None else self.bush.clearance / self.bush.length
         return play + 0.0 * spacing
 
+    @property
+    def slope(self) -> float:
+        """Twist of the arm and of the pin on its bush per couple, rad/(N m)."""
+        if self.bush is None:
+            return self.twist
+        return self.twist + 12.0 / (self.bush.foundation_modulus * self.bush.length**3)
+
     def compliance(self, overhang: Value, spacing: Value) -> Value:
-        """Twist of the arm, and of the pin on its bush; see `FollowerTilt`."""
-        slope = self.bar.couple_compliance
-        if self.bush is not None:
-            slope += 12.0 / (self.bush.foundation_modulus * self.bush.length**3)
-        return slope + 0.0 * (overhang + spacing)
+        """See `FollowerTilt`."""
+        return self.slope + 0.0 * (overhang + spacing)
 
     def held(self, loads: TiltingLoads) -> Array:
         """Load of the pivot at the end of the bush, and the force in the arm's own middle.
@@ -108,13 +117,8 @@ class ArmTilt:
         See `FollowerTilt`.
         """
         length = 0.0 if self.bush is None else self.bush.length
-        offset = self.bar.arm.plane_offset
-        return np.asarray(0.5 * length * loads.pivot + offset * np.maximum(loads.force, 0.0))
+        return np.asarray(0.5 * length * loads.pivot + self.offset * np.maximum(loads.force, 0.0))
 
     def turned(self, loads: TiltingLoads, offset: Value) -> Array:
-        """Twist of the arm, and tilt of the pin in its bush; see `FollowerTilt`."""
-        couple = np.maximum(loads.force, 0.0) * (offset + self.bar.arm.plane_offset)
-        twisted = self.bar.couple_compliance * couple
-        if self.bush is None:
-            return np.asarray(twisted)
-        return np.asarray(twisted + pressed_bush(self.bush, loads.pivot, couple).tilt)
+        """Elastic part alone: the clearance is in `within`; see `FollowerTilt`."""
+        return np.asarray(self.slope * np.maximum(loads.force, 0.0) * (offset + self.offset))

@@ -199,7 +199,7 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def _turning(self) -> FollowerTurning:
-        pivot = np.zeros(self.normal.shape)
+        pivot = np.zeros(self.normal.shape) if self.pivoted is None else self.pivot_load
         return turning_of(self.block, self.shaft_tilt, self.normal, self.rubbing, pivot)
 
     @cached_property

@@ -19,6 +19,8 @@ from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.arm_strength import arm_forces, arm_yield, bar_of
 from camwright.pipeline.checks.part_strength import moving_masses
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.contact.elasticity.radial_compliance import Bush, SolidBar
+from camwright.pipeline.contact.pin_in_hole import pin_in_hole
 from camwright.pipeline.cycle.cycle import turn_of_line
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.follower.arm import FollowerArm
@@ -52,17 +54,36 @@ pivot_notch = 2.0
 roller_notch = 2.5
 source = "made up"
 
+"""
+SCOPE = """\
 [scope]
 not_covered = ["pivot"]
 reason = "its pivot is judged by its maker"
 
 """
+PIVOT = """\
+plane_offset = "4 mm"
+
+[follower.pivot]
+pin_material = "case_hardened"
+ambient_temperature = "30 degC"
+
+[follower.pivot.bush]
+card = "ptfe_lined"
+length = "25 mm"
+diameter = "16 mm"
+wall = "1.5 mm"
+clearance = "0.03 mm"
+housing_resistance = "2 K/W"
+wear_rate = "3e-8 mm^3/N/m"
+
+"""
 
 
 @cache
-def trial(swing="with", spring="0 mm"):
+def trial(swing="with", spring="0 mm", pivot=SCOPE):
     whole = first_case("swing", "lift").text
-    follower = ARM.replace("@swing@", swing).replace("@spring@", spring)
+    follower = ARM.replace("@swing@", swing).replace("@spring@", spring) + pivot
     text = whole[: whole.index("[follower]")] + follower + whole[whole.index("[lubricant]") :]
     return preview_case(parse_case(text).with_positions(90), corners=False)
 
@@ -106,8 +127,10 @@ def test_torsion_solves_the_equation_of_prandtl(ratio, measured):
 
 
 # --- Compliance ---------------------------------------------------------------------------------
-def elements(bar, root, eye, count=12):
+def elements(bar, root, eye, pivot=np.inf, count=12):
     """Deflection at the end per force there, of beam elements on the pivot and at the spring.
+
+    pivot : float   stiffness of its bush, N/m
 
     Elements of Timoshenko with cubic shape functions, exact between their nodes; the arm is held
     in rotation too where the spring acts at the pivot.
@@ -133,7 +156,11 @@ def elements(bar, root, eye, count=12):
         ])  # fmt: skip
         stiff[2 * k : 2 * k + 4, 2 * k : 2 * k + 4] += bent / step**3 / (1.0 + phi) * one
     held = 2 * int(np.argmin(np.abs(places - bar.held)))
-    fixed = [0, 1] if bar.held == 0.0 else [0, held]
+    fixed = [1] if bar.held == 0.0 else [held]
+    if np.isfinite(pivot):
+        stiff[0, 0] += pivot
+    else:
+        fixed.append(0)
     free = [k for k in range(stiff.shape[0]) if k not in fixed]
     load = np.zeros(stiff.shape[0])
     load[-2] = 1.0
@@ -157,6 +184,19 @@ def test_an_arm_bends_as_its_beam_elements(held, forked, measured):
     root = 0.1 - 0.026 if forked else 0.1
     # round-off of the short elements
     measured("compliance of an arm", bar.compliance, elements(bar, root, (0.01, 0.022)), rtol=1e-6)
+
+
+@pytest.mark.parametrize("held", [0.0, 0.03, 0.075])
+def test_an_arm_stands_on_the_bush_of_its_pivot(held, measured):
+    machine = trial("with", "0 mm", PIVOT).solution.machine
+    arm = replace(machine.arm, spring_distance=held)
+    members = replace(machine, arm=arm).compliances
+    bar, fork = replace(machine.arm_bar, arm=arm), machine.roller.fork
+    root, eye = 0.1 - fork.cheek_length, (2.0 * fork.cheek_width, fork.cheek_height)
+    bush = machine.pivot.bush
+    stiff = elements(bar, root, eye, bush.foundation_modulus * 0.025)
+    both = members["arm"] + members["pivot"]
+    measured("compliance of an arm", both, stiff, rtol=1e-6)
 
 
 def test_the_elastic_follower_stands_on_its_arm():
@@ -216,18 +256,12 @@ def bush(clearance):
 @pytest.mark.parametrize("clearance", [0.0, 30e-6, 60e-6])
 def test_a_pin_in_its_bush_as_a_rigid_beam_on_knots(clearance):
     """By the active set of the guides, at 401 knots; linear, triangular and on both edges."""
-    made, (unit, weight) = bush(clearance), lobatto(401)
-    line = BearingLine(
-        positions=0.0125 * (1.0 + unit), weights=0.0125 * weight,
-        foundation=np.full(401, made.foundation_modulus), play=np.full(401, 0.5 * clearance),
-        compliance=np.zeros((401, 401)), edges=np.array([0, 400]),
-    )  # fmt: skip
-    push, rigid = settle(line, FORCES, 0.0125 * FORCES + COUPLES)
-    pressed = pressed_bush(made, FORCES, COUPLES)
+    seat = bush(clearance)
+    load, tilt = on_knots(seat, FORCES, COUPLES, 401)
+    pressed = pressed_bush(seat, FORCES, COUPLES)
     # the edge of a contact lies between two knots
-    np.testing.assert_allclose(pressed.tilt, rigid[1], rtol=2e-5, atol=1e-12)
-    load = np.abs(push / (0.0125 * weight)[:, None]).max(axis=0)
-    np.testing.assert_allclose(pressed.line_load, load, rtol=2e-5)
+    np.testing.assert_allclose(pressed.tilt, tilt, rtol=2e-5, atol=1e-12)
+    np.testing.assert_allclose(pressed.line_load, np.abs(load).max(axis=0), rtol=2e-5)
 
 
 def test_a_pin_in_its_bush_is_continuous_where_its_contact_changes():
@@ -329,6 +363,64 @@ def test_the_line_of_contact_is_tilted_by_the_twist_of_its_arm(beside):
     assert turn.tilt_compliance == pytest.approx(yields, rel=1e-12)
     if twisted.any():
         assert "twist of the arm" in turn.tilt.sentence(int(np.argmax(twisted)))
+
+
+def on_knots(bush, force, couple, knots=201):
+    """Line loads (knots, n), N/m, and tilt (n,) of a rigid pin, by the active set of the guides."""
+    (unit, weight), half = lobatto(knots), 0.5 * bush.length
+    line = BearingLine(
+        positions=half * (1.0 + unit), weights=half * weight,
+        foundation=np.full(knots, bush.foundation_modulus),
+        play=np.full(knots, 0.5 * bush.clearance),
+        compliance=np.zeros((knots, knots)), edges=np.array([0, knots - 1]),
+    )  # fmt: skip
+    push, rigid = settle(line, force, half * force + couple)
+    return push / (half * weight)[:, None], rigid[1]
+
+
+def test_an_arm_tilts_in_the_bush_of_its_pivot():
+    """4 mm beside the roller: clearance over length, load at the bush's end, its foundation."""
+    solution = trial("with", "0 mm", PIVOT).solution
+    machine, cycle = solution.machine, solution.cycles[0]
+    turn, bar, bush = turn_of_line(cycle), bar_of(solution.numbers), solution.machine.pivot.bush
+    force, load = cycle.loads.normal_force, np.hypot(*cycle.loads.pivot_reaction)
+    turned = on_knots(bush, np.array([1e6]), np.array([1.0]))[1][0]  # flat on the pin
+    beside = force * (0.004 + machine.stem_offset)
+    np.testing.assert_allclose(
+        turn.tilt.twist, (bar.couple_compliance + turned) * beside, rtol=1e-6
+    )
+    assert turn.tilt.guides == pytest.approx(0.03e-3 / 0.025, rel=1e-12)
+    np.testing.assert_allclose(turn.held, 0.0125 * load + 0.004 * force, rtol=1e-12)
+    yields = bar.couple_compliance + turned + slope_of(machine.camshaft).couple
+    assert turn.tilt_compliance == pytest.approx(yields, rel=1e-6)
+    stiff = trial().solution.cycles[0]
+    assert (turn.tilt.greatest > turn_of_line(stiff).tilt.greatest).all()
+
+
+@pytest.mark.parametrize("swing", ["with", "against"])
+def test_edge_pressure_of_the_pivot_over_the_turn(swing, measured):
+    """Reaction and contact in axes at rest, line load on knots, and the pin in its hole.
+
+    The couple of the contact is about the tangent of the cam, in the plane of its normal.
+    """
+    solution = trial(swing, "0 mm", PIVOT).solution
+    cycle, bush = solution.cycles[0], solution.machine.pivot.bush
+    force, _ = forces_in_fixed_axes(solution)
+    size = np.hypot(*force)
+    on_arm = cycle.loads.pivot_reaction * np.array([[1.0], [-1.0]])  # y against the rotation
+    on_arm = -on_arm  # of the pin on the arm, of the arm on its pin
+    normal = force / size
+    pressed = np.sum(normal * on_arm, axis=0)
+    beside = normal[0] * on_arm[1] - normal[1] * on_arm[0]
+    couple = cycle.follower_moment + 0.004 * size
+    lines, _ = on_knots(bush, np.abs(pressed), couple)
+    load = np.hypot(np.abs(lines).max(axis=0), beside / bush.length)
+    k = int(np.argmax(load))
+    pin, bore = SolidBar(206e9, 0.3), Bush(bush.material.E, bush.material.nu, 2.0 * 1.5 / 16.0)
+    edge = cycle.parts.pivot_edge_pressure
+    assert int(np.argmax(edge)) == k
+    one = pin_in_hole(float(load[k]), 0.008, 0.015e-3, pin, bore)
+    measured("edge pressure of a pivot", edge[k], one.peak_pressure, rtol=5e-3)
 
 
 # --- Demands ------------------------------------------------------------------------------------
