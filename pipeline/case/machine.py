@@ -235,7 +235,7 @@ class Machine(Displayed):
     @property
     def arm_bar(self) -> ArmBar | None:
         """Arm as a beam; None of a stem, and of an arm that is not described."""
-        return ArmBar.of(self.arm, self.follower, self.mass)
+        return ArmBar.of(self.arm, self.follower, self.mass, self.spring.link)
 
     @property
     def tilting(self) -> FollowerTilt:
@@ -389,8 +389,8 @@ class Machine(Displayed):
         """Of the bush of a pivot at the end of its arm, m/N; None without one."""
         if self.arm is None or self.pivot is None or self.pivot.bush is None:
             return None
-        bush = self.pivot.bush
-        return self.arm.pivot_share**2 / (bush.foundation_modulus * bush.length)
+        bush, share = self.pivot.bush, self.arm.pivot_share(self.arm.held(self.spring.link))
+        return share**2 / (bush.foundation_modulus * bush.length)
 
     @property
     def axial_stiffness(self) -> float:

@@ -43,7 +43,7 @@ from camwright.pipeline.follower.shaft_strength import (
 
 _ARM = FollowerArm.table
 _BREAKS = "a broken arm drops its roller into the cam"
-_VALUES = (*given.LENGTH, "follower.arm.spring_distance", "follower.arm.*_notch")
+_VALUES = (*given.LENGTH, "follower.arm.*_notch")
 _LEVERS = (
     levers.one("follower.arm.depth", most=2.0),
     levers.one("follower.arm.width", most=2.0),
@@ -72,7 +72,7 @@ def _arm_of(numbers: Numbers) -> FollowerArm:
 def bar_of(numbers: Numbers) -> ArmBar | None:
     """Arm of a case as a bar; None where it is not described."""
     case = numbers.known_case
-    return ArmBar.of(case.follower.arm, case.facing, case.follower.mass)
+    return ArmBar.of(case.follower.arm, case.facing, case.follower.mass, case.spring.link)
 
 
 def arm_forces(cam: LoadedCam) -> ArmForces:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import cos
 from typing import Annotated, ClassVar, Literal
 
 from camwright.geometry.arm_path import Arm, ArmContour, ArmPath
@@ -15,6 +16,7 @@ from camwright.pipeline.base.quantities import In, Known, Length, Part, Resolved
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.camshaft_loads import Notch, Surface
+from camwright.pipeline.follower.spring_link import SpringLink
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +55,7 @@ class FollowerArm(Part):
         "bore": "the arm is solid at its pivot",
         "hub": "depth",
         "roller_hub": "depth",
+        "spring_distance": "that of `spring.link`, else the pivot, where it bends the arm most",
     }
 
     centre_distance: Annotated[Length, Known("drawing", "90 mm")]
@@ -76,10 +79,9 @@ class FollowerArm(Part):
     )
     """distance of the middle of the arm from that of the roller along the cam axis"""
     spring_distance: Annotated[
-        float, In("mm", at_least=0, at_most=10_000), Known("drawing", "60 mm")
-    ] = 0.0
-    """distance from the pivot at which the spring acts on the arm; at the pivot it bends the arm
-    most"""
+        float | None, In("mm", at_least=0, at_most=10_000), Known("drawing", "60 mm")
+    ] = None
+    """distance from the pivot at which the spring acts on the arm"""
     material: Annotated[MadeOf | None, Known("drawing", "c45")] = None
     surface: Annotated[Surface, Known("drawing")] = "machined"
     """surface finish of the arm"""
@@ -107,10 +109,14 @@ class FollowerArm(Part):
         """Whether the section of the arm is stated, by one of its dimensions at least."""
         return self.width is not None or self.depth is not None
 
-    @property
-    def pivot_share(self) -> float:
-        """Force on the pivot per force across the end of the arm, held where the spring acts."""
-        held = self.spring_distance
+    def held(self, link: SpringLink | None) -> float:
+        """Distance from the pivot at which the spring acts, along the arm, m."""
+        if self.spring_distance is not None:
+            return self.spring_distance
+        return 0.0 if link is None else max(link.arm_radius * cos(link.arm_angle), 0.0)
+
+    def pivot_share(self, held: float) -> float:
+        """Force on the pivot per force across the end of the arm, held at a distance, m."""
         return abs(self.length / held - 1.0) if held else 1.0
 
     @property

@@ -17,6 +17,7 @@ from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.pin_strength import support_force
 from camwright.pipeline.follower.roller_parts import Fork, Pin
 from camwright.pipeline.follower.shaft_strength import equivalent_stress
+from camwright.pipeline.follower.spring_link import SpringLink
 
 _ODD = np.arange(1.0, 80.0, 2.0)  # terms of the series of a twisted rectangle
 _EQUAL_AREA = 0.808  # diameter of a round section over the root of a rectangle's area
@@ -154,6 +155,7 @@ class ArmBar:
     Parameters
     ----------
     arm : FollowerArm    with its width, depth, material and notch factors
+    held : float         distance from the pivot at which the spring acts, m
     end_share : float    of the mass of roller, pin and fork in that at the end; the rest is a
                          uniform bar
     pin, fork : or None  of the roller; None: not described, or a face
@@ -165,33 +167,35 @@ class ArmBar:
     depth: float
     material: Material
     arm: FollowerArm
+    held: float
     end_share: float
     pin: Pin | None = None
     fork: Fork | None = None
     holds_pin: bool = True
 
     @classmethod
-    def of(cls, arm: FollowerArm | None, end: FollowerKind, mass: float) -> ArmBar | None:
+    def of(
+        cls, arm: FollowerArm | None, end: FollowerKind, mass: float, link: SpringLink | None
+    ) -> ArmBar | None:
         """Bar of an arm; None of a stem, and of an arm without section or material.
 
-        mass : float   that moves with the end, kg
+        Parameters
+        ----------
+        end : FollowerKind   roller or face on the arm
+        mass : float         that moves with it, kg
+        link : SpringLink    None: of another spring
         """
         if arm is None or arm.width is None or arm.depth is None or arm.material is None:
             return None
         masses = sum(each for each in end.moving.masses.values() if each is not None)
         pin, fork = end.parts.get("pin"), end.parts.get("fork")
         return cls(
-            *(arm.length, arm.width, arm.depth, arm.material, arm),
+            *(arm.length, arm.width, arm.depth, arm.material, arm, arm.held(link)),
             min(masses / mass, 1.0),
             pin if isinstance(pin, Pin) else None,
             fork if isinstance(fork, Fork) else None,
             "pin" in end.parts,
         )
-
-    @property
-    def held(self) -> float:
-        """Distance from the pivot at which the spring acts, m."""
-        return self.arm.spring_distance
 
     @property
     def pivot(self) -> tuple[ArmSection, ...]:

@@ -30,6 +30,7 @@ from camwright.pipeline.follower.guide_reactions import Guide, lobatto
 from camwright.pipeline.follower.pivot_bush import pressed_bush
 from camwright.pipeline.follower.roller_parts import Fork, Pin
 from camwright.pipeline.follower.shaft_strength import slope_of
+from camwright.pipeline.follower.spring_link import SpringLink
 from camwright.pipeline.preview import preview_case
 
 STEEL = Material(
@@ -179,7 +180,15 @@ def test_an_arm_bends_as_its_beam_elements(held, forked, measured):
     pin = Pin(diameter=0.017, span=0.023, material=STEEL)
     fork = Fork(cheek_width=0.005, cheek_height=0.022, cheek_length=0.026, material=STEEL)
     bar = ArmBar(
-        0.1, 0.028, 0.024, STEEL, arm, 0.5, pin if forked else None, fork if forked else None
+        0.1,
+        0.028,
+        0.024,
+        STEEL,
+        arm,
+        arm.held(None),
+        0.5,
+        pin if forked else None,
+        fork if forked else None,
     )
     root = 0.1 - 0.026 if forked else 0.1
     # round-off of the short elements
@@ -191,7 +200,7 @@ def test_an_arm_stands_on_the_bush_of_its_pivot(held, measured):
     machine = trial("with", "0 mm", PIVOT).solution.machine
     arm = replace(machine.arm, spring_distance=held)
     members = replace(machine, arm=arm).compliances
-    bar, fork = replace(machine.arm_bar, arm=arm), machine.roller.fork
+    bar, fork = replace(machine.arm_bar, held=held), machine.roller.fork
     root, eye = 0.1 - fork.cheek_length, (2.0 * fork.cheek_width, fork.cheek_height)
     bush = machine.pivot.bush
     stiff = elements(bar, root, eye, bush.foundation_modulus * 0.025)
@@ -329,6 +338,17 @@ def test_sections_carry_what_a_free_body_of_the_arm_needs(swing, spring):
         if not section.cheeks:
             twisted = cam.follower_moment * np.sum(outwards * force, axis=0) / np.hypot(*force)
             np.testing.assert_allclose(loads.twisting, twisted, rtol=1e-9)
+
+
+def test_a_linked_spring_presses_the_arm_at_its_end():
+    """Along the arm, unless the case states the place; a spring without a link at the pivot."""
+    link = SpringLink(arm_radius=0.06, fixed_radius=0.09, fixed_angle=1.0, arm_angle=0.5)
+    arm = bar_of(trial().solution.numbers).arm
+    assert replace(arm, spring_distance=None).held(link) == pytest.approx(0.06 * np.cos(0.5))
+    assert replace(arm, spring_distance=0.03).held(link) == 0.03
+    behind = replace(link, arm_angle=2.5, fixed_angle=3.0)
+    assert replace(arm, spring_distance=None).held(behind) == 0.0
+    assert replace(arm, spring_distance=None).held(None) == 0.0
 
 
 def test_an_arm_beside_its_roller_is_twisted():
