@@ -419,7 +419,7 @@ class Machine(Displayed):
         if self.arm is None or self.pivot is None:
             return None
         pivot = self.pivot.about(self.arm, self.mass, self.cam.prime_radius)
-        return replace(pivot, friction=self.friction.nominal[0])
+        return replace(pivot, friction=self.friction.nominal[0], spring=self.spring.shape)
 
     @property
     def system(self) -> FollowerSystem:

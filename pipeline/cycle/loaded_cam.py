@@ -331,7 +331,8 @@ class LoadedCam:
     @cached_property
     def pivot(self) -> ArmPivot | None:
         """Pivot of an arm with what acts about it; None without one."""
-        return pivot_of(self.numbers)
+        pivot = pivot_of(self.numbers)
+        return pivot and replace(pivot, spring=self.spring_shape)
 
     def _about(self, pivot: ArmPivot, added: Value = 0.0) -> PivotBalance:
         """Equilibrium about a pivot with its friction, and an added force of the spring, N."""

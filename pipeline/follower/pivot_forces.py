@@ -16,6 +16,7 @@ from camwright.geometry.arm_path import Arm
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base.external_force import STANDARD_GRAVITY
+from camwright.pipeline.follower.spring_kinds import SpringShape
 
 _QUARTER_TURN = 0.5 * np.pi
 _LEAST_FORCE = 1.0  # N, of a contact force that a jam index is over
@@ -93,6 +94,7 @@ class ArmPivot:
     load_distance, load_angle : float   likewise, of the point at which the external force acts
                             square to the line from the pivot
     load_moment : float     external moment towards the cam, N m
+    spring : SpringShape    with its resultant on the arm; None: at the reference point
 
     References
     ----------
@@ -111,6 +113,7 @@ class ArmPivot:
     load_distance: Value
     load_angle: Value
     load_moment: Value
+    spring: SpringShape | None = None
 
     def applied(self, external: Value, travel: Value) -> Array:
         """Weight, external force and moment reduced to the reference point, N, towards the cam.
@@ -140,7 +143,7 @@ class ArmPivot:
     ) -> Pull:
         """All forces on the arm but those of contact and pivot, that of its inertia included.
 
-        The spring pulls at the reference point against its travel.
+        A spring without a shape pulls at the reference point against its travel.
 
         Parameters
         ----------
@@ -148,7 +151,8 @@ class ArmPivot:
         velocity, acceleration : array (..., n)   of the reference point, m/s and m/s2
         """
         cos, sin = np.cos(self.load_angle), self.sense * np.sin(self.load_angle)
-        along, across = -spring - external * cos, -external * sin
+        pulled = self._of_spring(spring, travel)
+        along, across = pulled.along - external * cos, pulled.across - external * sin
         cos, sin = np.cos(self.mass_angle), np.sin(self.mass_angle)
         radius = self.mass * self.mass_distance
         turning, outward = acceleration / self.length, (velocity / self.length) ** 2
@@ -159,6 +163,14 @@ class ArmPivot:
             down = self._from_vertical(travel, 0.0)
             along, across = along - weight * np.cos(down), across - weight * np.sin(down)
         return Pull(along, across)
+
+    def _of_spring(self, force: Value, travel: Value) -> Pull:
+        """Resultant of the spring of a force at the reference point, N, on the arm."""
+        if self.spring is None:
+            return Pull(np.asarray(-force), np.asarray(0.0 * force))
+        lift = self.length * (_QUARTER_TURN - self.start - self.sense * travel)
+        along_arm, outwards = self.spring.pull_on_arm(np.asarray(force), np.asarray(lift))
+        return Pull(outwards, -self.sense * along_arm)
 
     def balanced(
         self, required: Array, pressed: Pressed, pull: Pull, direction: Value

@@ -117,6 +117,17 @@ class SpringShape(Part, ABC):
         """Travel of its own ends per lift (...): force on the follower over its own."""
         return 1.0
 
+    def pull_on_arm(self, force: Array, lift: Array) -> Array:
+        """Resultant of the spring on an arm (2, ...), N, along it from the pivot and outwards.
+
+        Parameters
+        ----------
+        force : array (...)   at the reference point, N, positive towards the cam
+        lift : array (...)    m
+        """
+        held = np.asarray(force + 0.0 * lift)
+        return np.stack([0.0 * held, -held])
+
     def on_arm(self, length: float) -> Self:  # noqa: ARG002
         """As it acts on the arc of an arm of a length, m."""
         return self
@@ -511,6 +522,10 @@ class PivotSpring(TorsionWire):
     def reach(self) -> float:
         """Lift up to which the law holds, m: half a turn of the arm."""
         return float(np.pi * self.length)
+
+    def pull_on_arm(self, force: Array, lift: Array) -> Array:
+        """Zero: a moment alone."""
+        return 0.0 * super().pull_on_arm(force, lift)
 
     def within(self, lift: Array) -> Rise:
         """Rise of a force that is linear in the lift."""

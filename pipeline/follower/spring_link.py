@@ -239,13 +239,9 @@ class LinkedSpring(SpringShape):
         )
 
     def pull_on_arm(self, force: Array, lift: Array) -> Array:
-        """Resultant of the spring on the arm (2, ...), N, along it from the pivot and outwards.
-
-        Parameters
-        ----------
-        force : array (...)   force on the arc of the arm, N, positive towards the cam
-        """
+        """Along the line of its ends; see `SpringShape`."""
         on_arm, fixed = self.link.ends(lift / self.link.length)
         apart = on_arm - fixed
         towards = -self.link.sense * apart / np.sqrt((apart**2).sum(axis=0))
-        return np.asarray(force / self.lever(lift) * towards)
+        size = force / self.lever(lift)
+        return np.stack([size * each for each in towards])

@@ -21,6 +21,8 @@ from camwright.pipeline.follower.follower_forces import (
 )
 from camwright.pipeline.follower.pivot_forces import ArmPivot, Pressed
 from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.follower.spring_kinds import PivotSpring
+from camwright.pipeline.follower.spring_link import SpringLink
 
 WITH, AGAINST = 1.0, -1.0
 ARM, START, STROKE, SPEED = 0.080, np.radians(35.0), 0.080 * np.radians(15.0), 60.0
@@ -84,16 +86,48 @@ def cross(a, b):
     return a[0] * b[1] - a[1] * b[0]
 
 
-def balance(sense, theta, pushed, friction=0.15):
+LINK = SpringLink(
+    arm_radius=0.05, fixed_radius=0.09, fixed_angle=np.radians(60.0), arm_angle=np.radians(8.0),
+    rate=40e3, preload=400.0, length=ARM,
+)  # fmt: skip
+
+
+def springs(sense, theta, kind):
+    """Forces of the spring on the arm with their points, and its moment towards the cam."""
+    if kind == "coil":
+        force = -(PRELOAD + RATE * lifted(theta)) * outwards(sense, theta, ARM, 0.0)
+        return [(point(sense, theta, ARM, 0.0), force)], 0.0
+    if kind == "pivot":
+        return [], 20.0 + 90.0 * lifted(theta) / ARM
+    held = START + LINK.fixed_angle
+    fixed = np.array([CENTRES - 0.09 * np.cos(held), sense * 0.09 * np.sin(held)])
+    end = point(sense, theta, 0.05, np.radians(8.0))
+    start = point(sense, 0.0, 0.05, np.radians(8.0))
+    size = 400.0 + 40e3 * (np.hypot(*(start - fixed)) - np.hypot(*(end - fixed)))
+    return [(end, size * (end - fixed) / np.hypot(*(end - fixed)))], 0.0
+
+
+def spring_of(kind):
+    if kind == "coil":
+        return Spring(rate=RATE, preload=PRELOAD)
+    own = {"link": LINK}
+    if kind == "pivot":
+        turned = PivotSpring(moment=20.0, angular_rate=90.0, length=ARM)
+        own = {"kind": "torsion_pivot", "torsion_pivot": turned}
+    return Spring(rate=1.0, preload=1.0, **own).with_derived()
+
+
+def balance(sense, theta, pushed, friction=0.15, kind="coil"):
     """Contact force and reaction of the pivot at a cam angle, of forces and moments alone."""
     turned = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
     normal = turned @ pushed.local_frame(np.array([theta])).normal[:, 0]
     at = np.array([CENTRES, 0.0])
+    closing, couple = springs(sense, theta, kind)
     roller, centre = point(sense, theta, ARM, 0.0), point(sense, theta, 0.05, np.radians(25.0))
     acted = point(sense, theta, 0.06, np.radians(-30.0))
     up = np.array([np.cos(np.radians(40.0)), np.sin(np.radians(40.0))])
     forces = [
-        (roller, -(PRELOAD + RATE * lifted(theta)) * outwards(sense, theta, ARM, 0.0)),
+        *closing,
         (acted, -FORCE * outwards(sense, theta, 0.06, np.radians(-30.0))),
         (centre, -MASS * STANDARD_GRAVITY * up),
     ]
@@ -103,7 +137,7 @@ def balance(sense, theta, pushed, friction=0.15):
     way = 1.0 if np.sin(theta) > 0.0 else -1.0
 
     # the outward swing is clockwise with the rotation of the cam
-    known = -sense * sum(cross(p - at, f) for p, f in forces) - 1.5 - turning
+    known = -sense * sum(cross(p - at, f) for p, f in forces) - 1.5 - turning - couple
     lever, reaction = -sense * cross(roller - at, normal), np.zeros(2)
     for _ in range(60):
         contact = (way * friction * 0.010 * np.hypot(*reaction) - known) / lever
@@ -111,12 +145,14 @@ def balance(sense, theta, pushed, friction=0.15):
     return contact, *reaction
 
 
+@pytest.mark.parametrize("kind", ["coil", "pivot", "link"])
 @pytest.mark.parametrize("sense", [WITH, AGAINST])
-def test_contact_and_reaction_balance_the_forces_at_rest(sense):
-    pushed = cam(sense)
-    loads = follower_loads(pushed.pitch, system(sense), SPEED, THETA)
+def test_contact_and_reaction_balance_the_forces_at_rest(sense, kind):
+    pushed, spring = cam(sense), spring_of(kind)
+    held = system(sense, spring=spring.shape)
+    loads = follower_loads(pushed.pitch, replace(held, spring=spring), SPEED, THETA)
     for k, theta in enumerate(THETA):
-        contact, along, across = balance(sense, theta, pushed)
+        contact, along, across = balance(sense, theta, pushed, kind=kind)
         assert contact > 50.0
         size = np.hypot(along, across)
         assert loads.normal_force[k] == pytest.approx(contact, rel=1e-8)
