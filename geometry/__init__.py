@@ -19,6 +19,7 @@ In the order of the calculation:
 | `eccentric`         | eccentric disc and its slider-crank         | l1, l2, m; phi, rad          |
 | `linkage`           | slider-crank                                | r, l, m                      |
 | `energy`            | lift from cam torque by stored energy       | T, N m; E, J; P, N; k, N/m   |
+| `rocker_lift`       | lift of a valve by a rocker, and back       | v, s, m; r, -                |
 | `follower_path`     | path of a follower point in the cam frame   | d, e, m                      |
 | `pitch_curve`       | path of the roller centre, pressure angle   | alpha, rad; kappa, 1/m       |
 | `cam_size`          | smallest radius, best offset, face width    | r, e, m                      |

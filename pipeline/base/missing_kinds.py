@@ -50,8 +50,8 @@ MISSING_KINDS = (
     MissingKind(
         "a rocker, finger or lever, or an arm with a face", "follower",
         ("rocking", "rocker", "rocker_arm", "finger", "lever"),
-        'kind = "oscillating" with a roller',
-        keys=("rocker", "rocker_arm", "lever"),
+        'kind = "oscillating" with a roller, and [rocker] for its second arm',
+        keys=("rocker_arm", "lever"),
     ),
     MissingKind(
         "a knife-edge (pointed) follower", "follower",
@@ -71,7 +71,7 @@ MISSING_KINDS = (
         keys=("yoke", "second_roller"),
     ),
     MissingKind(
-        "a follower with lash, a hydraulic element or a rocker in its train", "follower",
+        "a follower with a hydraulic element, or lash without [rocker]", "follower",
         ("hydraulic", "lash", "valve_lash", "tappet_clearance", "pushrod", "push_rod", "bucket"),
         "the masses and forces reduced to the follower",
         keys=("lash", "pushrod", "hydraulic"),

@@ -26,6 +26,7 @@ In the order of the calculation:
 | `keys`                 | every key: meaning, unit, range, default     |                  |
 | `added_tables`         | tables that complete a case; missing keys    |                  |
 | `arm_tables`           | scope and start angle of an oscillating arm  | psi, rad         |
+| `rocker_tables`        | what the output of a rocker carries          | kg; N            |
 | `case_file`            | reading of a case file                       |                  |
 | `case_values`          | values by dotted key; the case with others   |                  |
 | `speed_notes`          | a measured speed: its wheel and cycle        |                  |

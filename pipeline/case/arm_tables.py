@@ -53,7 +53,9 @@ def with_arm(tables: Tables) -> Tables:
     tables = tables | {"scope": stated}
     if not isinstance(arm, dict):
         return tables
-    if isinstance(lift := tables.get("lift"), dict):
+    rocker = tables.get("rocker")
+    of_output = isinstance(rocker, dict) and rocker.get("lift") == "output"
+    if isinstance(lift := tables.get("lift"), dict) and not of_output:
         tables = tables | {"lift": _as_arcs(lift, arm)}
     if "inertia" in arm:
         if "mass" in follower:

@@ -16,6 +16,7 @@ from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.figures import SERIES, Curve, DrawnAxes, Panel, closed, over, plotted
 from camwright.geometry.lift import Lift
+from camwright.geometry.rocker_lift import RockerLinkage
 from camwright.pipeline.base.columns import data_frame
 from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.files import hash_inputs
@@ -49,6 +50,7 @@ from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.guide_reactions import GuidePair
+from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.torque.period import FOUR_STROKE, Period
@@ -113,6 +115,8 @@ class Case(Displayed, Section):
     """roller of the follower"""
     follower: Annotated[Follower, Used("lift, cycle, checks")]
     """follower, with its stem or its arm"""
+    rocker: Annotated[Table[Rocker] | None, Used("lift")] = None
+    """second arm that moves a valve or another output, with lash"""
     guides: Annotated[Table[GuidePair], Used("cycle, checks of the guides")]
     """two guides of the stem: A next to the cam, B beyond"""
     lubricant: Annotated[Table[Lubricant] | None, Used("oil film")] = None
@@ -323,6 +327,14 @@ class Case(Displayed, Section):
         if design is None:
             return 0.0
         return self.follower.spring_share * design.mass * self.spring.lever_at_rest**2
+
+    @property
+    def rocker_linkage(self) -> RockerLinkage | None:
+        """Arms of the rocker with its lash; None without one."""
+        arm = self.follower.arm
+        if self.rocker is None:
+            return None
+        return self.rocker.linkage(None if arm is None else arm.length)
 
     @property
     def facing(self) -> FollowerKind:

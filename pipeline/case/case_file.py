@@ -27,6 +27,7 @@ from camwright.pipeline.case.error_text import MissingKeysError, Written, refusa
 from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.renamed_keys import with_new_keys
+from camwright.pipeline.case.rocker_tables import with_rocker
 from camwright.pipeline.case.scope_section import with_every_name, with_stand_ins
 from camwright.pipeline.case.section import named
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
@@ -100,7 +101,8 @@ def case_of(data: Tables, folder: Path | None = None) -> Case:
 
 def resolved(data: Tables, folder: Path | None = None) -> Tables:
     """Tables of a case with added tables, cards, and stand-ins for parts out of scope."""
-    tables = with_stand_ins(with_arm(with_every_name(with_new_keys(with_added(data)))))
+    named_tables = with_every_name(with_new_keys(with_added(data)))
+    tables = with_stand_ins(with_rocker(with_arm(named_tables)))
     fill_cards(tables, folder)
     return tables
 

@@ -186,6 +186,11 @@ def _start(case: Case) -> Iterator[Rule]:
         raise InputError("mechanism.gear_ratio", "missing", f"{limit} of {cycle} in a cam turn")
     if case.valve_train is not None and case.follower.arm is not None:
         raise InputError("valve_train", "a table", "left out with an arm")
+    if case.rocker_linkage is not None and case.rocker is not None and case.rocker.lift == "output":
+        if case.lift is None:
+            raise InputError("rocker.lift", "output", "follower without [lift]")
+        if case.valve_train is not None:
+            raise InputError("valve_train", "a table", 'left out with rocker.lift = "output"')
     if isinstance(case.lift, LiftSegments):
         motion_of(case.lift)
     elif case.valve_train is not None:

@@ -19,6 +19,7 @@ from camwright.geometry.lift_fit import (
     measured_lift,
     overshoot,
 )
+from camwright.geometry.rocker_lift import RockerLinkage
 from camwright.pipeline.case.lift_section import (
     GivenLift,
     LiftEccentric,
@@ -29,6 +30,7 @@ from camwright.pipeline.case.lift_section import (
 )
 from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.torque.angle_trace import read_trace
 
 
@@ -44,6 +46,12 @@ class LiftSource(Protocol):
     @property
     def follower(self) -> Follower: ...
 
+    @property
+    def rocker(self) -> Rocker | None: ...
+
+    @property
+    def rocker_linkage(self) -> RockerLinkage | None: ...
+
     def path(self, name: str) -> Path: ...
 
 
@@ -54,13 +62,21 @@ def eccentric_of(case: LiftSource, section: LiftEccentric) -> Eccentric:
 
 
 def given_lift(case: LiftSource) -> Lift:
-    """Lift of a case that states it.
+    """Lift of the follower of a case that states it, or that of the output of its rocker.
 
     Raises
     ------
     InputError
-        If the lift does not close, has gaps or is negative.
+        If the lift does not close, has gaps or is negative, or a rocker does not reach it.
     """
+    lift, rocker, linkage = _stated_lift(case), case.rocker, case.rocker_linkage
+    if rocker is None or linkage is None or rocker.lift == "follower":
+        return lift
+    return linkage.follower_lift(lift, rocker.ramp_angle)
+
+
+def _stated_lift(case: LiftSource) -> Lift:
+    """Lift as the case states it, of follower or output."""
     section = case.lift
     if isinstance(section, LiftSegments):
         return motion_of(section).lift()
@@ -95,7 +111,7 @@ def lift_origin(case: LiftSource) -> str:
         )
     if isinstance(section, LiftPoints):
         angles, lifts = _points(section)
-        away, place = overshoot(angles, lifts, given_lift(case), level=True)
+        away, place = overshoot(angles, lifts, _stated_lift(case), level=True)
         over = f"; between equal points it overshoots by {1e3 * abs(away):.3g} mm at "
         over += f"{np.degrees(place):.4g} deg"
         return "the lift is a spline through points" + over * (abs(away) > NEGATIVE_TOLERANCE)

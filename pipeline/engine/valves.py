@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.monotone_cubic import MonotoneCubic
+from camwright.geometry.rocker_lift import RockerLinkage
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftPoint
 
 # At equal pressures the slope of the nozzle flow is infinite; below this relative difference the
@@ -108,11 +109,17 @@ def nozzle_flow(
     return pressure_up / sqrt(gas_constant * temperature_up) * opened * sqrt(speed * straight)
 
 
+def rocker_of(engine: CylinderEngine) -> RockerLinkage:
+    """Rocker between the cam and each valve."""
+    return RockerLinkage.of_ratio(engine.rocker_ratio)
+
+
 def tappet_force(engine: CylinderEngine, valve: Valve, theta: ArrayLike) -> Array:
     """Force of the rocker on the cam while the valve is open, else zero, N."""
     lift = valve.lift(theta)
     spring = engine.valve_spring_rate * lift + engine.valve_spring_preload
-    return np.where(lift > 0.0, engine.rocker_ratio * spring, 0.0)
+    rocker = rocker_of(engine)
+    return np.where(lift > 0.0, rocker.ratio(rocker.follower(lift)) * spring, 0.0)
 
 
 def valve_train_torque(engine: CylinderEngine, theta: ArrayLike) -> Array:
@@ -121,8 +128,8 @@ def valve_train_torque(engine: CylinderEngine, theta: ArrayLike) -> Array:
     Without friction the rocker ratio cancels: it raises the force on the cam by as much as it
     reduces the cam lift.
     """
-    total = np.zeros(np.shape(theta))
+    total, rocker = np.zeros(np.shape(theta)), rocker_of(engine)
     for valve in (intake_valve(engine), exhaust_valve(engine)):
-        cam_travel_rate = valve.lift(theta, 1) / engine.rocker_ratio
+        cam_travel_rate = valve.lift(theta, 1) / rocker.ratio(rocker.follower(valve.lift(theta)))
         total = total - tappet_force(engine, valve, theta) * cam_travel_rate
     return total

@@ -123,6 +123,9 @@ def lift_columns(case: Case, lift: Lift) -> dict[Column, Array]:
     if angle is not None:
         words = "Angle at the pivot from the line to the cam axis to the arm"
         columns[Column("arm_angle", "deg", words)] = angle
+    if case.rocker_linkage is not None:
+        words = "Lift of the output of the rocker, beyond the lash"
+        columns[Column("output_lift", "mm", words)] = case.rocker_linkage.opening(lift(theta))
     return columns
 
 

@@ -34,6 +34,7 @@ from camwright.pipeline.engine.wheel_calibration import WheelReference
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
 from camwright.pipeline.follower.flat_face import FollowerFace
+from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import GasSpring, PivotSpring, TorsionSpring
 from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
@@ -91,6 +92,7 @@ def every_part() -> dict[type[Part], Part]:
     rest = (
         steel,
         *(link, LinkedSpring(link=link), PivotSpring(moment=1.0, angular_rate=20.0)),
+        Rocker(ratio=1.5),
         AxialCrown(kind="circular", radius=0.5),
         FollowerFace(width=0.02, depth=0.01, thickness=0.005, material=steel),
         Crankshaft(inertia=0.01),

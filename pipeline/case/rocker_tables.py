@@ -1,0 +1,50 @@
+"""Rocker in the tables of a case: mass and force of its output, reduced to the follower."""
+
+from __future__ import annotations
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
+from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.toml_text import Tables
+from camwright.pipeline.follower.rocker import Rocker
+
+_MASS, _FORCE = "mass", "force"
+
+
+def with_rocker(tables: Tables) -> Tables:
+    """Tables of a case, with what the output of a rocker carries reduced to the follower.
+
+    The mass is added to that of the follower by the square of the ratio at zero lift, a force to
+    its external force by the ratio, which is constant.
+
+    Raises
+    ------
+    InputError
+        If a value is wrong, or a force is stated on a rocker without a constant ratio.
+    """
+    stated, follower = tables.get("rocker"), tables.get("follower")
+    carried = {_MASS, _FORCE}
+    if not isinstance(stated, dict) or not isinstance(follower, dict) or not carried & set(stated):
+        return tables
+    table = {key: value for key, value in stated.items() if key not in carried}
+    rocker = read_part(Rocker, table, Rocker.table)
+    arm = follower.get("arm")
+    length = units.parse(arm.get("length"), "m", "") if isinstance(arm, dict) else None
+    ratio = float(rocker.linkage(length).ratio(0.0))
+    reduced = dict(follower)
+    if _MASS in stated and "mass" in follower:
+        mass = units.parse(stated[_MASS], "kg", "rocker.mass")
+        if not mass > 0.0:
+            raise InputError("rocker.mass", str(stated[_MASS]), "> 0 kg")
+        total = units.parse(follower["mass"], "kg", "follower.mass") + mass * ratio**2
+        reduced["mass"] = units.format(total, "g")
+    if _FORCE in stated:
+        force = units.parse(stated[_FORCE], "N", "rocker.force")
+        if rocker.ratio is None or "external_force_file" in follower:
+            limit = "left out without a constant ratio, or with follower.external_force_file"
+            raise InputError("rocker.force", str(stated[_FORCE]), limit)
+        own_force = units.parse(
+            follower.get("external_force", "0 N"), "N", "follower.external_force"
+        )
+        reduced["external_force"] = units.format(own_force + force * ratio, "N")
+    return tables | {"rocker": table, "follower": reduced}

@@ -1,0 +1,143 @@
+"""Rocker of a follower: a second arm that moves a valve or another output, with lash."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
+from camwright.geometry.rocker_lift import RockerArm, RockerLinkage
+from camwright.pipeline.base.quantities import (
+    In,
+    Known,
+    Length,
+    Part,
+    Positive,
+    Resolved,
+    TableSource,
+)
+from camwright.pipeline.base.source import NO_SOURCE
+from camwright.pipeline.base.units import shown
+
+_Raised = Annotated[float, In("deg", at_least=-75, at_most=75)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rocker(Part):
+    """Second arm on the pivot of the follower's arm, or of a rocker that a stem moves.
+
+    Of a constant ratio, or with the true geometry of its arms, whose ends slide across straight
+    lines. The lash is at the output.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds, or neither or both of ratio and length are stated.
+    """
+
+    table: ClassVar[str] = "rocker"
+    resolved: ClassVar[Mapping[str, Resolved]] = {
+        "mass": Resolved(
+            "> 0 kg",
+            "mass that the output moves; `follower.mass` contains it from then on, by the square of"
+            " the ratio at zero lift",
+            Known("weighed, or drawing", "90 g"),
+        ),
+        "force": Resolved(
+            "N",
+            "constant force on the output against its lift, of a rocker of constant `ratio`;"
+            " `follower.external_force` contains it from then on",
+            Known("process, or measured", "200 N"),
+        ),
+    }
+    defaults: ClassVar[Mapping[str, str]] = {
+        "ratio": "by `length` and `angle`",
+        "length": "by `ratio`, constant",
+        "input_length": "that of `[follower.arm]`",
+        "ramp": "without lash there is none",
+    }
+
+    ratio: Annotated[Positive | None, Known("drawing", 1.5)] = None
+    """lift of the output over that of the follower, constant"""
+    length: Annotated[Length | None, Known("drawing", "40 mm")] = None
+    """length of the second arm from the pivot to its end, in place of `ratio`"""
+    angle: Annotated[_Raised, Known("drawing", "-10 deg")] = 0.0
+    """angle of the second arm at zero lift from square to the line of the output, positive in its
+    outward stroke"""
+    input_length: Annotated[Length | None, Known("drawing", "30 mm")] = None
+    """length of the arm that a stem moves, with `length`"""
+    input_angle: Annotated[_Raised, Known("drawing", "-10 deg")] = 0.0
+    """angle of the arm that a stem moves at zero lift, likewise"""
+    side: Annotated[Literal["opposite", "same"], Known("drawing", "opposite")] = "opposite"
+    """side of the pivot on which the second arm lies, seen from the first"""
+    lash: Annotated[
+        float, In("mm", at_least=0, at_most=100), Known("setting of the engine", "0.2 mm")
+    ] = 0.0
+    """clearance at the output, taken up before it moves"""
+    lift: Annotated[Literal["follower", "output"], Known("own choice", "output")] = "follower"
+    """whose lift `[lift]` states"""
+    ramp: Annotated[
+        float | None, In("deg", above=0, at_most=180), Known("own choice", "30 deg")
+    ] = None
+    """cam angle over which the cam takes up the lash, and gives it back, of a stated lift of the
+    output"""
+    source: TableSource = NO_SOURCE
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (self.ratio is None) == (self.length is None):
+            value = "missing" if self.ratio is None else f"{self.ratio:g}"
+            raise InputError("rocker.ratio", value, "one of ratio and length")
+        if self.length is None:
+            for name in ("angle", "input_angle"):
+                if stated := getattr(self, name):
+                    raise InputError(
+                        f"rocker.{name}", shown(stated, "deg"), "left out with a constant ratio"
+                    )
+        if self.lash > 0.0 and self.lift == "output" and self.ramp is None:
+            raise InputError("rocker.ramp", "missing", "given with a lash and a lift of the output")
+
+    def linkage(self, arm_length: float | None) -> RockerLinkage:
+        """Its two arms with the lash; arm_length: of the follower's arm, m; None: of a stem.
+
+        Raises
+        ------
+        InputError
+            If the length of the arm that a stem moves is missing, or stated beside that of an arm.
+        """
+        if self.ratio is not None and self.input_length is None:
+            return RockerLinkage.of_ratio(self.ratio, self.lash)
+        if self.length is None or (self.input_length is None) == (arm_length is None):
+            value = "missing" if self.input_length is None else shown(self.input_length, "mm")
+            limit = "given with rocker.length and a follower on a stem alone"
+            raise InputError("rocker.input_length", value, limit)
+        first = (
+            RockerArm(self.input_length or 0.0, self.input_angle)
+            if arm_length is None
+            else RockerArm(arm_length)
+        )
+        return RockerLinkage(first, RockerArm(self.length, self.angle), self.lash)
+
+    def push_on_arm(self, force: Array, lift: Array, arm_length: float) -> Array:
+        """Force of the output on the rocker (2, ...), N, along the arm from the pivot and outwards.
+
+        The second arm is in line with the first at zero swing and at any other, on its side.
+
+        Parameters
+        ----------
+        force : array (...)   on the output against its lift, N
+        lift : array (...)    of the follower, m
+        """
+        side = -1.0 if self.side == "opposite" else 1.0
+        raised = self.angle + lift / arm_length if self.length is not None else 0.0 * lift
+        return np.asarray(-side * force * np.stack([np.sin(raised), np.cos(raised)]))
+
+    @property
+    def ramp_angle(self) -> float:
+        """Cam angle over which the lash is taken up, rad."""
+        return pi if self.ramp is None else self.ramp
