@@ -57,36 +57,20 @@ class CaseJudgement(Protocol):
 
 
 def preview_figures(judged: CaseJudgement) -> PreviewJudgement:
-    """Figures of the preview of a case with an engine, by its nominal checks and its shortfalls.
-
-    What costs most is judged last, and only where nothing before it fails: the nominal checks;
-    those whose limits an infeasible synthesis exceeds, at the tolerance corners; of a feasible one
-    the keyway root by finite elements, if its bound does not prove it, and every check at the
-    corners.
+    """Figures of the preview of a case with an engine, its checks as deep as `decided` judges.
 
     Raises
     ------
     InputError
         If the case has no engine.
     """
-    trial = judged.nominal
+    trial, shortfalls = decided(judged)
     drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
     rest, torque = turn.torque_after, turn.torque_before
     if rest is None or torque is None:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
     record = trial.synthesis
     feasible = record is not None and record["feasible"]
-    exceeded = exceeded_limits(record)
-    shortfalls = _shortfalls(trial.checks)
-    if not shortfalls and exceeded:
-        names = {check_of(name) for name in exceeded} & DECLARED.keys()
-        checks = (judged.check(name, everywhere=True) for name in sorted(names))
-        shortfalls = _shortfalls([check for check in checks if check is not None])
-    elif not shortfalls:
-        shortfalls = _root_shortfall(trial)
-        if not shortfalls:
-            trial = judged.trial
-            shortfalls = _shortfalls(trial.checks)
     blocking = (check for check in in_order(within_depth(trial.checks)) if check.blocks)
     left = [check.id for check in blocking if check.status == "not_evaluated"]
     before, after = float(np.std(torque)), float(np.std(rest))
@@ -109,8 +93,30 @@ def preview_figures(judged: CaseJudgement) -> PreviewJudgement:
         "failing": [each["check"] for each in shortfalls],
         "shortfalls": shortfalls,
         "open": left,
-        "binding": exceeded or _binding(record),
+        "binding": exceeded_limits(record) or _binding(record),
     }
+
+
+def decided(judged: CaseJudgement) -> tuple[Trial, list[Shortfall]]:
+    """Trial of a case as deep as it is judged, and the blocking checks that fail.
+
+    What costs most is judged last, and only where nothing before it fails: the nominal checks;
+    those whose limits an infeasible synthesis exceeds, at the tolerance corners; of a feasible one
+    the keyway root by finite elements, if its bound does not prove it, and every check at the
+    corners.
+    """
+    trial = judged.nominal
+    shortfalls = _shortfalls(trial.checks)
+    if shortfalls:
+        return trial, shortfalls
+    names = {check_of(name) for name in exceeded_limits(trial.synthesis)} & DECLARED.keys()
+    if names:
+        checks = (judged.check(name, everywhere=True) for name in sorted(names))
+        return trial, _shortfalls([check for check in checks if check is not None])
+    shortfalls = _root_shortfall(trial)
+    if shortfalls:
+        return trial, shortfalls
+    return judged.trial, _shortfalls(judged.trial.checks)
 
 
 def exceeded_limits(record: SynthesisRecord | None) -> list[str]:

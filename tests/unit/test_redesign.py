@@ -482,3 +482,41 @@ def test_the_verdict_of_a_judgement_is_that_of_its_checks():
     assert verdict_of(True, (), ("film",)) == "incomplete"
     assert verdict_of(True, (shortfall("jump"),), ("film",)) == "fail"
     assert verdict_of(False, (), ()) == "fail"
+
+
+def test_what_costs_most_is_judged_last(monkeypatch):
+    """A preview ends at its first shortfall: nominal, exceeded limits, keyway root, corners."""
+    steps = []
+
+    def judgement(nominal=(), feasible=True, corners=()):
+        use = {"cam_radius": 1.2, "torque_reduction": 0.99}
+        synthesis = {"feasible": feasible, "utilisation": use}
+
+        class Stepwise:
+            @property
+            def nominal(self):
+                return SimpleNamespace(checks=nominal, synthesis=synthesis)
+
+            def check(self, name, *, everywhere=False):
+                steps.append((name, everywhere))
+
+            @property
+            def trial(self):
+                steps.append("corners")
+                return SimpleNamespace(checks=corners, synthesis=synthesis)
+
+        return Stepwise()
+
+    def judged(root=(), **state):
+        steps.clear()
+        monkeypatch.setattr(figures, "_shortfalls", list)
+        monkeypatch.setattr(
+            figures, "_root_shortfall", lambda _: steps.append("root") or list(root)
+        )
+        return figures.decided(judgement(**state))[1], steps[:]
+
+    assert judged(nominal=["jump"], feasible=False) == (["jump"], [])
+    assert judged(feasible=False) == ([], [("cam_radius", True)])
+    assert judged(root=["keyway_root"]) == (["keyway_root"], ["root"])
+    failing, made = judged(corners=["life"])
+    assert (failing, set(made)) == (["life"], {"root", "corners"})
