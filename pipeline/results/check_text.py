@@ -48,10 +48,13 @@ _LOAD_END = {
 }
 """Words by what a check rests on, see `Declaration.rests_on`."""
 
+_NEEDS = {"arm": "an arm", "round": "a roller or curved face", "swung_face": "a face on an arm"}
+"""Words of what a check needs."""
+
 
 def check_text(one: Declaration) -> CheckText:
     """Sentences on a check from its declaration."""
-    needs = f"; a {one.needs} only".replace("a arm", "an arm") if one.needs else ""
+    needs = f"; {_NEEDS.get(one.needs, f'a {one.needs}')} only" if one.needs else ""
     part = f"; part `{one.part}`" if one.part else ""
     depth = f"Evaluated at the depth {one.tier.word} and deeper."
     if one.fails_from < one.tier:
