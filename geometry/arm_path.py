@@ -86,6 +86,13 @@ class Arm:
         radius: Value = np.sqrt((c - length) ** 2 + 4.0 * c * length * sine**2)
         return radius
 
+    def start_angle(self, prime_radius: Value, offset: Value | None = None) -> Value:
+        """Arm angle at zero lift, rad; offset: of a flat face, as of `face_angle`, None: none.
+
+        prime_radius: of the reference point, or of the base circle under a flat face, m
+        """
+        return self.angle(prime_radius) if offset is None else self.face_angle(prime_radius, offset)
+
     def face_angle(self, height: Value, offset: Value) -> Value:
         """Arm angle, rad, of a flat face along the arm at a height, m, over the cam axis.
 

@@ -108,11 +108,8 @@ def _arm(turn: SheetTurn) -> DrawnArm | None:
     sense = 1.0 if turn.case["follower"]["arm"].get("swing") == "with" else -1.0
     linkage, bearing = Arm(distance, length, sense), _BEARING * length
     offset, radius = (turn.length("follower", "face", key) for key in ("offset", "radius"))
-    if offset is not None:
-        start = float(linkage.face_angle(prime, offset))
-        return DrawnArm(distance, length, sense, start, bearing, offset)
-    start = float(linkage.angle(prime))
-    return DrawnArm(distance, length, sense, start, bearing, radius or 0.0, radius)
+    start, depth = float(linkage.start_angle(prime, offset)), offset or radius or 0.0
+    return DrawnArm(distance, length, sense, start, bearing, depth, radius)
 
 
 def _counterweight(turn: SheetTurn) -> DrawnSector | None:

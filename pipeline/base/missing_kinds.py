@@ -48,9 +48,9 @@ _OF_CONTOUR = f"its lift as {_BY_TABLE}"
 _AS_FORCE = "its force over the cam angle as follower.external_force_file"
 MISSING_KINDS = (
     MissingKind(
-        "a rocker, finger or lever, or an arm with a face", "follower",
+        "a rocker, finger or lever", "follower",
         ("rocking", "rocker", "rocker_arm", "finger", "lever"),
-        'kind = "oscillating" with a roller, and [rocker] for its second arm',
+        'kind = "oscillating" with a roller or a face, and [rocker] for its second arm',
         keys=("rocker_arm", "lever"),
     ),
     MissingKind(
@@ -59,9 +59,9 @@ MISSING_KINDS = (
         keys=("knife_edge",),
     ),
     MissingKind(
-        "a follower with a curved face (mushroom, spherical)", "follower",
+        "a stem with a curved face (mushroom, spherical)", "follower",
         ("mushroom", "spherical", "sphere", "domed", "curved", "curved_face", "convex", "barrel"),
-        'kind = "roller" of that radius, or a flat face with a crown',
+        'kind = "oscillating" with follower.face.radius, "roller", or a flat face with a crown',
     ),
     MissingKind(
         "a yoke (constant-breadth or constant-diameter) follower", "follower",

@@ -424,7 +424,7 @@ mass = "1.1 kg"                      # inertia about the pivot over the square o
 
 [follower.arm]
 centre_distance = "110 mm"           # pivot to cam axis
-length = "100 mm"                    # pivot to the roller's centre
+length = "100 mm"                    # pivot to the centre of the roller, or of a [follower.face]
 swing = "with"                       # outwards, the arm turns as the cam does; or "against"
 
 [scope]

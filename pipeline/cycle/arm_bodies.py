@@ -60,7 +60,7 @@ def swung_bodies(numbers: Numbers) -> dict[str, SwungBody]:
     distance, length = (numbers[f"follower.arm.{key}"] for key in keys)
     arm = Arm(distance, length, stated.sense)
     offset, prime = numbers.get("follower.face.offset"), numbers["cam.prime_radius"]
-    start = arm.angle(prime) if offset is None else arm.face_angle(prime, offset)
+    start = arm.start_angle(prime, offset)
     lift, aside = (numbers.get(key) for key in (_LIFT, "roller.axial_offset"))
     swing, aside = (0.0 if each is None else each for each in (lift, aside))
     bar = SwungBar(arm, start, start + swing / length, 0.0, length)

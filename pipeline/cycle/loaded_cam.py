@@ -68,9 +68,10 @@ def _on_an_arm(jet: Jet, numbers: Numbers) -> Motion:
     """Motion of roller or face of an arm, whose start angle follows from the prime radius."""
     distance, length = numbers["follower.arm.centre_distance"], numbers["follower.arm.length"]
     arm, prime = Arm(distance, length, _sense(numbers)), numbers["cam.prime_radius"]
-    if (offset := numbers.get("follower.face.offset")) is not None:
-        return ArmFaceMotion(jet, arm, arm.face_angle(prime, offset), offset, _friction(numbers))
-    start, radius = arm.angle(prime), numbers.get("follower.face.radius")
+    offset, radius = (numbers.get(f"follower.face.{name}") for name in ("offset", "radius"))
+    start = arm.start_angle(prime, offset)
+    if offset is not None:
+        return ArmFaceMotion(jet, arm, start, offset, _friction(numbers))
     if radius is not None:
         return CurvedFaceMotion(jet, arm, start, radius, _friction(numbers))
     return ArmMotion(jet, arm, start, numbers["roller.radius"])

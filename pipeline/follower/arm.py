@@ -132,11 +132,9 @@ class FollowerArm(Part):
     def start(self, prime_radius: float, offset: float | None = None) -> float:
         """Angle at the pivot from the line to the cam axis to the arm at zero lift, rad.
 
-        offset: of a flat face, see `Arm.face_angle`; None: a roller or curved face
+        offset: of a flat face, see `Arm.start_angle`; None: a roller or curved face
         """
-        if offset is None:
-            return float(self.linkage.angle(prime_radius))
-        return float(self.linkage.face_angle(prime_radius, offset))
+        return float(self.linkage.start_angle(prime_radius, offset))
 
     def roller_contour(self, lift: Lift, prime_radius: float, roller_radius: float) -> Contour:
         """Cam contour under the roller of the arm.

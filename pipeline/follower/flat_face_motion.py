@@ -92,7 +92,7 @@ class FaceSliding:
         """Columns of ``5_cycle.csv``."""
         return {
             Column(
-                "face_contact_offset", "mm", "Offset of the contact from the stem axis"
+                "face_contact_offset", "mm", "Offset of the contact from the middle of the face"
             ): self.place,
             Column("sliding_speed", "m/s", "Sliding speed of the cam on the face"): self.speed,
             Column(

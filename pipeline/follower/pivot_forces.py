@@ -255,7 +255,7 @@ def arm_pivot(at: Callable[[str], Value | None], sense: float) -> ArmPivot | Non
     return ArmPivot(
         length=length,
         sense=sense,
-        start=arm.angle(number("cam.prime_radius")),
+        start=arm.start_angle(number("cam.prime_radius"), at("follower.face.offset")),
         radius=0.5 * number("follower.pivot.diameter"),
         friction=friction,
         mass=stated("follower.pivot.swinging_mass", number("follower.mass")),

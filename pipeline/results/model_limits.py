@@ -91,7 +91,10 @@ MODEL_LIMITS = (
         " clearance: masses, springs and forces are those reduced to the roller centre. The"
         " sign-off does not cover the pivot."
     ),
-    ModelLimit("A flat face does not turn about its stem, and its block is held by the stem."),
+    ModelLimit(
+        "A face does not turn about its stem; its block is held by the stem, or over its whole back"
+        " by an arm."
+    ),
     ModelLimit(
         "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference"
         " between Hertz theory and finite elements."

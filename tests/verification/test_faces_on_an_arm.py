@@ -4,6 +4,7 @@ The references take nothing from the formulas of an arm: a circular disc, points
 face lowered onto them, moments about pivot and shaft, and the translating face that a long arm is.
 """
 
+from dataclasses import replace
 from functools import cache
 from itertools import islice
 
@@ -32,6 +33,7 @@ from camwright.pipeline.follower.follower_forces import (
     torque_on_cam,
     turn_integral,
 )
+from camwright.pipeline.follower.pivot_forces import ArmPivot
 from camwright.pipeline.follower.spring import Spring
 
 THETA = np.linspace(0.0, FULL_TURN, 97)
@@ -308,6 +310,37 @@ def test_forces_by_moments_about_pivot_and_shaft(kind, sense, friction):
     np.testing.assert_allclose(-loads.on_shaft, [along, across], rtol=0, atol=most)
     jam = friction * np.abs(slip) * loads.normal_force  # power of friction over cam speed
     np.testing.assert_allclose(loads.friction_power / speed, jam, rtol=1e-9, atol=1e-12)
+
+
+@BOTH
+def test_a_face_and_the_pivot_rub_together(kind, sense):
+    """Moments about the pivot with the friction of both; the reaction by the sum of the forces."""
+    cam, speed = plain(kind, sense), 60.0
+    path, theta = cam.pitch, uniform_turn(720)
+    pivot = ArmPivot(path.arm.length, sense, path.start, 0.012, 0.2, 0.0, 0.08, 0.0, None, 0.08,
+                     0.0, 0.0)  # fmt: skip
+    loads = follower_loads(path, replace(system(0.12), pivot=pivot), speed, theta)
+    arm, jet = path.arm, cam.lift.jet(theta)
+    angle = path.start + jet.lift / arm.length
+    u, v = (np.stack([np.cos(theta + k), np.sin(theta + k)]) for k in (0.0, 0.5 * np.pi))
+    along = -np.cos(angle) * u + sense * np.sin(angle) * v  # from the pivot along the arm
+    travel = np.sin(angle) * u + sense * np.cos(angle) * v
+    normal = cam.normal(theta)
+    push = loads.normal_force * (normal - 0.12 * turned(normal))
+    spring = -(150.0 + 20e3 * jet.lift) * travel
+    reaction = np.hypot(*(push + spring))
+    np.testing.assert_allclose(np.hypot(*loads.pivot_reaction), reaction, rtol=1e-10)
+    lever = cam.points(theta) - arm.centre_distance * u
+    moment = -sense * (cross(lever, push) + arm.length * cross(along, spring))
+    resisted = 0.4 * speed**2 * jet.lift_d2 * arm.length
+    resisted = resisted + np.sign(loads.lift_slope) * 0.2 * 0.012 * reaction
+    scale = np.abs(moment).max()
+    np.testing.assert_allclose(moment, resisted, rtol=0, atol=1e-10 * scale)
+    work = turn_integral(theta, loads.cam_torque)
+    assert work == pytest.approx(loads.friction_loss, rel=1e-9)
+    rubbed = 0.2 * 0.012 * reaction * np.abs(jet.slope) / arm.length
+    rubbed = rubbed + 0.12 * loads.normal_force * path.slide(theta).slip
+    assert work == pytest.approx(turn_integral(theta, rubbed), rel=1e-9)
 
 
 def cross(a, b):

@@ -65,7 +65,7 @@ def test_the_pressure_is_that_of_hertz(kind):
 @BOTH
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_the_meshed_face_touches_the_cam(kind, sense):
-    """In the frame of the cam its surface meets the contour at the contact, and nowhere is within."""
+    """Its surface meets the contour at the contact, in the frame of the cam, and is not within."""
     one = pair(kind, sense)
     rim = one.contour.polygon(20_000)
     angle = np.arctan2(rim[1], rim[0])
