@@ -11,6 +11,7 @@ from synthesis_scenarios import changed, figures, loaded_with
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.smoothing.constraints import CONSTRAINTS
 from camwright.pipeline.smoothing.objective import TORQUE, Weighted
@@ -22,8 +23,14 @@ ROOT = Path(__file__).parents[1]
 REFINED = {"contact_force_margin", "contact_at_overspeed", "jump", "jump_speed"}
 """Checks of the contact force between the solved angles, compared at the place of the check."""
 
-OF_ROLLER = tuple(each for each in CONSTRAINTS if "face" not in each.needs)
-"""Constraints of a cam under a roller."""
+
+def of_an_arm(constraint):
+    """Whether a constraint is of the arm of a follower or its pivot."""
+    return DECLARED[constraint.check].part in ("arm", "pivot")
+
+
+OF_ROLLER = tuple(each for each in CONSTRAINTS if "face" not in each.needs and not of_an_arm(each))
+"""Constraints of a cam under a roller on a stem."""
 KEPT = frozenset({
     "spring_travel", "pressure_angle", "curvature_ratio", "undercut", "concave_radius",
     "cam_radius", "contact_pressure", "contact_force_margin", "contact_at_overspeed", "jump",

@@ -72,7 +72,7 @@ class Crowned:
     first: bool
 
 
-Side = Literal["A", "B"]
+Side = Literal["A", "B", "pivot"]
 Lever: TypeAlias = Scaled | Catalogued | Drilled | Crowned
 
 _DRAWN = ("none", "moving_average", "gaussian", "harmonic", "savitzky_golay", "smoothing_spline")
@@ -137,6 +137,12 @@ JAM: tuple[Lever, ...] = (
     *GENTLER,
 )
 LOAD = (PRIME, OVERHANG, LENGTH_A, *GENTLER)
+LOCK = (
+    one("follower.pivot.bush.diameter", -1, 2.0),
+    one("follower.pivot.needle_bearing.diameter", -1, 2.0),
+    *SPRING,
+    *GENTLER,
+)
 SHAPE = (PRIME, *GENTLER)
 PRESSURE: tuple[Lever, ...] = (WIDTH, RADIUS, PRIME, PRESSED, *GENTLER)
 ENDURANCE: tuple[Lever, ...] = (Catalogued(CAM_MATERIAL, "endurance_pressure"), *PRESSURE)
@@ -146,14 +152,30 @@ TOOL = Scaled(("workshop.tool_radius", "limits.tool_radius"), -1)
 SEAT = one("cam.bore_radius", -1, 2.0)
 
 
+PIVOT: tuple[Lever, ...] = (
+    one("follower.pivot.bush.length", most=2.5),
+    one("follower.pivot.needle_bearing.length", most=2.5),
+    PRIME,
+    *SPRING,
+    *GENTLER,
+)
+
+
 def guide(side: Side, rating: str) -> tuple[Lever, ...]:
-    """Levers of a limit on guide A or B: bush by `rating`, length, overhang, radius, spring."""
+    """Levers of a limit on guide A or B: bush by `rating`, length, overhang, radius, spring.
+
+    Of the bush of a pivot: length, radius, spring.
+    """
+    if side == "pivot":
+        return PIVOT
     bush, length = _of(side)
     return (Catalogued(bush, rating), length, OVERHANG, PRIME, *SPRING, *GENTLER)
 
 
 def rubbing_speed(side: Side) -> tuple[Lever, ...]:
-    """Levers of the sliding speed in guide A or B."""
+    """Levers of the sliding speed in guide A or B, or on the pin of a pivot."""
+    if side == "pivot":
+        return (one("follower.pivot.bush.diameter", -1, 2.0), *SPRING, *GENTLER)
     return (Catalogued(_of(side)[0], "speed_limit"), *SPRING, *GENTLER)
 
 

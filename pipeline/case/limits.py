@@ -300,6 +300,19 @@ ROLLER_STATIC_SAFETY = Limit(
         confirmed=True,
     ), "at_least",
 )  # fmt: skip
+PIVOT_STATIC_SAFETY = Limit(
+    "pivot_static_safety", "static safety of the needle bearing of a pivot", _SAFETY, 3.0,
+    Source(
+        "s0 = C0/P0 >= 3 of rollers that run quietly or under shocks: NSK, Rolling bearings, table"
+        " 5.8, recalled",
+        confirmed=False,
+    ), "at_least",
+)  # fmt: skip
+PIVOT_LIFE = OpenLimit(
+    "pivot_life", "rating life of the needle bearing of a pivot", _LIFE,
+    Source("ISO 281", confirmed=True), "at_least",
+    found="requirement of the machine", example="1000 h",
+)  # fmt: skip
 ROLLER_LIFE = OpenLimit(
     "roller_life", "rating life of the roller bearing", _LIFE,
     Source("ISO 281", confirmed=True), "at_least",

@@ -24,6 +24,7 @@ In the order of the calculation:
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s; rad   |
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
 | `guide_wear`            | expansion and wear of the guides           | m                        |
+| `pivot_bearing`         | jam index, rating of an arm's pivot        | L10, s                   |
 | `assembly`              | gaps between parts that pass one another   | m                        |
 | `arm_assembly`          | gaps of an arm and the boss of its pivot   | m                        |
 | `manufacture`           | space, waviness, chord error, phase        | m                        |

@@ -53,6 +53,7 @@ Page = Literal[
     "Roller",
     "Flat face",
     "Guides",
+    "Pivot",
     "Spring",
     "Camshaft",
 ]

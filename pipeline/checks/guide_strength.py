@@ -1,4 +1,6 @@
-"""Checks of the guides of the stem: pressure, PV value, temperature, speed, length, rotation."""
+"""Checks of the guides of the stem, and of the bush of an arm's pivot: pressure, PV value,
+temperature, speed, length, rotation.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +10,20 @@ from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
+from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.case.scope_section import PartName
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import (
     NONE,
@@ -26,6 +32,7 @@ from camwright.pipeline.checks.check import (
     Declaration,
     Demand,
     Kept,
+    Page,
     check,
     of_key,
 )
@@ -55,18 +62,78 @@ from camwright.pipeline.follower.guide_friction import (
 )
 from camwright.pipeline.follower.guide_reactions import Guide
 
+ARM_LENGTH = "follower.arm.length"
 Side = Literal["A", "B"]
+Place = Literal["A", "B", "pivot"]
 GUIDES: tuple[Side, ...] = ("A", "B")
+PLACES: tuple[Place, ...] = (*GUIDES, "pivot")
+"""Guides of a stem, and the pivot of an arm, which has a bush, too."""
 
 
-def guide_of(machine: Machine, side: Side) -> Guide:
-    """Guide A or B of a machine."""
-    return machine.guides.a if side == "A" else machine.guides.b
+class BushSeat(NamedTuple):
+    """Bush of a place: its name in words, its table and the one around it, as in a formula for
+    all of its kind, material of the pin in it, part of the scope, and page of the report.
+    """
+
+    words: str
+    table: str
+    around: str
+    each: str
+    pin: str
+    part: PartName
+    page: Page
+    suffix: str = ""
+
+    def named(self, quantity: str) -> str:
+        """Id of the check of a quantity."""
+        return f"{self.part.rstrip('s')}_{quantity}{self.suffix}"
 
 
-def table_of(side: Side) -> str:
-    """Dotted name of the table of guide A or B."""
-    return f"guides.{side.lower()}"
+SEATS: Mapping[Place, BushSeat] = {
+    **{
+        side: BushSeat(
+            f"guide {side}", f"guides.{side.lower()}", "guides", "guides.*",
+            "follower.stem_material", "guides", "Guides", f"_{side}",
+        )
+        for side in GUIDES
+    },
+    "pivot": BushSeat(
+        "the pivot", "follower.pivot.bush", "follower.pivot", "follower.pivot.bush",
+        "follower.pivot.pin_material", "pivot", "Pivot",
+    ),
+}  # fmt: skip
+
+
+def bush_of(stated: Machine | Case, place: Place) -> Guide | None:
+    """Bush of a place of a machine or case; None of a pivot in needles, or not described."""
+    if place != "pivot":
+        return dict(stated.guides.both)[place]
+    pivot = stated.pivot if isinstance(stated, Machine) else stated.follower.pivot
+    return None if pivot is None else pivot.bush
+
+
+def guide_of(machine: Machine, place: Place) -> Guide:
+    """Guide A or B of a machine, or the bush of its pivot.
+
+    Raises
+    ------
+    InputError
+        If its pivot has none.
+    """
+    bush = bush_of(machine, place)
+    if bush is None:
+        raise InputError(table_of(place), "missing", "given for its checks")
+    return bush
+
+
+def table_of(place: Place) -> str:
+    """Dotted name of the table of a bush."""
+    return SEATS[place].table
+
+
+def has_bush(place: Place) -> Callable[[Value, Numbers], NDArray[np.bool_]]:
+    """Whether a place has a bush: a pivot may have needles."""
+    return lambda _, numbers: np.array(numbers.get(f"{table_of(place)}.length") is not None)
 
 
 def _reaction(cycle: Cycle, side: Side) -> Array:
@@ -77,34 +144,39 @@ def _rubbing_load(cycle: Cycle, side: Side) -> Array:
     return cycle.guides.rubbing_load_a if side == "A" else cycle.guides.rubbing_load_b
 
 
-def _heat_in(side: Side) -> Measure:
-    index = GUIDES.index(side)
+def _heat_of(cam: LoadedCam, place: Place) -> Array | None:
+    """Friction power of a bush at the greatest friction, W; None where not known."""
+    if place == "pivot":
+        return cam.pivot_heat
+    return None if cam.heat is None else cam.heat[GUIDES.index(place)]
 
+
+def _heat_in(place: Place) -> Measure:
     def heat(cam: LoadedCam) -> Array:
-        """Friction power of a guide at the greatest friction, W."""
-        power = cam.heat
-        return np.full_like(cam.velocity, np.nan) if power is None else power[index]
+        """Friction power of a bush at the greatest friction, W."""
+        power = _heat_of(cam, place)
+        return np.full_like(cam.velocity, np.nan) if power is None else power
 
     return heat
 
 
-HEAT: Mapping[Side, Measure] = {side: _heat_in(side) for side in GUIDES}
+HEAT: Mapping[Place, Measure] = {side: _heat_in(side) for side in PLACES}
 
 
-def _heat_path(side: Side, numbers: Numbers) -> tuple[float | None, Value | None]:
-    """Thermal resistance of a guide, K/W, and ambient temperature, K; None: not known."""
-    case = numbers.case
-    resistance = None if case is None else thermal_resistance(dict(case.guides.both)[side])
-    return resistance, numbers.get("guides.ambient_temperature")
+def _heat_path(side: Place, numbers: Numbers) -> tuple[float | None, Value | None]:
+    """Thermal resistance of a bush, K/W, and ambient temperature, K; None: not known."""
+    bush = None if numbers.case is None else bush_of(numbers.case, side)
+    resistance = None if bush is None else thermal_resistance(bush)
+    return resistance, numbers.get(f"{SEATS[side].around}.ambient_temperature")
 
 
-def _temperature(side: Side, power: Value, numbers: Numbers) -> Value:
+def _temperature(side: Place, power: Value, numbers: Numbers) -> Value:
     """Steady temperature of a guide, K, by its mean friction power, W."""
     return bush_temperature(power, *_heat_path(side, numbers))
 
 
-def power_at(side: Side, temperature: float | None, numbers: Numbers) -> float | None:
-    """Mean friction power of a guide at which it has a steady temperature (K), W.
+def power_at(side: Place, temperature: float | None, numbers: Numbers) -> float | None:
+    """Mean friction power of a bush, W, at which its steady temperature is `temperature`, K.
 
     None where it is not known, and below the ambient temperature: no lift has it.
     """
@@ -114,8 +186,8 @@ def power_at(side: Side, temperature: float | None, numbers: Numbers) -> float |
     return (temperature - float(ambient)) / resistance
 
 
-def hottest(solution: Solution, side: Side) -> Extreme:
-    """Temperature of guide A or B at maximum friction in the hottest load case, K.
+def hottest(solution: Solution, side: Place) -> Extreme:
+    """Temperature of a bush at maximum friction in the hottest load case, K.
 
     NaN where ambient or thermal resistance is not known.
     """
@@ -138,7 +210,7 @@ class _Limit(NamedTuple):
 
 
 def _at_temperature(
-    solution: Solution, side: Side, demand: float, limit_at: Callable[[float], float | None]
+    solution: Solution, side: Place, demand: float, limit_at: Callable[[float], float | None]
 ) -> _Limit:
     """Limit at the temperature of a guide.
 
@@ -168,8 +240,9 @@ def _at_temperature(
     return _Limit(limit, notes=(f"limit at {at}",) if limit < cold else ())
 
 
-def _guide_pressure(side: Side) -> Declaration:
-    index = GUIDES.index(side)
+def _guide_pressure(side: Place) -> Declaration:
+    """Check of the mean bearing pressure of a bush."""
+    seat = SEATS[side]
 
     def at_its_temperature(demand: Demand, solution: Solution) -> Demand:
         guide, worst = guide_of(solution.machine, side), demand.at or NOWHERE
@@ -178,28 +251,31 @@ def _guide_pressure(side: Side) -> Declaration:
             demand,
             allowed=limit.value,
             missing=(*demand.missing, *limit.missing),
-            note="; ".join((*limit.notes, _pushes(solution, side, worst))),
+            note="; ".join((*limit.notes, *_pushes(solution, side, worst))),
             source=_maker(guide),
             stated=_loaded_side(solution, side, worst),
         )
 
     @check(
-        id=f"guide_pressure_{side}",
-        title=f"Mean bearing pressure in guide {side}",
+        id=seat.named("pressure"),
+        title=f"Mean bearing pressure in {seat.words}",
         unit="MPa",
         source=Source("limit of the bush's maker, source of the guide", confirmed=True),
         method="greatest push on one side of the bore over diameter x loaded length, with that of a"
-        " forced tilt at right angles; at most the limit at the temperature of the guide",
+        " forced tilt at right angles; at most the limit at the temperature of the guide"
+        if side != "pivot"
+        else "greatest load of the pivot over diameter x length of its bush; at most the limit at"
+        " the temperature of the bush",
         lift_can_help=True,
         fails_from=Tier.SCREENING,
-        error="guide_edges",
-        part="guides",
-        kept_as=f"bearing pressure of guide {side}",
+        error="sampling" if side == "pivot" else "guide_edges",
+        part=seat.part,
+        kept_as=f"bearing pressure of {seat.words}",
         formula="F / (d l) <= p R(T) / R(T_p); F: push on one side of the bore, the integral of its"
         " line load, with that of the moment of a forced tilt at right angles, l: loaded length of"
         " that side, d: diameter of the bore, of the side and angle with the greatest quotient; p:"
-        " guides.*.pressure_limit, R: yield strength of the bush at its temperature T and at T_p,"
-        " guides.*.pressure_limit_temperature.",
+        f" {seat.each}.pressure_limit, R: yield strength of the bush at its temperature T and at"
+        f" T_p, {seat.each}.pressure_limit_temperature.",
         symbols={
             "F": f"{STATED} [N]",
             "d": f"{table_of(side)}.diameter",
@@ -216,17 +292,19 @@ def _guide_pressure(side: Side) -> Declaration:
             *given.heat(side),
         ),
         levers=levers.guide(side, "pressure_limit"),
-        page="Guides",
+        page=seat.page,
     ).measured(
         "angles",
         allowed=of_key(f"{table_of(side)}.pressure_limit"),
+        applies=has_bush(side),
         remark=at_its_temperature,
         deviation=0.1,
         kept=Kept(unit="MPa"),
     )
     def pressure(cam: LoadedCam) -> Array:
-        """Mean pressure in a guide, Pa."""
-        return magnitude(cam.bearing[index]) / cam.numbers[f"{table_of(side)}.area"]
+        """Mean pressure in a bush, Pa."""
+        push = cam.pivot_load if side == "pivot" else cam.bearing[GUIDES.index(side)]
+        return magnitude(push) / cam.numbers[f"{table_of(side)}.area"]
 
     return pressure
 
@@ -235,9 +313,14 @@ def _maker(guide: Guide) -> Source:
     return guide.source or Source(f"{guide.material.name} bush", confirmed=True)
 
 
-def _loaded_side(solution: Solution, side: Side, worst: Extreme) -> dict[str, float]:
-    """Push in the bore that governs, N, and the loaded length of its greater side, m."""
+def _loaded_side(solution: Solution, side: Place, worst: Extreme) -> dict[str, float]:
+    """Force on the more loaded side of the bore, N, as "F", and its loaded length, m, as "l", at
+    the worst angle.
+    """
     cycle, k = row_of(solution.cycles, worst)
+    if side == "pivot":
+        length = guide_of(cycle.machine, side).length
+        return {"F": float(np.hypot(*cycle.loads.pivot_load[:, k])), "l": length}
     index = GUIDES.index(side)
     push, length = cycle.guides.loaded_side(index, k)
     if cycle.sideways is not None:
@@ -245,11 +328,14 @@ def _loaded_side(solution: Solution, side: Side, worst: Extreme) -> dict[str, fl
     return {"F": push, "l": length}
 
 
-def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
-    """Pushes on both sides of the bore at the maximum pressure, and the pressure by the reaction.
+def _pushes(solution: Solution, side: Place, worst: Extreme) -> tuple[str, ...]:
+    """Note on the forces on both sides of the bore at the greatest pressure, and on the pressure by
+    the reaction alone.
 
-    Their sum is the rubbing load, their difference the reaction.
+    Their sum is the rubbing load, their difference the reaction. The pin of a pivot has one side.
     """
+    if side == "pivot":
+        return ()
     cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
     k = first_greatest(cycle.guide_pushes[GUIDES.index(side)])
     both, net = float(_rubbing_load(cycle, side)[k]), abs(float(_reaction(cycle, side)[k]))
@@ -259,48 +345,60 @@ def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
     if (across := cycle.sideways) is not None:
         load = float((across.reaction_a if side == "A" else across.reaction_b)[k])
         tilted = f"; {shown(abs(load), 'N', 4)} across them by the forced tilt of the contact"
-    return f"pushes of {greater} and {less} on opposite sides; {alone} by the net reaction{tilted}"
+    both_sides = f"pushes of {greater} and {less} on opposite sides"
+    return (f"{both_sides}; {alone} by the net reaction{tilted}",)
 
 
-def _pv_in(side: Side) -> Measure:
-    index = GUIDES.index(side)
+def _pv_in(side: Place) -> Measure:
+    """Measure of the PV value of a bush."""
 
     def pv(cam: LoadedCam) -> Array:
-        """PV value in a guide at each angle, Pa m/s: of the sum of the pushes on both sides."""
-        return magnitude(cam.rubbing[index] * cam.velocity) / cam.numbers[f"{table_of(side)}.area"]
+        """PV value in a bush at each angle, Pa m/s: of the sum of the pushes on both sides."""
+        if side == "pivot":
+            power = cam.pivot_load * cam.pin_velocity
+        else:
+            power = cam.rubbing[GUIDES.index(side)] * cam.velocity
+        return magnitude(power) / cam.numbers[f"{table_of(side)}.area"]
 
     return pv
 
 
-PV: Mapping[Side, Measure] = {side: _pv_in(side) for side in GUIDES}
+PV: Mapping[Place, Measure] = {side: _pv_in(side) for side in PLACES}
 
 
-def _pv_of_reaction(cycle: Cycle, side: Side) -> float:
+def _pv_of_reaction(side: Side, cycle: Cycle) -> float:
     """PV value by the net reaction, in which loads on opposite sides of the bore cancel, Pa m/s."""
     rubbed = np.mean(np.abs(_reaction(cycle, side) * cycle.loads.velocity))
     return float(rubbed) / guide_of(cycle.machine, side).projected_area
 
 
-def _pv_allowed(side: Side, numbers: Numbers) -> Allowed:
-    """PV limit as stated, or of nylon by its lubrication."""
+def _pv_allowed(side: Place, numbers: Numbers) -> Allowed:
+    """Allowed PV value, Pa m/s: as stated, or of nylon by its lubrication."""
     key, case = f"{table_of(side)}.pv_limit", numbers.case
-    stated = numbers.get(key)
-    if stated is None and case is not None:
-        stated = pv_limit(dict(case.guides.both)[side])
+    stated, bush = numbers.get(key), None if case is None else bush_of(case, side)
+    if stated is None and bush is not None:
+        stated = pv_limit(bush)
     return Allowed(stated, (key,) if stated is None else ())
 
 
-def _guide_pv(side: Side) -> Declaration:
+def _guide_pv(side: Place) -> Declaration:
+    """Check of the mean PV value of a bush."""
+    seat, speed = SEATS[side], "follower_velocity"
+    load = f"guide_normal_load_{side}"
+    if side == "pivot":
+        load, speed = "pivot_load", f"follower_velocity {seat.table}.diameter/(2 {ARM_LENGTH})"
+
     def in_words(demand: Demand, solution: Solution) -> Demand:
         guide = guide_of(solution.machine, side)
-        alone = worst_case(solution.cycles, lambda cycle: _pv_of_reaction(cycle, side))
         notes = _lubrication(guide, (demand.at or NOWHERE).value)
-        notes.append(f"{shown(alone.value, 'MPa m/s', 3)} by the net reaction")
+        if side != "pivot":
+            alone = worst_case(solution.cycles, partial(_pv_of_reaction, side))
+            notes.append(f"{shown(alone.value, 'MPa m/s', 3)} by the net reaction")
         return replace(demand, note="; ".join(notes), source=_pv_source(guide))
 
     return check(
-        id=f"guide_pv_{side}",
-        title=f"PV value in guide {side}",
+        id=seat.named("pv"),
+        title=f"PV value in {seat.words}",
         unit="MPa m/s",
         source=Source(
             "limit of the bush's maker; of nylon by its lubrication, Mott, table 16-1",
@@ -310,14 +408,14 @@ def _guide_pv(side: Side) -> Declaration:
         " of the bore",
         lift_can_help=True,
         tier=Tier.SCREENING,
-        error="guides",
-        part="guides",
-        kept_as=f"PV of guide {side}",
+        error="sampling" if side == "pivot" else "guides",
+        part=seat.part,
+        kept_as=f"PV of {seat.words}",
         formula="mean(|R v|) / (d L) <= PV; R: sum of the pushes on both sides of the bore, v:"
         " sliding speed, mean over the turn, d, L: diameter and length of the guide; PV:"
-        " guides.*.pv_limit, or the limit of nylon by guides.*.lubrication.",
+        f" {seat.each}.pv_limit, or the limit of nylon by {seat.each}.lubrication.",
         symbols={
-            "mean(|R v|)": f"mean(|guide_normal_load_{side} follower_velocity|) [N m/s]",
+            "mean(|R v|)": f"mean(|{load} {speed}|) [N m/s]",
             "d": f"{table_of(side)}.diameter",
             "L": f"{table_of(side)}.length",
             "PV": f"{table_of(side)}.pv_limit",
@@ -326,10 +424,11 @@ def _guide_pv(side: Side) -> Declaration:
         " maker as a PV value.",
         values=(*given.LOADS, *given.of_guide(side, "pv_limit")),
         levers=levers.guide(side, "pv_limit"),
-        page="Guides",
+        page=seat.page,
     ).measured(
         "mean",
         allowed=partial(_pv_allowed, side),
+        applies=has_bush(side),
         remark=in_words,
         deviation=0.03,
         kept=Kept(unit="MPa m/s"),
@@ -421,10 +520,13 @@ def _edge(parts: PartLoads, side: Side) -> Array:
     return parts.guide_edge_pressure_a if side == "A" else parts.guide_edge_pressure_b
 
 
-def _guide_temperature(side: Side) -> Declaration:
+def _guide_temperature(side: Place) -> Declaration:
+    """Check of the steady temperature of a bush."""
+    seat = SEATS[side]
+
     def of_card(numbers: Numbers) -> float | None:
-        case = numbers.case
-        return None if case is None else dict(case.guides.both)[side].material.temperature_limit
+        bush = None if numbers.case is None else bush_of(numbers.case, side)
+        return None if bush is None else bush.material.temperature_limit
 
     def allowed(numbers: Numbers) -> Allowed:
         stated = of_card(numbers)
@@ -441,22 +543,23 @@ def _guide_temperature(side: Side) -> Declaration:
         return replace(sourced, stated={"Q": mean_of(solution, HEAT[side], cycle)})
 
     return check(
-        id=f"guide_temperature_{side}",
-        title=f"Temperature of guide {side}",
+        id=seat.named("temperature"),
+        title=f"Temperature of {seat.words}",
         unit="degC",
         source=Source("temperature limit of the bush, source of the material", confirmed=True),
         method="ambient plus mean friction power at the greatest friction times the thermal"
         " resistance of wall and housing, steady state",
         lift_can_help=True,
-        part="guides",
-        kept_as=f"friction power of guide {side} at its greatest temperature",
+        part=seat.part,
+        kept_as=f"friction power of {seat.words} at its greatest temperature",
         formula="T_amb + Q (R_wall + R_housing) <= T_max; Q: mean friction power over the turn at"
         " the greatest friction, R_wall = ln(1 + 2 t/d) / (2 pi lambda L): of a wall t:"
-        " guides.*.wall, R_housing: guides.*.housing_resistance; guides.*.thermal_resistance in"
-        " place of both; T_amb: guides.ambient_temperature; T_max: temperature limit of the bush.",
+        f" {seat.each}.wall, R_housing: {seat.each}.housing_resistance;"
+        f" {seat.each}.thermal_resistance in place of both; T_amb:"
+        f" {seat.around}.ambient_temperature; T_max: temperature limit of the bush.",
         symbols={
             "?": f"{table_of(side)}.thermal_resistance None",
-            "T_amb": "guides.ambient_temperature - 273.15 [degC]",
+            "T_amb": f"{seat.around}.ambient_temperature - 273.15 [degC]",
             "Q": f"{STATED} [W]",
             "R_wall": "[K/W]",
             "R_housing": f"{table_of(side)}.housing_resistance",
@@ -472,63 +575,85 @@ def _guide_temperature(side: Side) -> Declaration:
             *given.heat(side),
         ),
         levers=(
-            levers.one(f"guides.{side.lower()}.housing_resistance", -1),
+            levers.one(f"{table_of(side)}.housing_resistance", -1),
             *levers.guide(side, "friction_max"),
         ),
-        page="Guides",
+        page=seat.page,
     ).measured(
         "mean",
+        applies=has_bush(side),
         value=lambda power, numbers: celsius(_temperature(side, power, numbers)),
         bound=lambda _, numbers: power_at(side, of_card(numbers), numbers),
         allowed=allowed,
         remark=in_words,
         kept=Kept(
-            lambda cam, limit: None if cam.heat is None else HEAT[side](cam) / limit,
-            group=f"guide_temperature_{side}",
+            lambda cam, limit: None if _heat_of(cam, side) is None else HEAT[side](cam) / limit,
+            group=seat.named("temperature"),
             unit="W",
         ),
     )(HEAT[side])
 
 
-def heat_path_lacks(machine: Machine, side: Side) -> tuple[str, ...]:
-    """Missing keys for the temperature of a guide."""
+def heat_path_lacks(machine: Machine, side: Place) -> tuple[str, ...]:
+    """Dotted keys that the case lacks for the temperature of a bush."""
     guide, ambient = guide_of(machine, side), "ambient_temperature"
-    missing = lacking("guides", machine.guides, ambient)
+    around = machine.pivot if side == "pivot" and machine.pivot else machine.guides
+    missing = lacking(SEATS[side].around, around, ambient)
     if guide.thermal_resistance is not None:
         return missing
     wall = lacking(table_of(side), guide, "wall", "housing_resistance")
     return (*missing, *wall, *lacking_of_card(guide.material, "conductivity"))
 
 
-def _guide_speed(side: Side) -> Declaration:
+def _pin_speed(cam: LoadedCam) -> Array:
+    """Measure: sliding speed on the pin of a pivot, m/s."""
+    return magnitude(cam.pin_velocity)
+
+
+def _slope_on_pin(speed: float, numbers: Numbers) -> float:
+    """Lift slope, m/rad, at a sliding speed on the pin of a pivot in the fastest load case."""
+    radius = 0.5 * float(numbers["follower.pivot.diameter"])
+    return slope_at(speed, numbers) * float(numbers[ARM_LENGTH]) / radius
+
+
+def _guide_speed(side: Place) -> Declaration:
+    seat, pinned = SEATS[side], side == "pivot"
+    speed = f"follower_velocity {seat.table}.diameter/(2 {ARM_LENGTH}) [m/s]"
     return check(
-        id=f"guide_speed_{side}",
-        title=f"Maximum sliding speed in guide {side}",
+        id=seat.named("speed"),
+        title=f"Maximum sliding speed in {seat.words}",
         unit="m/s",
         source=Source("limit of the bush's maker, source of the guide", confirmed=True),
-        method="greatest speed of the follower over the turn",
+        method="greatest sliding speed on the pin over the turn"
+        if pinned
+        else "greatest speed of the follower over the turn",
         lift_can_help=True,
         tier=Tier.SCREENING,
         moved_by_tolerance=False,
-        part="guides",
-        kept_as=f"lift per radian at the maximum sliding speed in guide {side}",
-        formula="max |v| <= v_max; v: speed of the stem in the bush, v_max: guides.*.speed_limit.",
-        symbols={"v": "follower_velocity", "v_max": f"{table_of(side)}.speed_limit"},
+        part=seat.part,
+        kept_as=f"lift per radian at the maximum sliding speed in {seat.words}",
+        formula=f"max |v| <= v_max; v: speed of the {'pin' if pinned else 'stem'} in the bush,"
+        f" v_max: {seat.each}.speed_limit.",
+        symbols={
+            "v": speed if pinned else "follower_velocity",
+            "v_max": f"{table_of(side)}.speed_limit",
+        },
         reason="a PV limit holds up to the greatest speed of the bush; above it the"
         " rubbing surface overheats at any load.",
         values=(*given.LOADS, *given.of_guide(side, "speed_limit")),
         levers=levers.rubbing_speed(side),
-        page="Guides",
+        page=seat.page,
     ).measured(
         "angles",
         allowed=of_key(f"{table_of(side)}.speed_limit"),
+        applies=has_bush(side),
         remark=lambda demand, solution: replace(
             demand, source=_maker(guide_of(solution.machine, side))
         ),
         deviation=0.002,
-        bound=slope_at,
+        bound=_slope_on_pin if pinned else slope_at,
         kept=Kept(slope_over, unit="mm", unloaded=True),
-    )(follower_speed)
+    )(_pin_speed if pinned else follower_speed)
 
 
 guide_pressure_a, guide_pressure_b = _guide_pressure("A"), _guide_pressure("B")
@@ -536,6 +661,8 @@ guide_pv_a, guide_pv_b = _guide_pv("A"), _guide_pv("B")
 guide_edge_pressure_a, guide_edge_pressure_b = _guide_edge_pressure("A"), _guide_edge_pressure("B")
 guide_temperature_a, guide_temperature_b = _guide_temperature("A"), _guide_temperature("B")
 guide_speed_a, guide_speed_b = _guide_speed("A"), _guide_speed("B")
+pivot_pressure, pivot_pv = _guide_pressure("pivot"), _guide_pv("pivot")
+pivot_temperature, pivot_speed = _guide_temperature("pivot"), _guide_speed("pivot")
 
 
 @check(

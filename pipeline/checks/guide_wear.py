@@ -1,4 +1,4 @@
-"""Checks of the guides over their life: expansion and wear."""
+"""Checks of the guides, and of the bush of a pivot, over their life: expansion and wear."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import (
@@ -24,9 +25,13 @@ from camwright.pipeline.checks.check import (
     of_row,
 )
 from camwright.pipeline.checks.guide_strength import (
+    ARM_LENGTH,
     PV,
-    Side,
+    SEATS,
+    Place,
+    bush_of,
     guide_of,
+    has_bush,
     heat_path_lacks,
     hottest,
     table_of,
@@ -39,10 +44,13 @@ from camwright.pipeline.follower.guide_friction import bore_closure
 from camwright.pipeline.follower.guide_reactions import Guide
 
 
-def _guide_expansion(side: Side) -> Declaration:
+def _guide_expansion(side: Place) -> Declaration:
+    """Check that a bush, as it warms and swells, keeps a clearance to the stem or pin."""
+    seat = SEATS[side]
+
     @check(
-        id=f"guide_expansion_{side}",
-        title=f"Thermal and moisture expansion vs. clearance in guide {side}",
+        id=seat.named("expansion"),
+        title=f"Thermal and moisture expansion vs. clearance in {seat.words}",
         unit="mm",
         source=Source(
             "no seizure at temperature and moisture: Lame, thick ring in a rigid housing",
@@ -51,19 +59,19 @@ def _guide_expansion(side: Side) -> Declaration:
         method="closure of the bore of an axially held bush in a rigid housing, and growth of the"
         " stem, at the temperature at the greatest friction",
         lift_can_help=True,
-        part="guides",
-        kept_as=f"friction power of guide {side} at its least clearance",
+        part=seat.part,
+        kept_as=f"friction power of {seat.words} at its least clearance",
         formula="max(c, c_f) d e + d a_s (T - T_0) <= C; e = a_b (T - T_0) + w: free strain of the"
         " bush by heat and moisture, k = (1 + 2 t/d)^2, c = (k - 1) (1 + nu) / (1 + (1 - 2 nu) k):"
-        " Lame's closure of the bore of a wall t, guides.*.wall, held axially,"
+        f" Lame's closure of the bore of a wall t, {seat.each}.wall, held axially,"
         " c_f = (k - 1) (1 + nu) / (1 + nu + (1 - nu) k): free to lengthen, d: bore, a_b, a_s:"
         " thermal expansion of bush and stem, w: growth by moisture, T: temperature of the guide,"
-        " T_0: 20 degC, C: guides.*.clearance.",
+        f" T_0: 20 degC, C: {seat.each}.clearance.",
         symbols={
             "T": f"{STATED} [degC]",
             "T_0": "20 [degC]",
             "a_b": f"{table_of(side)}.material.expansion",
-            "a_s": "follower.stem_material.expansion",
+            "a_s": f"{seat.pin}.expansion",
             "w": STATED,
             "nu": f"{table_of(side)}.material.nu",
             "t": f"{table_of(side)}.wall",
@@ -75,16 +83,20 @@ def _guide_expansion(side: Side) -> Declaration:
         values=(
             *given.LOADS,
             *given.of_guide(side, "material.expansion", "material.swelling"),
-            "follower.stem_material.expansion",
+            f"{seat.pin}.expansion",
             *given.heat(side),
         ),
-        levers=(levers.one(f"guides.{side.lower()}.clearance"),),
-        page="Guides",
+        levers=(levers.one(f"{table_of(side)}.clearance"),),
+        page=seat.page,
     )
-    def expansion(solution: Solution) -> Demand:
-        """Expansion of guide and stem, m, against the clearance between them."""
-        guide = guide_of(solution.machine, side)
-        bush, stem = guide.material, solution.case.follower.stem_material
+    def expansion(solution: Solution) -> Demand | None:
+        """Expansion of bush and stem or pin, m, against the clearance between them."""
+        if bush_of(solution.machine, side) is None:
+            return None
+        guide, stem = guide_of(solution.machine, side), pin_in(solution.case, side)
+        bush = guide.material
+        if stem is None:
+            return Demand(None, guide.clearance, missing=(seat.pin,))
         growth_of_stem, moisture = stem.expansion, bush.moisture_growth
         hot = hottest(solution, side)
         missing = (
@@ -113,6 +125,14 @@ def _guide_expansion(side: Side) -> Declaration:
         )
 
     return expansion
+
+
+def pin_in(case: Case, side: Place) -> Material | None:
+    """Material of the stem in a guide, or of the pin of a pivot; None: not known."""
+    pivot = case.follower.pivot
+    if side != "pivot" or pivot is None:
+        return case.follower.stem_material
+    return pivot.pin_material
 
 
 def closures(
@@ -145,7 +165,12 @@ def seizure_temperature(guide: Guide, stem: Material) -> float | None:
     return ROOM + (guide.clearance - cold) / (warm - cold) if warm > cold else None
 
 
-def _guide_wear(side: Side) -> Declaration:
+def _guide_wear(side: Place) -> Declaration:
+    """Check of the wear depth of a bush at the target life."""
+    seat = SEATS[side]
+    load, speed = f"guide_normal_load_{side}", "follower_velocity"
+    if side == "pivot":
+        load, speed = "pivot_load", f"follower_velocity {seat.table}.diameter/(2 {ARM_LENGTH})"
     rate, life = f"{table_of(side)}.wear_rate", f"limits.{TARGET_LIFE.id}"
 
     def depth(worst: Value, numbers: Numbers) -> Value:
@@ -165,21 +190,21 @@ def _guide_wear(side: Side) -> Declaration:
 
     return check(
         WEAR_DEPTH,
-        id=f"guide_wear_{side}",
-        title=f"Wear depth of guide {side} at target life",
+        id=seat.named("wear"),
+        title=f"Wear depth of {seat.words} at target life",
         method="wear rate times mean pressure times sliding distance, over the load cases by their"
         " duty; without a duty all of the life in the worst load case",
         lift_can_help=True,
         tier=Tier.SCREENING,
-        part="guides",
-        kept_as=f"PV of guide {side} at its wear depth",
-        formula="K t PV <= h; K: guides.*.wear_rate, volume per load and distance, PV: sum of q_i"
-        " PV_i, PV_i: mean PV value of the guide in a load case, q_i: load_case.duty, t:"
+        part=seat.part,
+        kept_as=f"PV of {seat.words} at its wear depth",
+        formula=f"K t PV <= h; K: {seat.each}.wear_rate, volume per load and distance, PV: sum of"
+        " q_i PV_i, PV_i: mean PV value of the guide in a load case, q_i: load_case.duty, t:"
         " limits.target_life, h: limits.wear_depth. Without a duty PV is the greatest PV_i.",
         symbols={
             "K": rate,
             "t": life,
-            "PV": f"mean(|guide_normal_load_{side} follower_velocity|)"
+            "PV": f"mean(|{load} {speed}|)"
             f"/({table_of(side)}.diameter {table_of(side)}.length) [MPa m/s]",
         },
         reason="wear opens the clearance that jamming and edge pressure are computed"
@@ -187,12 +212,13 @@ def _guide_wear(side: Side) -> Declaration:
         load_cases=LASTING,
         values=(*given.LOADS, *given.of_guide(side, "wear_rate"), "limits.target_life"),
         levers=(
-            levers.one(f"guides.{side.lower()}.wear_rate", -1),
+            levers.one(f"{table_of(side)}.wear_rate", -1),
             *levers.guide(side, "pv_limit"),
         ),
-        page="Guides",
+        page=seat.page,
     ).measured(
         "wear",
+        applies=has_bush(side),
         value=depth,
         bound=pv_at,
         allowed=allowed,
@@ -206,3 +232,4 @@ def _guide_wear(side: Side) -> Declaration:
 
 guide_expansion_a, guide_expansion_b = _guide_expansion("A"), _guide_expansion("B")
 guide_wear_a, guide_wear_b = _guide_wear("A"), _guide_wear("B")
+pivot_expansion, pivot_wear = _guide_expansion("pivot"), _guide_wear("pivot")

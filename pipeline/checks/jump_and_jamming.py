@@ -164,10 +164,10 @@ def _on_points(demand: Demand, solution: Solution) -> Demand:
 ).measured("angles", remark=_on_points, deviation=0.01, kept=Kept(factor_max=FACTOR_MAX))
 def jam_index(cam: LoadedCam) -> Array:
     """Guide friction over axial cam force on the rise."""
-    return _outward(cam, cam.jam)
+    return outward(cam, cam.jam)
 
 
-def _outward(cam: LoadedCam, index: Array) -> Array:
+def outward(cam: LoadedCam, index: Array) -> Array:
     """Jam index on the rise, 0 on the return: there friction cannot lock the follower."""
     return np.where(np.real(cam.slope) > 0, index, 0.0 * index)
 
@@ -189,7 +189,7 @@ def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
 def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     """No constraint where the maximum friction is not known."""
     worst = cam.jam_worst
-    return None if worst is None else _outward(cam, worst) / limit
+    return None if worst is None else outward(cam, worst) / limit
 
 
 @check(
@@ -220,7 +220,7 @@ def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
 def jam_index_friction_max(cam: LoadedCam) -> Array:
     """Jam index at the maximum friction coefficients of both guides."""
     worst = cam.jam_worst
-    return np.full_like(cam.jam, np.nan) if worst is None else _outward(cam, worst)
+    return np.full_like(cam.jam, np.nan) if worst is None else outward(cam, worst)
 
 
 def _speed_of_jump(worst: Value, numbers: Numbers) -> Value:

@@ -153,7 +153,7 @@ data_shaped_springs = tuple(
 )
 """Of the springs that are not linear, by their kinds."""
 data_guides = _data("guides", _guides, page="Guides")
-data_pivot = _data("pivot", _pivot, "arm", described_by=("follower.pivot",), page="Follower")
+data_pivot = _data("pivot", _pivot, "arm", described_by=("follower.pivot",), page="Pivot")
 data_camshaft = _data(
     "camshaft",
     lambda case: {"camshaft": case.camshaft},

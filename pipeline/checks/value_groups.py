@@ -20,6 +20,8 @@ LOADS = (
     *("guides.a.friction*", "guides.a.material.E", "guides.a.material.nu"),
     *("guides.b.friction*", "guides.b.material.E", "guides.b.material.nu"),
     *("follower.stem_material.E", "follower.stem_material.nu"),
+    *("follower.pivot.bush.friction*", "follower.pivot.needle_bearing.friction*"),
+    *("follower.pivot.swinging_mass", "follower.pivot.mass_*"),
 )
 _BODIES = ("cam.material", "roller.material", "follower.face.material")
 CAM_FATIGUE = ("cam.material.fatigue_torsion", "cam.material.fatigue_bending")
@@ -58,12 +60,14 @@ LENGTH = (
 )
 
 
-def of_guide(side: Literal["A", "B"], *keys: str) -> tuple[str, ...]:
-    """Keys of properties of guide A or B."""
-    return tuple(f"guides.{side.lower()}.{key}" for key in keys)
+def of_guide(side: Literal["A", "B", "pivot"], *keys: str) -> tuple[str, ...]:
+    """Keys of properties of guide A or B, or of the bush of a pivot."""
+    table = "follower.pivot.bush" if side == "pivot" else f"guides.{side.lower()}"
+    return tuple(f"{table}.{key}" for key in keys)
 
 
-def heat(side: Literal["A", "B"]) -> tuple[str, ...]:
-    """Keys that decide the temperature of guide A or B."""
+def heat(side: Literal["A", "B", "pivot"]) -> tuple[str, ...]:
+    """Keys that decide the temperature of guide A or B, or of the bush of a pivot."""
     path = of_guide(side, "material.conductivity", "thermal_resistance", "housing_resistance")
-    return (*path, "guides.ambient_temperature")
+    around = "follower.pivot" if side == "pivot" else "guides"
+    return (*path, f"{around}.ambient_temperature")

@@ -376,7 +376,8 @@ def axial_of_surge(
         return np.asarray(surge / loads.share)
     pressed = Pressed.of(pitch.slide(loads.theta, system.face_friction))
     along, across = loads.pivot_load - loads.axial_force * np.stack([pressed.along, pressed.across])
-    pull, direction = Pull(along - surge, across), np.sign(loads.lift_slope)
+    added, direction = pivot.of_spring(surge, loads.travel), np.sign(loads.lift_slope)
+    pull = Pull(along + added.along, across + added.across)
     whole_force = loads.required_force + surge
     return pivot.balanced(whole_force, pressed, pull, direction).axial - loads.axial_force
 

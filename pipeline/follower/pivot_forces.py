@@ -151,7 +151,7 @@ class ArmPivot:
         velocity, acceleration : array (..., n)   of the reference point, m/s and m/s2
         """
         cos, sin = np.cos(self.load_angle), self.sense * np.sin(self.load_angle)
-        pulled = self._of_spring(spring, travel)
+        pulled = self.of_spring(spring, travel)
         along, across = pulled.along - external * cos, pulled.across - external * sin
         cos, sin = np.cos(self.mass_angle), np.sin(self.mass_angle)
         radius = self.mass * self.mass_distance
@@ -164,7 +164,7 @@ class ArmPivot:
             along, across = along - weight * np.cos(down), across - weight * np.sin(down)
         return Pull(along, across)
 
-    def _of_spring(self, force: Value, travel: Value) -> Pull:
+    def of_spring(self, force: Value, travel: Value) -> Pull:
         """Resultant of the spring of a force at the reference point, N, on the arm."""
         if self.spring is None:
             return Pull(np.asarray(-force), np.asarray(0.0 * force))

@@ -29,8 +29,8 @@ from camwright.pipeline.checks.contact_strength import (
     pressure_allowables,
 )
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
-from camwright.pipeline.checks.guide_strength import power_at
-from camwright.pipeline.checks.guide_wear import seizure_temperature
+from camwright.pipeline.checks.guide_strength import pivot_temperature, power_at
+from camwright.pipeline.checks.guide_wear import pivot_expansion, seizure_temperature
 from camwright.pipeline.checks.jump_and_jamming import cam_speed_without_jump, jump_speed
 from camwright.pipeline.checks.key_strength import keyway_root, keyway_root_of
 from camwright.pipeline.checks.registry import CHECKS
@@ -105,6 +105,12 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
             ):
                 if limit is not None:
                     limits.setdefault(f"{key}_{side}", {})[f"{name}_{side}"] = limit
+    pivot = machine.pivot
+    if case.scope.covers("pivot") and pivot is not None and pivot.bush is not None:
+        pin = pivot.pin_material
+        seizure = None if pin is None else seizure_temperature(pivot.bush, pin)
+        if (limit := power_at("pivot", seizure, numbers)) is not None:
+            limits.setdefault(pivot_temperature.kept_at, {})[pivot_expansion.id] = limit
     grease = grease_of(machine, numbers)
     if grease is not None:
         limits[grease_life.id] = {grease_life.id: grease.rating}

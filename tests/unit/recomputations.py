@@ -8,6 +8,7 @@ _ASSEMBLY = "unit/test_assembly.py"
 _CONTACT = "verification/test_contact_audit.py"
 _GUIDES = "verification/test_guides_audit.py"
 _ARM = "verification/test_arm_strength.py"
+_PIVOT = "unit/test_pivot_checks.py"
 _HUB = "verification/test_hub_elements.py"
 _ROLLER = "verification/test_roller_audit.py"
 _IMPACT = "verification/test_gear_impact.py"
@@ -27,6 +28,16 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     ),
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",
+    ),
+    (_PIVOT, "test_bush_of_a_solved_arm_by_the_balance_of_its_forces"): (
+        "pivot_pressure", "pivot_pv", "pivot_temperature", "pivot_speed", "pivot_wear",
+        "pivot_expansion",
+    ),
+    (_PIVOT, "test_jam_indices_of_a_solved_arm_by_moments"): (
+        "pivot_jam_index", "pivot_jam_index_friction_max",
+    ),
+    (_PIVOT, "test_needles_of_a_solved_arm_by_the_path_that_it_swings"): (
+        "pivot_static", "pivot_life",
     ),
     (_ASSEMBLY, "test_gaps_in_the_plane_of_the_cam_by_polygons_over_the_turn"): (
         "machine_shaft_gap", "fork_shaft_gap",

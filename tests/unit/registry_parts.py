@@ -6,11 +6,14 @@ import numpy as np
 from check_tools import by_limit, counted, limit_of, limited, loaded, tried, unlimited
 from trial_variants import (
     NAN,
+    at_worst_on_pivot,
     beside,
     cycle_with,
     frictionless,
     geared,
     on_arm,
+    on_nylon,
+    on_pivot,
     reversing,
     rolled,
     stiffened,
@@ -640,4 +643,108 @@ by_limit(
     by_hand.viscosity_ratio(),
     "kappa of ISO 281",
     missing=lambda: with_bearing(viscosity=None),
+)
+
+
+def needles(**values):
+    """The solution on an arm in needles."""
+    return on_pivot("needle_bearing", **values)
+
+
+NO_LOAD = {"pivot_load": np.full((2, made.POSITIONS), np.nan)}
+# bush of 10 by 20 mm, 500 N sin, 0.4 m/s sin by 5 over 60 mm on the pin; nylon as of the guides
+PIN_SPEED = 0.4 * 5.0 / 60.0
+tried(
+    "pivot_pressure",
+    limited(
+        "pivot_pressure",
+        lambda p: on_pivot(pressure_limit=p / by_hand.WARM_NYLON),
+        made.arm_solution,
+    ),
+    lambda: on_pivot(pressure_limit=None),
+    lambda: on_pivot(loads=NO_LOAD),
+    500.0 / 200.0,
+    "R/(d l)",
+    base=made.arm_solution,
+)
+tried(
+    "pivot_pv",
+    limited("pivot_pv", lambda p: on_pivot(pv_limit=p), made.arm_solution),
+    lambda: on_pivot(pv_limit=None),
+    lambda: on_pivot(loads=NO_LOAD),
+    500.0 * PIN_SPEED / 2.0 / 200.0,
+    "mean of R v sin^2 on the pin",
+    base=made.arm_solution,
+)
+tried(
+    "pivot_temperature",
+    limited(
+        "pivot_temperature", lambda t: on_nylon(temperature_limit=t + 273.15), made.arm_solution
+    ),
+    lambda: on_nylon(temperature_limit=None),
+    lambda: at_worst_on_pivot(pivot_friction=NAN),
+    56.85,
+    "330 K",
+    base=made.arm_solution,
+)
+tried(
+    "pivot_speed",
+    limited("pivot_speed", lambda v: on_pivot(speed_limit=v), made.arm_solution),
+    lambda: on_pivot(speed_limit=None),
+    lambda: on_pivot(loads={"velocity": NAN}),
+    PIN_SPEED,
+    "w times half the stroke, 80 rad/s by 5 mm, by the radius of the pin over the arm",
+    base=made.arm_solution,
+)
+by_limit(
+    "pivot_wear",
+    "wear_depth",
+    lambda: on_pivot(loads=NO_LOAD),
+    1e3 * 1e-17 * 1e6 * 500.0 * PIN_SPEED / 2.0 / 200.0 * 3.6e6,
+    "Archard: 1e-17 m2/N times PV times 1000 h",
+    base=made.arm_solution,
+    missing=lambda: on_pivot(wear_rate=None),
+)
+tried(
+    "pivot_expansion",
+    limited("pivot_expansion", lambda gap: on_pivot(clearance=gap), made.arm_solution),
+    lambda: on_pivot(wall=None),
+    lambda: at_worst_on_pivot(pivot_friction=NAN),
+    10.0 * (1.25 * 1.4 / 1.45 * (8e-5 * 36.85 + 0.002) + 1.2e-5 * 36.85),
+    "Lame as of the guides, and the pin",
+    base=made.arm_solution,
+)
+by_limit(
+    "pivot_jam_index",
+    "jam_index",
+    lambda: on_pivot(loads={"jam_index": NAN}),
+    0.3,
+    "greatest of 0.2 + 0.1 sin on the rise",
+    base=made.arm_solution,
+)
+by_limit(
+    "pivot_jam_index_friction_max",
+    "jam_index",
+    lambda: at_worst_on_pivot(jam_index=NAN),
+    0.4,
+    "0.3 + 0.1 sin",
+    base=made.arm_solution,
+)
+by_limit(
+    "pivot_static",
+    "pivot_static_safety",
+    lambda: needles(loads=NO_LOAD),
+    12_000.0 / 500.0,
+    "C0/R",
+    base=lambda: made.arm_solution("needle_bearing"),
+    missing=lambda: needles(C0=None),
+)
+by_limit(
+    "pivot_life",
+    "pivot_life",
+    lambda: needles(loads=NO_LOAD),
+    by_hand.pivot_life(10_000.0, 500.0, 0.4 / 0.06),
+    "(C/P_m)^(10/3) million turns at the mean of |sin|^(13/3)",
+    base=lambda: made.arm_solution("needle_bearing"),
+    missing=lambda: needles(C=None),
 )

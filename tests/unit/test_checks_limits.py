@@ -9,6 +9,7 @@ from trial_variants import (
     cycle_with,
     faced,
     hollow,
+    on_arm,
     soft,
     with_certificate,
     with_cycle,
@@ -138,7 +139,8 @@ def test_the_source_of_every_limit_is_looked_up_and_no_other():
     """But for the overspeed, of which a limit is made; `limits.sources` accepts no other name."""
     sources = Watched()
     of_return = with_limits(pressure_angle=0.3, return_pressure_angle=0.2)
-    for solution in (made.solution(), hollow(), soft(), faced(), of_return):
+    needles = made.arm_solution("needle_bearing")
+    for solution in (made.solution(), hollow(), soft(), faced(), of_return, needles, on_arm()):
         limits = made.changed(solution.case.limits, sources=sources)
         case = made.changed(solution.case, limits=limits)
         all_checks(made.changed_solution(solution, case=case))

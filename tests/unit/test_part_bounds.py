@@ -35,6 +35,7 @@ from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
 from camwright.pipeline.follower.flat_face import FollowerFace
 from camwright.pipeline.follower.rocker import Rocker
+from camwright.pipeline.follower.pivot import NeedleBearing, Pivot
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import GasSpring, PivotSpring, TorsionSpring
 from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
@@ -99,6 +100,8 @@ def every_part() -> dict[type[Part], Part]:
         GasSpring(pressure=3e6, area=1e-4, volume=5e-6),
         TorsionSpring(moment=1.0, angular_rate=20.0, arm=0.04),
         FollowerArm(centre_distance=0.11, length=0.1, swing="with"),
+        needles := NeedleBearing(diameter=0.016, length=0.016, friction=0.0025),
+        Pivot(needle_bearing=needles),
         BalanceHole(),
         Counterweight(unbalance=1e-4, angle=0.0, position=0.0),
         ShaftSection(

@@ -105,8 +105,30 @@ def on_arm(numbers: Numbers) -> dict[str, Any]:
     return {**LOADED, "axial": FORCE, "motion": path}
 
 
+def pivoted(numbers: Numbers) -> dict[str, Any]:
+    """Load of a pivot, and power that heats its bush to 330 K."""
+    pivot = numbers.known_case.follower.pivot
+    assert pivot is not None
+    watts = np.ones(made.POSITIONS)
+    if pivot.bush is not None:
+        watts *= (330.0 - pivot.ambient_temperature) / thermal_resistance(pivot.bush)
+    return {**LOADED, "pivot_load": 500.0 * np.abs(made.WAVE), "pivot_heat": watts}
+
+
 OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
     "arm_yield": on_arm,
+    **dict.fromkeys(
+        (
+            "pivot_pressure",
+            "pivot_pv",
+            "pivot_temperature",
+            "pivot_speed",
+            "pivot_wear",
+            "pivot_static",
+            "pivot_life",
+        ),
+        pivoted,
+    ),
     "concave_radius": hollow,
     "guide_temperature_A": warm,
     "guide_temperature_B": warm,
@@ -151,6 +173,8 @@ def test_a_stated_field_is_one_of_a_loaded_cam() -> None:
 SMALL: dict[str, Callable[[], Case]] = {
     "roller": made.case,
     "face": made.face_case,
+    "arm": made.arm_case,
+    "needles": lambda: made.arm_case("needle_bearing"),
     "gas spring": lambda: gas_case(table=f"{TABLE}{LIMITS}"),
 }
 
@@ -159,7 +183,8 @@ SMALL: dict[str, Callable[[], Case]] = {
 def small(name: str) -> Solution:
     """A preview at 24 angles."""
     case = SMALL[name]()
-    shape = made.face_contour() if name == "face" else made.contour()
+    shapes = {"face": made.face_contour, "arm": made.arm_contour, "needles": made.arm_contour}
+    shape = shapes.get(name, made.contour)()
     return solve(case, shape, Tier.PREVIEW, torques=engine_torques(case), positions=24)
 
 

@@ -104,6 +104,32 @@ def with_linked_spring(length: float = 0.1) -> Solution:
     )
 
 
+def on_pivot(bearing: str = "bush", loads: dict[str, Any] | None = None, **values: Any) -> Solution:
+    """The solution on an arm with other values of the bearing of its pivot, or other loads."""
+    case = made.arm_case(bearing)
+    part = made.changed(getattr(case.follower.pivot, bearing), **values)
+    pivot = made.changed(case.follower.pivot, **{bearing: part})
+    case = made.changed(case, follower=made.changed(case.follower, pivot=pivot))
+    cycle = made.cycle(made.arm_contour())
+    turn = cycle_with("loads", cycle, **loads) if loads else cycle
+    return made.arm_solution(bearing, case=case, cycles=(turn,))
+
+
+def at_worst_on_pivot(**values: Any) -> Solution:
+    """The solution on an arm with other loads at the greatest friction of its pivot."""
+    cycle = made.cycle(made.arm_contour())
+    bounds = cycle.parts.friction
+    worst = replace(bounds, greatest=replace(bounds.greatest, **values))
+    return made.arm_solution(cycles=(cycle_with("parts", cycle, friction=worst),))
+
+
+def on_nylon(**values: Any) -> Solution:
+    """The solution on an arm with a bush of other nylon."""
+    case = made.arm_case()
+    card = made.changed(case.materials["nylon"], **values)
+    return made.arm_solution(case=made.with_card(case, card))
+
+
 def with_material(name: str, **values: Any) -> Solution:
     """The solution with a material changed, wherever a part is made of it."""
     card = made.changed(made.case().materials[name], **values)

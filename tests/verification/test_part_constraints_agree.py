@@ -373,9 +373,14 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
         ),
         **dict.fromkeys(
             ("roller_pin_fatigue", "case_depth", "shaft_fatigue", "shaft_yield",
-             "shaft_deflection", "shaft_slope", "shaft_bearing_static", "shaft_bearing_life"),
+             "shaft_deflection", "shaft_slope", "shaft_bearing_static", "shaft_bearing_life",
+             "arm_fatigue_pivot", "arm_fatigue_roller"),
             "roller_static",
         ),
+        # a bound of the power that heats the bush, as of the guides
+        "pivot_expansion": "pivot_temperature",
+        # of the arm as drawn beside the cam
+        **dict.fromkeys(("arm_gap", "arm_cam_gap"), "cam_radius"),
     }  # fmt: skip
     groups = {one.id for one in CHECKS if one.measured and one.measured.kept
               and one.measured.kept.group}  # fmt: skip

@@ -1,0 +1,153 @@
+"""Checks of an arm's pivot on a solved cam, by a balance of forces in axes at rest.
+
+The balance takes nothing from the formulas of a pivot: the contact force is at the normal of the
+contour, accelerations are differences of positions.
+"""
+
+from functools import cache, partial
+
+import made_trial as made
+import numpy as np
+import pytest
+
+from camwright.geometry.lift import Jet
+from camwright.pipeline.checks import guide_strength, guide_wear, pivot_bearing
+from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.solution import solution as solve
+
+LENGTH, PIN = 0.060, 0.010  # of the made-up arm and diameter of its pin, m
+EIGHTH = (-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560)
+"""Weights of a second difference of eighth order."""
+
+
+@cache
+def solved(bearing):
+    """Preview of the made-up arm of `made_trial`."""
+    case = made.arm_case(bearing)
+    return solve(case, made.arm_contour(), Tier.PREVIEW, torques={}, positions=144)
+
+
+def end(contour, theta):
+    """End of the arm in axes at rest: x to the pivot, y against the rotation of the cam."""
+    arm = contour.pitch.arm
+    angle = contour.pitch.start + 0.5 * made.STROKE * (1.0 - np.cos(theta)) / arm.length
+    return np.array([arm.centre_distance - arm.length * np.cos(angle), arm.length * np.sin(angle)])
+
+
+def second(of, theta, step=0.02):
+    """Second derivative by the cam angle."""
+    return sum(w * of(theta + (k - 4) * step) for k, w in enumerate(EIGHTH)) / step**2
+
+
+def carried(cycle, force):
+    """Load of the pivot (n,), N, of a contact force (n,), and the lever of the contact, m.
+
+    The spring pulls against the travel of the roller, and the whole mass is there.
+    """
+    contour, theta, machine = cycle.contour, cycle.theta, cycle.machine
+    cos, sin = np.cos(theta), np.sin(theta)
+    nx, ny = contour.local_frame(theta).normal
+    normal = np.stack([cos * nx + sin * ny, cos * ny - sin * nx])
+    arm = end(contour, theta) - np.array([[0.070], [0.0]])
+    outwards = np.stack([arm[1], -arm[0]]) / LENGTH
+    spring = machine.spring.preload + machine.spring.rate * 0.005 * (1.0 - cos)
+    thrown = machine.mass * machine.cam_speed**2 * second(partial(end, contour), theta)
+    reaction = thrown - force * normal + spring * outwards
+    return np.hypot(*reaction), arm[1] * normal[0] - arm[0] * normal[1]
+
+
+def loads_of(cycle):
+    return carried(cycle, cycle.loads.normal_force)[0]
+
+
+def swing(cycle):
+    """Angular speed of the arm (n,), rad/s."""
+    return cycle.machine.cam_speed * np.abs(0.005 * np.sin(cycle.theta)) / LENGTH
+
+
+def demand(declared, bearing="bush"):
+    return declared(solved(bearing)).demand
+
+
+def test_bush_of_a_solved_arm_by_the_balance_of_its_forces():
+    """pivot_pressure, pv, speed, wear, temperature, expansion; the lift's spline holds 1e-4."""
+    cycles, area = solved("bush").cycles, PIN * 0.020
+    pressure = max((loads_of(each) / area).max() for each in cycles)
+    assert demand(guide_strength.pivot_pressure) == pytest.approx(pressure, rel=5e-4)
+    pv = max((loads_of(each) * swing(each) * 0.5 * PIN).mean() / area for each in cycles)
+    assert demand(guide_strength.pivot_pv) == pytest.approx(pv, rel=5e-4)
+    speed = max((swing(each) * 0.5 * PIN).max() for each in cycles)
+    assert demand(guide_strength.pivot_speed) == pytest.approx(speed, rel=5e-4)
+    assert demand(guide_wear.pivot_wear) == pytest.approx(1e-17 * pv * 3.6e6, rel=5e-4)
+    heat = 0.0
+    for each in cycles:
+        force = each.parts.friction.greatest.normal_force
+        moment = 0.2 * 0.5 * PIN * carried(each, force)[0]
+        heat = max(heat, (moment * swing(each)).mean())
+    wall = np.log(1.5) / (2.0 * np.pi * 0.25 * 0.020)
+    warm = 40.0 + heat * (wall + 2.0)
+    assert warm > 40.5
+    hot = demand(guide_strength.pivot_temperature)
+    assert hot - 40.0 == pytest.approx(warm - 40.0, rel=5e-4)
+    free, square = 8e-5 * (warm - 20.0) + 0.002, 1.5**2
+    closed = PIN * free * (square - 1.0) * 1.4 / (1.0 + 0.2 * square)
+    grown = closed + PIN * 1.2e-5 * (warm - 20.0)
+    assert demand(guide_wear.pivot_expansion) == pytest.approx(grown, rel=1e-4)
+
+
+def test_jam_indices_of_a_solved_arm_by_moments():
+    """pivot_jam_index, nominal and at friction_max: moment of the friction over the contact's."""
+    for declared, friction, worst in (
+        (pivot_bearing.pivot_jam_index, 0.1, False),
+        (pivot_bearing.pivot_jam_index_friction_max, 0.2, True),
+    ):
+        greatest = 0.0
+        for each in solved("bush").cycles:
+            loads = each.parts.friction.greatest if worst else each.loads
+            load, lever = carried(each, loads.normal_force)
+            share = friction * 0.5 * PIN * load / (loads.normal_force * lever)
+            greatest = max(greatest, share[np.sin(each.theta) > 1e-6].max())
+        assert demand(declared) == pytest.approx(greatest, rel=5e-4)
+
+
+def test_needles_of_a_solved_arm_by_the_path_that_it_swings():
+    """pivot_static and pivot_life: the damage of each step of the path to the power 10/3."""
+    cycles = solved("needle_bearing").cycles
+    safety = min(12e3 / loads_of(each).max() for each in cycles)
+    assert demand(pivot_bearing.pivot_static, "needle_bearing") == pytest.approx(safety, rel=5e-4)
+    lives = []
+    for each in cycles:
+        turn = 2.0 * np.pi / each.machine.cam_speed
+        swung = swing(each) * turn / each.theta.size / (2.0 * np.pi)  # turns at each angle
+        used = ((loads_of(each) / 10e3) ** (10.0 / 3.0) * swung).sum() / 1e6
+        lives.append(turn / used)
+    life = demand(pivot_bearing.pivot_life, "needle_bearing")
+    assert life == pytest.approx(min(lives), rel=2e-3)
+
+
+MEASURED = (
+    *("pivot_pressure", "pivot_pv", "pivot_wear", "pivot_jam_index"),
+    *("pivot_jam_index_friction_max", "pivot_temperature", "pivot_speed"),
+    *("pivot_static", "pivot_life"),
+)
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_measures_are_differentiated_by_a_complex_step(name):
+    """By the lift, its derivatives and the prime radius, against differences of fourth order."""
+    whole = solved("needle_bearing" if name in ("pivot_static", "pivot_life") else "bush")
+    theta = np.radians(np.array([40.0, 130.0, 220.0, 320.0]))
+    numbers, jet = whole.numbers, made.arm_contour().lift.jet(theta, 2)
+
+    def measured(x):
+        moved = Jet(*(each * (1.0 + (0.3 + k) * x) for k, each in enumerate(jet[:3])))
+        at = numbers | {"cam.prime_radius": numbers["cam.prime_radius"] * (1.0 + 0.1 * x)}
+        return DECLARED[name].measure(LoadedCam(moved, at, made.STROKE))
+
+    step, h = 1e-30, 1e-3
+    exact = np.imag(measured(1j * step)) / step
+    near, far = (measured(k * h) - measured(-k * h) for k in (1.0, 2.0))
+    difference = (8.0 * near - far) / (12.0 * h)
+    np.testing.assert_allclose(exact, difference, rtol=0, atol=1e-8 * np.abs(difference).max())
