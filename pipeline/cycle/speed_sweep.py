@@ -319,7 +319,7 @@ class _Follower:
     arm: Array
     pressed: Pressed
     direction: Array
-    pulls: tuple[Pull, Pull] | None
+    pulls: tuple[Pull, Pull, Pull] | None
 
     @classmethod
     def of(cls, machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> _Follower:
@@ -335,7 +335,8 @@ class _Follower:
             thrown = replace(pivot, gravity_angle=None).pull(
                 still, still, loads.travel, slope, loads.acceleration
             )
-            pulls, share = (resting, thrown), np.ones(theta.size)
+            share = np.ones(theta.size)
+            pulls = resting, thrown, pivot.of_spring(share, loads.travel)
         spring = machine.spring
         return cls(
             machine=machine,
@@ -359,9 +360,9 @@ class _Follower:
         pivot = self.machine.system.pivot
         if pivot is None or self.pulls is None:
             return push
-        still, thrown = self.pulls
-        along = still.along + speed**2 * thrown.along - surge
-        pull = Pull(along, still.across + speed**2 * thrown.across)
+        still, thrown, sprung = self.pulls
+        along = still.along + speed**2 * thrown.along + surge * sprung.along
+        pull = Pull(along, still.across + speed**2 * thrown.across + surge * sprung.across)
         return pivot.balanced(push, self.pressed, pull, self.direction).axial
 
     def extremes(self, cam_speed: Array) -> dict[str, Array]:

@@ -34,8 +34,8 @@ from camwright.pipeline.engine.wheel_calibration import WheelReference
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
 from camwright.pipeline.follower.flat_face import FollowerFace
-from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.pivot import NeedleBearing, Pivot
+from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import GasSpring, PivotSpring, TorsionSpring
 from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
