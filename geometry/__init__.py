@@ -29,6 +29,7 @@ In the order of the calculation:
 | `flat_face_contour` | cam surface under a flat face               | r + s + s'', m               |
 | `arm_path`          | cam surface under the roller of an arm      | psi, rad; c, l, m            |
 | `arm_face`          | cam surface under a face of an arm          | psi, rad; f, q, m            |
+| `arm_size`          | prime radius and centre distance of an arm  | r, c, m                      |
 | `swung_bar`         | distances of an arm over its swing          | psi, rad; m                  |
 | `measured_contour`  | measured contour against the nominal one    | phase, rad; deviation, m     |
 | `cutter_path`       | path of a milling cutter or grinding wheel  | x, y, m                      |

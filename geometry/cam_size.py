@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -97,7 +97,18 @@ class RollerSize(NamedTuple):
 
 
 class RollerCam(ABC):
-    """Cam of a translating roller follower whose prime radius and offset are open."""
+    """Cam of a translating roller follower whose prime radius and offset are open.
+
+    Of an arm the centre distance is in place of the offset, see `ArmCam`.
+    """
+
+    aside: ClassVar[str] = "offset"
+    """Name of what is in place of an offset."""
+    has_offset: ClassVar[bool] = True
+
+    def reach(self, offset: float) -> tuple[float, float]:
+        """Bounds of the prime radius, m, with an offset, m."""
+        return abs(offset), np.inf
 
     @abstractmethod
     def parts(self, prime_radius: float, offset: float) -> LiftParts:

@@ -12,7 +12,7 @@ from camwright.geometry.arrays import Array, Value, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import Extremum, refined
 
-_SAMPLES, _ZOOMS = 360, 4
+_BAR_SAMPLES, _BAR_ZOOMS = 360, 4
 """Cam angles, and points of the contour at each; the zooms leave 3e-7 rad, of a smooth minimum."""
 
 
@@ -53,7 +53,7 @@ class SwungBar(NamedTuple):
         ----------
         start : float   arm angle at zero lift, rad
         """
-        places = uniform_turn(_SAMPLES)
+        places = uniform_turn(_BAR_SAMPLES)
         polygon = contour.points(places)
 
         def apart(points: Array, theta: Array) -> Array:
@@ -65,13 +65,13 @@ class SwungBar(NamedTuple):
         def least(theta: Array) -> Array:
             turn = theta.ravel()[:, None]
             nearest = places[np.argmin(apart(polygon[:, None, :], turn), axis=1)]
-            step = 2.0 * np.pi / _SAMPLES
+            step = 2.0 * np.pi / _BAR_SAMPLES
             values, _ = refined(
-                lambda trial: apart(contour.points(trial), turn), nearest, step, _ZOOMS
+                lambda trial: apart(contour.points(trial), turn), nearest, step, _BAR_ZOOMS
             )
             return values.reshape(theta.shape)
 
-        return extrema.least(least, _SAMPLES)
+        return extrema.least(least, _BAR_SAMPLES)
 
     def _from_pivot(self, along: Value, across: Value) -> tuple[Value, Value]:
         """Components of a point from the pivot, to the cam axis and to the side of the arm, m."""

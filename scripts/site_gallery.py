@@ -29,6 +29,10 @@ GROUPS = {
         "The same design for the torque of a compressor, two pumps, a press, an indexing drive and "
         "a moped.",
     ),
+    "motions": (
+        "Cams of a given motion",
+        "A swing with two dwells on an arm, without a torque to balance.",
+    ),
     "papers": (
         "Cams of papers",
         "Published cams with the values as they are printed; several fail, as the papers "

@@ -36,7 +36,7 @@ from camwright.pipeline.cycle.arm_bodies import (
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 
-_BEARING = 3.1
+_OUTER_OF_BEARING = 3.1
 """Outer diameter of ball bearings of the series 02 and 03 over their bore from 12 mm, at most."""
 _WORDS = {"arm": "arm", HUB: "hub", FORK: "fork"}
 
@@ -79,7 +79,7 @@ def _discs(tip: Value, numbers: Numbers) -> dict[str, _Disc]:
     for number, at in enumerate((0.0, shaft.bearing_spacing), 1):
         if shaft.widest is not None and wide is not None:
             ends = at - shaft.cam_position, 0.5 * wide
-            discs[f"bearing {number}"] = _Disc(centre, 0.5 * _BEARING * shaft.widest, ends)
+            discs[f"bearing {number}"] = _Disc(centre, 0.5 * _OUTER_OF_BEARING * shaft.widest, ends)
     if shaft.gear is not None and case.scope.covers("gear"):
         gear = gear_of(shaft)
         module = 2.0 * shaft.gear_radius / gear.teeth

@@ -1,5 +1,7 @@
 """Form of the output of ``design sizes --json``."""
 
+from typing import NotRequired
+
 from typing_extensions import TypedDict
 
 from camwright.pipeline.base.verdict import Verdict
@@ -35,6 +37,8 @@ class SizeLengths(TypedDict):
 class RollerSizeRecord(SizeLengths):
     """A cam with a roller, with its extremes on the exact lift."""
 
+    centre_distance_mm: NotRequired[float]
+    """Distance of the pivot of an arm from the cam axis; absent of a stem."""
     prime_radius_mm: float
     """Prime radius of the cam."""
     roller_radius_mm: float

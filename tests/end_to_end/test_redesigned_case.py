@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from camwright.pipeline.base.progress import Silent
@@ -81,3 +82,19 @@ def test_cam_under_an_arm_keeps_every_limit_at_its_corners(tmp_path):
     assert not {name for name in headers if name.startswith(("guide_", "stem_slope"))}
     figures = summary["headline"]
     assert figures["torque_std_after_Nm"] <= 0.5 * figures["torque_std_before_Nm"]
+
+
+@pytest.mark.slow
+def test_an_arm_with_two_dwells_passes_certified(tmp_path):
+    """15 deg of swing by the laws of its case: the contour at rest and in the dwell is round."""
+    case = read_case(CASES / "motions" / "packaging-arm.toml")
+    summary = run_case(case, tmp_path / "run", progress=Silent()).summary
+    assert summary["verdict"] == "pass", summary["binding"]
+    final = read_run(tmp_path / "run").final
+    angle = final.lift["arm_angle_deg"]
+    assert np.ptp(angle) == pytest.approx(15.0, abs=1e-6)
+    radius = np.hypot(final.contour["contour_x_mm"], final.contour["contour_y_mm"])
+    theta = final.contour["cam_angle_deg"]
+    for low, high in ((112.0, 168.0), (282.0, 358.0)):
+        dwell = radius[(theta > low) & (theta < high)]
+        assert np.ptp(dwell) == pytest.approx(0.0, abs=1e-6)

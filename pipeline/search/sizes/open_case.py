@@ -6,6 +6,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import write_atomic
@@ -26,13 +28,15 @@ from camwright.pipeline.case.toml_text import Tables, TomlValue
 
 PRIME, OFFSET = "cam.prime_radius", "cam.offset"
 ROLLER, FACE = "roller.radius", "follower.face.width"
+DISTANCE = "follower.arm.centre_distance"
 RATE, PRELOAD = "spring.rate", "spring.preload"
 
 _PROVISIONAL: Mapping[str, str] = {
     PRIME: "9000 mm", OFFSET: "0 mm", ROLLER: "4000 mm", FACE: "9900 mm",
-    RATE: "1 kN/m", PRELOAD: "1 N",
+    RATE: "1 kN/m", PRELOAD: "1 N", DISTANCE: "9000 mm",
 }  # fmt: skip
-"""Values that contradict no others, until the sizes are known; of a roller without a hub."""
+"""Values that contradict no others, until the sizes are known; of a roller without a hub, and of a
+follower on a stem."""
 GAPS = tuple(_PROVISIONAL)
 """Keys that a case may leave open."""
 
@@ -131,9 +135,11 @@ def parse_open_case(
         text = tables_text(stated)
     tables = resolved(stated, folder)
     other = ROLLER if _entry(tables, "follower.kind") == "flat" else FACE
-    gaps = tuple(key for key in GAPS if key != other and _entry(tables, key) is None)
+    absent = {other, OFFSET if isinstance(_entry(tables, "follower.arm"), dict) else DISTANCE}
+    gaps = tuple(key for key in GAPS if key not in absent and _entry(tables, key) is None)
+    provisional = {**_PROVISIONAL, **_of_arm(tables)}
     for key in gaps:
-        enter(tables, key, _least_roller(tables) if key == ROLLER else _PROVISIONAL[key])
+        enter(tables, key, _least_roller(tables) if key == ROLLER else provisional[key])
     case = completed(validated(tables), folder)
     if case.lift is None:
         for key in (RATE, PRELOAD):
@@ -145,6 +151,24 @@ def parse_open_case(
             limit += " spring and prime radius itself"
             raise InputError("smoothing.kind", "constrained", limit)
     return OpenCase(case, gaps, text, folder)
+
+
+def _of_arm(tables: Tables) -> Mapping[str, str]:
+    """Prime radius and centre distance of an arm square to its line to the cam; {} of a stem."""
+    arm = _entry(tables, "follower.arm")
+    if not isinstance(arm, dict):
+        return {}
+    length, distance, prime = (
+        None if (stated := _entry(tables, key)) is None else units.parse(stated, "mm", key)
+        for key in ("follower.arm.length", DISTANCE, PRIME)
+    )
+    if length is None:
+        return {}
+    if distance is None:
+        distance = float(np.hypot(length, length if prime is None else prime))
+    if prime is None:
+        prime = float(np.hypot(length, distance))
+    return {PRIME: units.format(prime, "mm"), DISTANCE: units.format(distance, "mm")}
 
 
 def _least_roller(tables: Tables) -> str:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from camwright.geometry.arm_size import ArmCam
 from camwright.geometry.arrays import Array
 from camwright.geometry.cam_size import (
     EccentricCam,
@@ -36,7 +37,14 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.records.size_document import FaceSizeRecord, RollerSizeRecord, SizeLengths
-from camwright.pipeline.search.sizes.open_case import FACE, OFFSET, PRIME, ROLLER, OpenCase
+from camwright.pipeline.search.sizes.open_case import (
+    DISTANCE,
+    FACE,
+    OFFSET,
+    PRIME,
+    ROLLER,
+    OpenCase,
+)
 from camwright.pipeline.smoothing.required_lift import cam_lift
 
 DIGITS = 6
@@ -55,7 +63,8 @@ NARROWEST = "narrowest face"
 class Shape(NamedTuple):
     """Prime or base radius, offset, roller radius or face width, m; governing limit in words.
 
-    Under a flat face the prime radius is the base radius.
+    Under a flat face the prime radius is the base radius; of an arm the centre distance is in place
+    of the offset.
     """
 
     prime_radius: float
@@ -87,6 +96,16 @@ class RollerShapes:
     gaps: tuple[str, ...]
     cam: RollerCam
     least_radius: float = 0.0
+
+    @property
+    def _aside(self) -> str:
+        """Key of the offset, or of the centre distance of an arm."""
+        return OFFSET if self.case.follower.arm is None else DISTANCE
+
+    @property
+    def _stated(self) -> float:
+        """Offset or centre distance of the case, m."""
+        return float(value_of(self.case, self._aside))
 
     @cached_property
     def angle_limits(self) -> PitchLimits:
@@ -145,9 +164,9 @@ class RollerShapes:
 
     def _smallest(self, limits: PitchLimits) -> RollerSize:
         """Smallest prime radius, of any offset where it is open, m."""
-        if OFFSET in self.gaps:
+        if self._aside in self.gaps:
             return self.cam.smallest(limits)
-        offset = self.case.cam.offset
+        offset = self._stated
         return RollerSize(self.cam.least_prime_radius(limits, offset), offset)
 
     def _roller_of_tool(self) -> float:
@@ -170,8 +189,8 @@ class RollerShapes:
         return first_passing(fits, low, (tool,), _ROLLER_HALVINGS) or tool
 
     def _offset(self, prime: float, roller: float) -> float:
-        if OFFSET not in self.gaps:
-            return self.case.cam.offset
+        if self._aside not in self.gaps:
+            return self._stated
         return rounded(self.cam.best_offset(prime, self.limits(roller)))
 
     def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:
@@ -199,9 +218,9 @@ class RollerShapes:
     def record(self, shape: Shape) -> RollerSizeRecord:
         """Record of a shape with its extremes on the exact lift."""
         pitch = self.cam.extremes(shape.prime_radius, shape.offset)
-        concave = pitch.concave_radius.value
-        return {
-            **_lengths(shape),
+        concave, swings = pitch.concave_radius.value, self._aside == DISTANCE
+        record: RollerSizeRecord = {
+            **_lengths(shape._replace(offset=0.0) if swings else shape),
             "prime_radius_mm": in_unit(shape.prime_radius, "mm"),
             "roller_radius_mm": in_unit(shape.roller_radius, "mm"),
             "pressure_angle_rise_deg": in_unit(pitch.rise.value, "deg"),
@@ -211,6 +230,9 @@ class RollerShapes:
             "convex_pitch_radius_min_mm": in_unit(pitch.convex_radius.value, "mm"),
             "concave_pitch_radius_min_mm": in_unit(concave, "mm") if np.isfinite(concave) else None,
         }
+        if swings:
+            record["centre_distance_mm"] = in_unit(shape.offset, "mm")
+        return record
 
     def roller_range(self, shape: Shape) -> tuple[float, float]:
         """Least and greatest roller radius of a shape by bearing, curvature, tool and wall, m."""
@@ -327,8 +349,11 @@ def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
     if not 0.0 <= least_radius < np.inf:
         raise InputError("least radius", least_radius, ">= 0 m")
     case, section, gaps = opened.case, opened.case.lift, opened.gaps
-    case.require_stem("its sizes")
-    if case.follower.kind == "roller" and isinstance(section, LiftEccentric):
+    arm = case.follower.arm
+    if isinstance(section, LiftEccentric) and case.follower.kind != "flat":
+        if arm is not None:
+            limit = "segments, points or a file for the sizes of an arm"
+            raise InputError("lift.kind", "eccentric", limit)
         return RollerShapes(case, gaps, EccentricCam(section.eccentricity), least_radius)
     if isinstance(section, LiftSegments):
         parts = LiftParts.of_motion(motion_of(section))
@@ -336,6 +361,10 @@ def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
         parts = LiftParts.of_lift(cam_lift(case, engine_torques(case)))
     if case.follower.kind == "flat":
         return FaceShapes(case, gaps, FaceCam(parts), least_radius)
+    if arm is not None:
+        if case.facing.slides:
+            raise InputError("follower.face", "a table", "left out for the sizes of an arm")
+        return RollerShapes(case, gaps, ArmCam(parts, arm.length, arm.sense), least_radius)
     return RollerShapes(case, gaps, GivenLiftCam(parts), least_radius)
 
 
@@ -364,6 +393,7 @@ def values_of(shape: Shape, gaps: tuple[str, ...]) -> Mapping[str, float]:
     values = {
         PRIME: shape.prime_radius,
         OFFSET: shape.offset,
+        DISTANCE: shape.offset,
         ROLLER: shape.roller_radius,
         FACE: shape.face_width,
     }

@@ -76,13 +76,15 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[Panel]:
     the base radius, mm.
     """
     cam, inset = shapes.cam, shape.roller_radius
+    least, most = cam.reach(shape.offset)
     low = max(
         _RADIUS_FROM * shape.prime_radius,
-        _BEYOND_OFFSET * abs(shape.offset),
+        _BEYOND_OFFSET * least,
         _BEYOND_OFFSET * shape.roller_radius,
     )
     primes, some = (
-        _about(low, shape.prime_radius, count) for count in (_CHART_POINTS, _BEST_POINTS)
+        np.minimum(_about(low, shape.prime_radius, count), most)
+        for count in (_CHART_POINTS, _BEST_POINTS)
     )
     bases, few = (_in(radii - inset, "mm") for radii in (primes, some))
 
@@ -95,11 +97,11 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[Panel]:
         Curve(bases, _in([each.rise.value for each in sized], "deg"), "rise"),
         Curve(bases, _in([each.back.value for each in sized], "deg"), "return", SERIES[1]),
     ]
-    if shape.offset != 0.0:
+    if shape.offset != 0.0 and cam.has_offset:
         plain = [cam.extremes(float(prime)).pressure_angle.value for prime in some]
         angles.append(Curve(few, _in(plain, "deg"), "no offset", SERIES[2]))
     balanced = _in([best(float(prime)) for prime in some], "deg")
-    label = "balanced offset of each radius"
+    label = f"balanced {cam.aside} of each radius"
     angles.append(Curve(few, balanced, label, SERIES[len(angles)], "dashed"))
     radius = Curve(bases, _in([each.convex_radius.value for each in sized], "mm"))
     least = in_unit(shapes.limits(shape.roller_radius).convex_radius, "mm")

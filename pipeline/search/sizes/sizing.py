@@ -23,6 +23,7 @@ from camwright.pipeline.base.verdict import Verdict, verdict, within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written, unit_at, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.arm_assembly import arm_cam_gap, arm_gap
 from camwright.pipeline.checks.cam_shape import (
     concave_radius,
     curvature_ratio,
@@ -63,6 +64,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.judge import NOT_RAISED, Depth, Judge, Judgement, failing
 from camwright.pipeline.search.sizes.open_case import (
+    DISTANCE,
     FACE,
     OFFSET,
     PRELOAD,
@@ -101,10 +103,10 @@ _HELD = (contact_force_margin, jump, jump_speed, contact_at_overspeed, contact_o
 """Checks that a greater preload can pass."""
 _WOUND = (spring_surge, spring_solid, spring_coil_gap)
 """Checks that the winding of a stiffer spring can pass."""
-_SHAPE = (*_GROWTH, cam_radius, self_intersection, second_contact)
+_SHAPE = (*_GROWTH, cam_radius, self_intersection, second_contact, arm_gap, arm_cam_gap)
 _SPRING = (*_HELD, *_WOUND, spring_travel, spring_rate)
 JUDGED: Mapping[str, tuple[Declaration, ...]] = {
-    PRIME: _SHAPE, OFFSET: _SHAPE, ROLLER: _SHAPE, FACE: (face_width,),
+    PRIME: _SHAPE, OFFSET: _SHAPE, DISTANCE: _SHAPE, ROLLER: _SHAPE, FACE: (face_width,),
     RATE: _SPRING, PRELOAD: _SPRING,
 }  # fmt: skip
 """Checks that an open key decides."""
@@ -212,7 +214,8 @@ def size(
     Parameters
     ----------
     path : str or Path     case file without any of `cam.prime_radius`, `cam.offset`,
-                           `roller.radius`, `follower.face.width`, `spring.rate`, `spring.preload`
+                           `roller.radius`, `follower.face.width`,
+                           `follower.arm.centre_distance`, `spring.rate`, `spring.preload`
     free : collection      those of these keys whose values in the file are not kept
     least_radius : float   least convex radius of the contour, m
     """
@@ -364,6 +367,7 @@ class _SizeSearch:
         words = {
             PRIME: f"sized: {shape.governs}",
             OFFSET: f"sized: {shape.offset_governs}",
+            DISTANCE: f"sized: {shape.offset_governs}",
             ROLLER: f"sized: {self._roller_by}",
             FACE: "sized: travel of the contact and its half-width",
             RATE: f"sized: {spring.rate_by}",

@@ -1,0 +1,193 @@
+"""Size of a cam under the roller of an arm: smallest prime radius, best centre distance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from camwright.geometry.arm_path import Arm, ArmMotion
+from camwright.geometry.arrays import Array
+from camwright.geometry.cam_size import PitchExtremes, PitchLimits, RollerCam, RollerSize
+from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import Extremum, least_argument
+from camwright.geometry.lift import Jet
+from camwright.geometry.lift_parts import LiftParts
+
+_SCANNED_DISTANCES = np.linspace(0.2, 3.0, 71)
+"""Centre distances tried, over the length of the arm."""
+_SCANNED_RADII = 161  # prime radii of a scan, between which the limits are not met twice
+_RADIUS_HALVINGS = 45
+_NO_SIZE = 1e3
+"""Use of a size out of reach, beyond that of any within."""
+_SWING_MARGIN = 1e-6  # rad, of the swing from both lines of centres
+
+
+@dataclass(frozen=True, eq=False)
+class ArmCam(RollerCam):
+    """Roller cam of an arm of given length, whose centre distance is in place of the offset.
+
+    Parameters
+    ----------
+    lift : LiftParts   arc of the roller centre
+    length : float     pivot to roller centre, m
+    sense : float      of the outward swing: 1 with the rotation of the cam, -1 against it
+    """
+
+    aside: ClassVar[str] = "centre distance"
+    has_offset: ClassVar[bool] = False
+
+    lift: LiftParts
+    length: float
+    sense: float
+
+    def parts(self, prime_radius: float, offset: float) -> LiftParts:  # noqa: ARG002
+        return self.lift
+
+    def reach(self, offset: float) -> tuple[float, float]:
+        """Prime radii between which the arm swings within its half turn, m."""
+        arm = self._arm(offset)
+        low = self.lift.least(lambda s, *_: s).value / self.length
+        high = self.lift.greatest(lambda s, *_: s).value / self.length
+        if not high - low < np.pi - 2.0 * _SWING_MARGIN:
+            raise InputError("follower.arm.length", self.length, "> the lift over pi")
+        ends = max(-low, 0.0) + _SWING_MARGIN, np.pi - high - _SWING_MARGIN
+        return float(arm.radius(ends[0])), float(arm.radius(ends[1]))
+
+    def extremes(self, prime_radius: float, offset: float = 0.0) -> PitchExtremes:
+        """Pressure angles and radii of curvature with a prime radius and a centre distance, m.
+
+        Raises
+        ------
+        InputError
+            If the arm does not reach the prime circle, or swings past a line of centres.
+        """
+        low, high = self.reach(offset)
+        if not low <= prime_radius <= high:
+            limit = f">= {low:.6g} and <= {high:.6g} m, which the arm reaches"
+            raise InputError("cam.prime_radius", prime_radius, limit)
+        arm = self._arm(offset)
+        start = arm.angle(prime_radius)
+
+        def motion(s: Array, s1: Array, s2: Array) -> ArmMotion:
+            return ArmMotion(Jet(s, s1, s2), arm, start, np.nan)
+
+        def angle(s: Array, s1: Array, s2: Array) -> Array:
+            return np.abs(motion(s, s1, s2).pressure_angle)
+
+        def curvature(s: Array, s1: Array, s2: Array) -> Array:
+            return motion(s, s1, s2).path_curvature
+
+        convex, concave = self.lift.greatest(curvature), self.lift.least(curvature)
+        return PitchExtremes(
+            self.lift.greatest(lambda s, s1, s2: angle(s, np.maximum(s1, 0.0), s2)),
+            self.lift.greatest(lambda s, s1, s2: angle(s, np.minimum(s1, 0.0), s2)),
+            Extremum(1.0 / convex.value, convex.theta),
+            Extremum(-1.0 / concave.value if concave.value < 0.0 else np.inf, concave.theta),
+        )
+
+    def least_prime_radius(self, limits: PitchLimits, offset: float = 0.0) -> float:
+        """Smallest prime radius, m, with a centre distance, m.
+
+        The first of a scan within the limits, and the halved step before it: a larger one turns
+        the arm on, and need not keep them.
+
+        Raises
+        ------
+        InputError
+            If none keeps them.
+        """
+        prime = self._sampled_least(limits, offset)
+        if prime >= _NO_SIZE:
+            limit = "another for this swing: no prime radius keeps pressure angle and curvature"
+            raise InputError("follower.arm.centre_distance", offset, limit)
+        low, high = self.reach(offset)
+        step = (high - low) / _SCANNED_RADII
+        while not self._keeps(limits, prime, offset) and prime < high:
+            low, prime = prime, min(prime + 1e-3 * step, high)  # of the samples, not of the turn
+        low = max(low, prime - step)
+        for _ in range(_RADIUS_HALVINGS):
+            middle = 0.5 * (low + prime)
+            low, prime = (low, middle) if self._keeps(limits, middle, offset) else (middle, prime)
+        return prime
+
+    def best_offset(self, prime_radius: float, limits: PitchLimits) -> float:
+        """Centre distance, m, at which rise and return use equal shares of their limits.
+
+        Within the limits of the curvature; where none keeps them, that of the least curvature.
+        """
+
+        def use(distance: float) -> float:
+            angles, curved = self._uses(limits, np.array([prime_radius]), distance)
+            return float(angles[0] if curved[0] <= 1.0 else _NO_SIZE + curved[0])
+
+        return self._best_of_scan(use)
+
+    def smallest(self, limits: PitchLimits) -> RollerSize:
+        """Smallest prime radius over all centre distances, and that distance, m."""
+        distance = self._best_of_scan(lambda each: self._sampled_least(limits, each))
+        return RollerSize(self.least_prime_radius(limits, distance), distance)
+
+    def _by_angle(self, limits: PitchLimits, offset: float) -> float:
+        return self.least_prime_radius(PitchLimits(limits.rise, limits.back), offset)
+
+    def _arm(self, distance: float) -> Arm:
+        return Arm(distance, self.length, self.sense)
+
+    def _best_of_scan(self, use: Callable[[float], float]) -> float:
+        """Centre distance of the least use, m: a scan, then golden sections about its least."""
+        distances = self.length * _SCANNED_DISTANCES
+        k = int(np.argmin([use(float(each)) for each in distances]))
+        low, high = distances[max(k - 1, 0)], distances[min(k + 1, distances.size - 1)]
+        best = least_argument(use, float(low), float(high))
+        return best if use(best) <= use(float(distances[k])) else float(distances[k])
+
+    def _keeps(self, limits: PitchLimits, prime_radius: float, distance: float) -> bool:
+        pitch = self.extremes(prime_radius, distance)
+        return (
+            pitch.rise.value <= limits.rise
+            and pitch.back.value <= limits.back
+            and pitch.convex_radius.value >= limits.convex_radius
+            and pitch.concave_radius.value >= limits.concave_radius
+        )
+
+    def _sampled_least(self, limits: PitchLimits, distance: float) -> float:
+        """Smallest prime radius by the samples of the lift, m; `_NO_SIZE`: none."""
+
+        def keeping(primes: Array) -> NDArray[np.bool_]:
+            return np.maximum(*self._uses(limits, primes, distance)) <= 1.0
+
+        primes = np.linspace(*self.reach(distance), _SCANNED_RADII)
+        within = np.flatnonzero(keeping(primes))
+        if not within.size:
+            return _NO_SIZE
+        low, prime = primes[max(within[0] - 1, 0)], primes[within[0]]
+        for _ in range(_RADIUS_HALVINGS):
+            middle = 0.5 * (low + prime)
+            low, prime = (low, middle) if keeping(np.array([middle]))[0] else (middle, prime)
+        return float(prime)
+
+    def _uses(self, limits: PitchLimits, primes: ArrayLike, distance: float) -> tuple[Array, Array]:
+        """Use of the pressure angle and of the curvature over prime radii (m,), by the samples."""
+        s, s1, s2 = np.concatenate([part.samples for part in self.lift.parts], axis=1)
+        arm = self._arm(distance)
+        start = np.asarray(arm.angle(np.asarray(primes)))[:, None]
+        reached = start[:, 0] + s.max() / self.length < np.pi
+
+        def motion(slope: Array) -> ArmMotion:
+            return ArmMotion(Jet(s, slope, s2), arm, start, np.nan)
+
+        rise, back = (
+            np.abs(motion(each).pressure_angle).max(axis=1)
+            for each in (np.maximum(s1, 0.0), np.minimum(s1, 0.0))
+        )
+        curvature = motion(s1).path_curvature
+        angles = np.maximum(rise / limits.rise, back / limits.back)
+        curved = np.maximum(
+            curvature.max(axis=1) * limits.convex_radius,
+            -curvature.min(axis=1) * limits.concave_radius,
+        )
+        return np.where(reached, angles, _NO_SIZE), np.where(reached, curved, _NO_SIZE)

@@ -1,0 +1,107 @@
+"""Sizes of a cam under an arm: least prime radius and best centre distance, by contours."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from camwright.geometry.arm_path import Arm, ArmContour, ArmPath
+from camwright.geometry.arm_size import ArmCam
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.cam_size import PitchLimits
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift_parts import LiftParts
+from camwright.geometry.motion_laws import Segment, SegmentMotion
+from camwright.pipeline.case.template import first_case
+from camwright.pipeline.search.sizes.open_case import DISTANCE, PRIME, ROLLER, parse_open_case
+from camwright.pipeline.search.sizes.sizing import sized
+
+LENGTH = 0.1
+MOTION = SegmentMotion((
+    Segment("cycloidal", np.radians(90.0), 0.02), Segment("dwell", np.radians(60.0)),
+    Segment("modified_sine", np.radians(130.0), -0.02), Segment("dwell", np.radians(80.0)),
+))  # fmt: skip
+THETA = uniform_turn(3600)
+
+
+def path(prime: float, distance: float, sense: float) -> ArmPath:
+    arm = Arm(distance, LENGTH, sense)
+    return ArmPath(MOTION.lift(), arm, float(arm.angle(prime)))
+
+
+def greatest(prime: float, distance: float, sense: float) -> tuple[float, float, float]:
+    """Greatest pressure angles of rise and return, rad, least convex radius, m, by the path."""
+    of = path(prime, distance, sense)
+    slope = MOTION.lift().derivatives(THETA, 1)[1]
+    angle = np.abs(of.pressure_angle(THETA))
+    rising, falling = angle[slope >= -1e-9].max(), angle[slope <= 1e-9].max()
+    return float(rising), float(falling), float(1.0 / of.curvature(THETA).max())
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("limits", [
+    PitchLimits(np.radians(30.0), np.radians(30.0), 0.03),
+    PitchLimits(np.radians(29.0), np.radians(35.0)),
+])  # fmt: skip
+def test_the_least_prime_radius_is_at_a_limit_of_its_path(
+    sense: float, limits: PitchLimits
+) -> None:
+    """Sampled at a tenth of a degree: angles within 1e-4, radii within 1e-4 of their value."""
+    cam = ArmCam(LiftParts.of_motion(MOTION), LENGTH, sense)
+    for distance in (0.11, 0.12):
+        prime = cam.least_prime_radius(limits, distance)
+        rise, back, convex = greatest(prime, distance, sense)
+        uses = (rise / limits.rise, back / limits.back, limits.convex_radius / convex)
+        assert max(uses) == pytest.approx(1.0, abs=2e-4)
+        smaller = greatest(0.99 * prime, distance, sense)
+        beyond = (smaller[0] / limits.rise, smaller[1] / limits.back,
+                  limits.convex_radius / smaller[2])  # fmt: skip
+        assert max(beyond) > 1.0
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_no_centre_distance_gives_a_smaller_cam(sense: float) -> None:
+    limits = PitchLimits(np.radians(30.0), np.radians(30.0), 0.03)
+    cam = ArmCam(LiftParts.of_motion(MOTION), LENGTH, sense)
+    prime, best = cam.smallest(limits)
+    for share in (0.9, 0.97, 0.99, 1.01, 1.03, 1.1):
+        try:
+            other = cam.least_prime_radius(limits, share * best)
+        except InputError:
+            continue
+        assert other >= prime * (1.0 - 1e-6), share
+    assert cam.least_prime_radius(limits, best) == pytest.approx(prime, rel=1e-9)
+
+
+def test_the_best_centre_distance_balances_rise_and_return() -> None:
+    limits = PitchLimits(np.radians(30.0), np.radians(30.0))
+    cam = ArmCam(LiftParts.of_motion(MOTION), LENGTH, 1.0)
+    distance = cam.best_offset(0.06, limits)
+    rise, back, _ = greatest(0.06, distance, 1.0)
+    assert rise == pytest.approx(back, abs=1e-4)
+    for other in (0.98 * distance, 1.02 * distance):
+        assert max(greatest(0.06, other, 1.0)[:2]) > max(rise, back)
+
+
+def test_a_swing_beyond_every_size_is_refused() -> None:
+    cam = ArmCam(LiftParts.of_motion(MOTION), LENGTH, 1.0)
+    with pytest.raises(InputError, match=r"follower\.arm\.centre_distance = 0\.3"):
+        cam.least_prime_radius(PitchLimits(np.radians(5.0), np.radians(5.0)), 0.3)
+
+
+def test_an_open_case_on_an_arm_is_completed() -> None:
+    """Prime radius, centre distance and preload of the first case; its sizes pass the preview."""
+    text = first_case("swing", "arm").text
+    opened = parse_open_case(text, None, [PRIME, DISTANCE, "spring.preload"])
+    assert opened.gaps == (PRIME, "spring.preload", DISTANCE)
+    sizing = sized(opened)
+    assert sizing.verdict == "pass"
+    case = sizing.case
+    contour = case.contour(MOTION.lift())
+    assert isinstance(contour, ArmContour)
+    assert contour.pitch.arm.centre_distance == sizing.values[DISTANCE]
+    rises = sizing.shapes.record(sizing.shape)
+    assert rises["pressure_angle_rise_deg"] == pytest.approx(
+        rises["pressure_angle_return_deg"], abs=0.1
+    )
+    assert parse_open_case(text, None, [ROLLER]).gaps == (ROLLER,)
