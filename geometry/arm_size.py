@@ -107,7 +107,7 @@ class ArmCam(RollerCam):
         low, high = self.reach(offset)
         step = (high - low) / _SCANNED_RADII
         while not self._keeps(limits, prime, offset) and prime < high:
-            low, prime = prime, min(prime + 1e-3 * step, high)  # of the samples, not of the turn
+            low, prime = prime, min(prime + step / 1000.0, high)  # of the samples, not of the turn
         low = max(low, prime - step)
         for _ in range(_RADIUS_HALVINGS):
             middle = 0.5 * (low + prime)
