@@ -21,6 +21,7 @@ _SCANNED_DISTANCES = np.linspace(0.2, 3.0, 71)
 """Centre distances tried, over the length of the arm."""
 _SCANNED_RADII = 161  # prime radii of a scan, between which the limits are not met twice
 _RADIUS_HALVINGS = 45
+_CREEP = 0.5**10  # of a step of the scan, from what the samples pass to what the turn does
 _NO_SIZE = 1e3
 """Use of a size out of reach, beyond that of any within."""
 _SWING_MARGIN = 1e-6  # rad, of the swing from both lines of centres
@@ -107,7 +108,7 @@ class ArmCam(RollerCam):
         low, high = self.reach(offset)
         step = (high - low) / _SCANNED_RADII
         while not self._keeps(limits, prime, offset) and prime < high:
-            low, prime = prime, min(prime + step / 1000.0, high)  # of the samples, not of the turn
+            low, prime = prime, min(prime + _CREEP * step, high)  # of the samples, not of the turn
         low = max(low, prime - step)
         for _ in range(_RADIUS_HALVINGS):
             middle = 0.5 * (low + prime)
