@@ -311,7 +311,7 @@ class Contour(Displayed, ABC):
         return plotted(self.figure())
 
     def figure(self, *more: Curve) -> Figure:
-        """The figure of `plot` with further outlines, mm."""
+        """Figure of contour, pitch curve and prime or base circle, mm, with further outlines."""
         theta = np.linspace(0.0, FULL_TURN, _DRAWN)
         curves = [outline(1e3 * self.points(theta), "contour")]
         if self.follower_curvature > 0.0:
@@ -333,7 +333,9 @@ class Contour(Displayed, ABC):
 
     @cached_property
     def _lengths(self) -> tuple[Array, Array]:
-        """Cam angles (n,), rad, and the length of the contour up to them, m."""
+        """Cam angles (n,), rad, from 0 to a turn, and the length of the contour up to each (n,),
+        m.
+        """
         theta = np.linspace(0.0, FULL_TURN, _MEASURED)
         speed = np.abs(self.speed(theta))
         steps = np.diff(theta) * (speed[1:] + speed[:-1]) / 2
@@ -476,6 +478,9 @@ class RollerContour(RoundContour):
         return roller_height(polygon, self.roller_radius, self.pitch.offset, theta)
 
     def _track(self, theta: Array) -> tuple[Array, Array, Array]:
+        """Points (2, n), m, unit tangents (2, n) and speed (n,), m/rad, of the contour at cam
+        angles (n,), rad; one evaluation of the lift serves all.
+        """
         pitch = self.pitch
         s, s1, s2 = pitch.lift.derivatives(theta, 2)
         along, across = s1 - pitch.offset, pitch.height_base + s

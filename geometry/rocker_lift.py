@@ -127,7 +127,9 @@ class RockerLinkage:
 
 
 def _taken_up(opening: Lift, ramp: float) -> Array:
-    """Share of the lash that is taken up (n,) at the angles of a lift: 1 where the output moves."""
+    """Share of the lash that is taken up (n,) at the angles of a lift: 1 where the output moves, 0
+    at rest, rising over `ramp`, rad, before and falling after.
+    """
     values, theta = opening.values, opening.theta
     moves = values > _CLOSED * values.max()
     if moves.all() or not moves.any():

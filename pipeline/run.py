@@ -124,6 +124,7 @@ class CaseRun:
         self._judged: JudgedSummary | None = None
 
     def __enter__(self) -> Self:
+        """Open the run folder and the worker processes."""
         with ExitStack() as stack:
             stack.enter_context(refused_as_written(self.case))
             self._folder = stack.enter_context(
@@ -168,7 +169,9 @@ class CaseRun:
         return final
 
     def _torques(self) -> dict[str, Torque]:
-        """Engine torques, with what is to be noted of the case."""
+        """Engine torque of each load case; writes that of the first, and notes old names,
+        implausible values and measurements.
+        """
         case, watch = self.case, self._watch
         watch.stage("torque")
         if self.depth is Tier.CERTIFIED:
@@ -186,7 +189,9 @@ class CaseRun:
         return torques
 
     def _tried(self, torques: Mapping[str, Torque]) -> tuple[Trial, Iteration]:
-        """The last trial with its iteration; the files of those before it are written."""
+        """Last trial with the iteration that led to it; the files of those before it are
+        written.
+        """
         made = trials(
             self.case,
             torques,
@@ -203,7 +208,9 @@ class CaseRun:
             del trial  # its solution takes most of the memory
 
     def write(self) -> None:
-        """Files of the last trial, tolerance corners, stress fields, workshop files."""
+        """Write the files of the last trial, tolerance corners, stress fields and workshop
+        files.
+        """
         folder, watch, final = self._folder, self._watch, _made(self._final)
         write_trial_files(folder, _made(self._last))
         self._last = None
@@ -255,7 +262,9 @@ class CaseRun:
         return read_run(self.out)
 
     def _settle(self) -> None:
-        """Write what the certificate changes, the remedies among it; nothing before it."""
+        """Write what the certificate changes, the remedies among it, once; nothing before the
+        certificate. RuntimeError if the steps are out of order.
+        """
         final = self._final
         if self._solved is None:
             raise RuntimeError(_ORDER)
@@ -345,7 +354,7 @@ def summary_of(
     final: Trial,
     points: Sequence[TrialPoint],
 ) -> SolvedSummary:
-    """Part of ``run.json`` that no certificate changes; writes ``1_speed.csv``."""
+    """Part of ``run.json`` that no certificate changes; writes ``1_speed.csv`` as well."""
     case, torque, required = final.case, final.solution.machine.torque, None
     if torque is not None and final.smoothing.strength is not None:
         smoother = Smoother.from_case(case.smoothing, case.period)
@@ -408,6 +417,7 @@ class Stopwatch:
     """
 
     def __init__(self, progress: Progress, began: float | None = None) -> None:
+        """Start the clock of the first stage."""
         self._progress = progress
         self._began = time.perf_counter() if began is None else began
         self._started = utc(time.perf_counter() - self._began)

@@ -322,7 +322,9 @@ class Case(Displayed, Section):
 
     @property
     def spring_mass(self) -> float:
-        """Part of the spring's mass that moves with the follower, kg; 0 without a spring design."""
+        """Part of the spring's mass that moves with the follower, kg, reduced to it; 0 without a
+        wound spring.
+        """
         design = self.spring.design
         if design is None:
             return 0.0
@@ -392,7 +394,7 @@ def _keyed(key: str, value: object) -> Iterator[tuple[str, object]]:
 
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:
-    """Key and file name of every included file."""
+    """Key and file name of every file to which a case refers."""
     yield from engine_files(case.engine)
     yield from torque_files(case.torque)
     if isinstance(case.lift, LiftTable):

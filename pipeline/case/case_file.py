@@ -66,7 +66,7 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
 
 
 def tables_in(content: str | bytes) -> Tables:
-    """Tables of a case text, checked for the schema version."""
+    """Tables of the text of a case; InputError for another schema version."""
     data: Tables = parse_toml(content, "case")
     version = data.get("schema_version")
     if version is not None and version != SCHEMA_VERSION:
@@ -77,7 +77,7 @@ def tables_in(content: str | bytes) -> Tables:
 
 
 def completed(case: Case, folder: Path | None) -> Case:
-    """Case with its included files read from `folder`.
+    """Case with the files to which it refers read from `folder`; None: it may refer to none.
 
     A face too narrow and a file without an external force are refused.
     """
@@ -91,7 +91,7 @@ def completed(case: Case, folder: Path | None) -> Case:
 
 
 def case_of(data: Tables, folder: Path | None = None) -> Case:
-    """Case from its tables and the cards of `folder`; included files are not read."""
+    """Case from its tables and the cards of `folder`; files to which it refers are not read."""
     tables = resolved(data, folder)
     try:
         return validated(tables)
@@ -100,7 +100,9 @@ def case_of(data: Tables, folder: Path | None = None) -> Case:
 
 
 def resolved(data: Tables, folder: Path | None = None) -> Tables:
-    """Tables of a case with added tables, cards, and stand-ins for parts out of scope."""
+    """Tables of a case with added tables, cards and new names in place, and stand-ins for parts out
+    of scope.
+    """
     named_tables = with_every_name(with_new_keys(with_added(data)))
     tables = with_stand_ins(with_rocker(with_arm(named_tables)))
     fill_cards(tables, folder)
@@ -108,7 +110,9 @@ def resolved(data: Tables, folder: Path | None = None) -> Tables:
 
 
 def validated(tables: Tables) -> Case:
-    """Case from resolved tables; included files are not read."""
+    """Case from resolved tables, checked by itself; InputError with all errors. Files are not
+    read.
+    """
     try:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
@@ -142,7 +146,9 @@ def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
 
 
 def enter(tables: Tables, key: str, value: TomlValue) -> None:
-    """Enter a value into the tables of a case at a dotted key."""
+    """Write a value into the tables of a case at a dotted key, in place; missing tables are
+    made.
+    """
     *path, last = steps_of(key)
     table: Any = tables
     for step in path:
@@ -156,7 +162,9 @@ def enter(tables: Tables, key: str, value: TomlValue) -> None:
 
 
 def _cards(tables: TomlValue | None) -> dict[str, Material]:
-    """Materials by name; a placeholder for an invalid one, which `Case` refuses by its field."""
+    """Materials of the case by name, a placeholder for an invalid one, which `Case` refuses by its
+    field.
+    """
     cards = {}
     for name, table in tables.items() if isinstance(tables, dict) else ():
         try:
@@ -167,7 +175,9 @@ def _cards(tables: TomlValue | None) -> dict[str, Material]:
 
 
 def _read(path: Path, name: str, field: str, limit: int) -> bytes:
-    """Contents of a file; a refusal has its `name`."""
+    """Contents of a file of at most `limit` bytes; messages name the key `field` and the file
+    `name`.
+    """
     try:
         if not path.is_file():
             raise InputError(field, name, "an existing file")
@@ -182,6 +192,7 @@ def _read(path: Path, name: str, field: str, limit: int) -> bytes:
 
 
 def _read_includes(case: Case, folder: Path | None) -> dict[str, bytes]:
+    """Contents of the files to which a case refers, by the name under which a run keeps them."""
     read: dict[str, bytes] = {}
     origin: dict[str, str] = {}
     for field, name in includes(case):

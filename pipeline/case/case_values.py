@@ -71,7 +71,9 @@ def _fields_at(path: str) -> tuple[Key, ...]:
 
 
 def _fields_along(key: str, names: Iterable[str]) -> tuple[Key, ...]:
-    """Keys at the end of a path that may lead through the material of a part to its card."""
+    """Keys of a case file, one per variant of its table, at the end of a path of names; through the
+    name of a material the path goes on in its card.
+    """
     keys: tuple[Key, ...] = ()
     path = ""
     for name in names:
@@ -96,7 +98,7 @@ def _beside(name: str, table: str, known: Sequence[str]) -> str:
 
 
 def value_of(case: Case, key: str) -> Any:
-    """Value at a key, SI; None where the case omits it."""
+    """Value at a dotted key, SI; None where the case omits it."""
     node: Any = case
     for step in steps_of(key):
         if node is None:
@@ -139,6 +141,7 @@ def refused_as_written(case: Case) -> Iterator[None]:
 
 
 def _refused_text(case: Case, error: InputError) -> Refused:
+    """Refused value as text: as the case file has it, else with its unit."""
     try:
         quantity, value = quantity_of(error.field), value_of(case, error.field)
         if not isinstance(quantity, In):
@@ -163,7 +166,8 @@ def _attributes(kind: type[Section]) -> Mapping[str, str]:
 
 
 def replaced(case: Case, values: Mapping[str, float]) -> Case:
-    """Case with other numbers, SI, checked against the bounds of their fields alone.
+    """Case with other numbers, SI, by dotted key, checked against the bounds of their fields
+    alone.
 
     Faster than `with_values`; the sections are not compared with one another.
 
@@ -194,7 +198,7 @@ def replaced(case: Case, values: Mapping[str, float]) -> Case:
 
 
 def _put(node: Any, path: Sequence[str | int], values: Mapping[str | int, Any]) -> Any:
-    """A node with values in the table at a path below it."""
+    """Copy of a section, part or tuple with values in the table at a path below it."""
     if path:
         first, *rest = path
         child = node[first] if isinstance(first, int) else getattr(node, _attribute(node, first))

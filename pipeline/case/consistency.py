@@ -74,7 +74,8 @@ def check_sections(case: Case) -> None:
 
 
 def check_numbers(case: Case) -> None:
-    """As `check_sections`, without the check that sources name existing values.
+    """Refuse numbers of a case that contradict one another, as `check_sections`, without the check
+    that sources name existing values.
 
     A relation of a number that an earlier one refuses, or names, is not tried: it may be right.
     """
@@ -94,7 +95,9 @@ def check_numbers(case: Case) -> None:
 
 
 def _values(case: Case) -> At:
-    """The numbers of a case by their keys, each looked up once."""
+    """Function from dotted key to number, SI, NaN where the case omits it; each is looked up
+    once.
+    """
 
     @cache
     def at(key: str) -> float:
@@ -174,7 +177,9 @@ def _check_values(case: Case) -> None:
 
 
 def _start(case: Case) -> Iterator[Rule]:
-    """A case starts either at the torque of an engine or a machine, or at a lift."""
+    """Rules of the start of a case, either at the torque of an engine or a machine, or at a lift,
+    and of what belongs to each.
+    """
     driven = case.engine is not None or case.torque is not None
     if driven == (case.lift is not None):
         count = "both" if driven else "neither"
@@ -235,7 +240,7 @@ def _start(case: Case) -> Iterator[Rule]:
 
 
 def _period(case: Case) -> Iterator[Rule]:
-    """A cam turn holds whole cycles, which the smoothing and the positions resolve."""
+    """Rules that a cam turn holds whole cycles, which smoothing and positions resolve."""
     period, smoothing = case.period, case.smoothing
     cycle = shown(period.angle, "deg")
 
@@ -267,7 +272,7 @@ def _period(case: Case) -> Iterator[Rule]:
 
 
 def _no_tighter() -> Iterator[Rule]:
-    """Tolerances are not tighter than their default."""
+    """Rules that tolerances are not tighter than their defaults."""
     usual = Tolerances()
     least = {
         "tolerances.friction": usual.friction,
@@ -312,6 +317,7 @@ def _tolerances(case: Case) -> Iterator[Rule]:
 
 
 def _check_film(case: Case) -> None:
+    """Refuse a mixed oil film without roughness and hardness of both bodies."""
     if case.lubricant is None or case.lubricant.film == "smooth":
         return
     cards = (case.cam.material, case.facing.material)
@@ -326,6 +332,7 @@ def _check_film(case: Case) -> None:
 
 
 def _geometry(case: Case) -> Iterator[Rule]:
+    """Rules of the dimensions of cam, follower, camshaft and guides."""
     yield from _ends(case)
     if case.roller_given is not None:
         yield from _roller(case)
@@ -356,7 +363,7 @@ def _geometry(case: Case) -> Iterator[Rule]:
 
 
 def _fit(case: Case) -> None:
-    """A heated fit needs the expansions.
+    """Refuse a fit with temperatures whose materials lack their thermal expansion.
 
     Raises
     ------
@@ -487,6 +494,9 @@ def _key(case: Case) -> Iterator[Rule]:
 
 
 def _roller(case: Case) -> Iterator[Rule]:
+    """Rules of the roller: within the prime circle, around its hub and bearing, beside the cam no
+    more than it may.
+    """
     yield _less("roller.radius", lambda at: at("cam.prime_radius"), "< {cam.prime_radius}")
     yield _less("roller.hub_radius", lambda at: at("roller.radius"), "< {roller.radius}")
     limit = "< {}, beyond which the roller runs beside the cam"
@@ -519,7 +529,9 @@ def _roller(case: Case) -> Iterator[Rule]:
 
 
 def _refusal(case: Case, rule: Rule, at: At) -> InputError:
-    """Refusal of the number at the key of a broken rule, with more digits where two read alike."""
+    """InputError of the number at the key of a broken rule, with more digits where value and bound
+    read alike.
+    """
     for digits in _MESSAGE_DIGITS:
         value = text_of(case, rule.key, digits)
         texts = {"": _bound_text(rule, at, digits)}
@@ -538,7 +550,7 @@ def _bound_text(rule: Rule, at: At, digits: int) -> str:
 
 
 def _check_duty(case: Case) -> None:
-    """The duty is that of all load cases or of none, and its shares add to 1."""
+    """Refuse a duty that only some load cases have, or whose shares do not add to 1."""
     shares = [load_case.duty for load_case in case.load_cases]
     stated = [share for share in shares if share is not None]
     if not stated:
@@ -552,7 +564,9 @@ def _check_duty(case: Case) -> None:
 
 
 def _load_cases(case: Case) -> Iterator[Rule]:
-    """Names differ; speeds are those of their names, and none is above the over-speed."""
+    """Rules of the load cases: names differ, speeds are those of their names, and none is above the
+    over-speed.
+    """
     seen: set[str] = set()
     for k, load_case in enumerate(case.load_cases):
         name = load_case.name.casefold()

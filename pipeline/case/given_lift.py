@@ -62,7 +62,8 @@ def eccentric_of(case: LiftSource, section: LiftEccentric) -> Eccentric:
 
 
 def given_lift(case: LiftSource) -> Lift:
-    """Lift of the follower of a case that states it, or that of the output of its rocker.
+    """Lift that a case states, by its kind: segments, points, eccentric circle, or table, fitted
+    where that is noisy.
 
     Raises
     ------
@@ -99,7 +100,7 @@ def _stated_lift(case: LiftSource) -> Lift:
 
 
 def lift_origin(case: LiftSource) -> str:
-    """Origin of the lift in words, with the residual of a fitted table."""
+    """Sentence on the origin of the lift, with the residual of a fitted table."""
     section, fit = case.lift, _fitted(case)
     if fit is not None:
         stated = isinstance(section, LiftTable) and section.noise is not None
@@ -125,7 +126,8 @@ def lift_origin(case: LiftSource) -> str:
 
 
 def table_overshoot(case: LiftSource) -> tuple[float, float] | None:
-    """Overshoot of the curve through a lift table, over the stroke, and its cam angle.
+    """Greatest overshoot of the curve through a lift table between its rows, over the stroke, and
+    its cam angle, rad.
 
     None for another lift, or one fitted to its table.
     """
@@ -142,7 +144,9 @@ def _points(section: LiftPoints) -> tuple[list[float], list[float]]:
 
 
 def _fitted(case: LiftSource) -> FittedLift | None:
-    """Lift fitted to a table with noise, stated or shown by values below zero; else None."""
+    """Lift fitted to a table within its noise, stated or, where lifts are below zero, estimated;
+    None where the lift passes through every row, or is no table.
+    """
     section = case.lift
     if not isinstance(section, LiftTable):
         return None

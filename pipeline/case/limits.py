@@ -89,7 +89,7 @@ AnyLimit = Limit | OpenLimit
 
 
 def utilisation_slope(limit: AnyLimit, value: float) -> float:
-    """Decrease of the utilisation per unit of the limit's value, at the limit.
+    """Decrease of the utilisation per unit of the limit, SI, at its value `value`.
 
     Negative if a greater value reduces the margin.
     """
@@ -681,6 +681,9 @@ class LimitValues(Section):
 
 
 def _field_type(limit: AnyLimit) -> object:
+    """Type of the field of a limit in the section `[limits]`, with unit, bounds, meaning and
+    example.
+    """
     known = (
         Known(str(limit.source)) if isinstance(limit, Limit) else Known(limit.found, limit.example)
     )

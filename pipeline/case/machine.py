@@ -239,7 +239,9 @@ class Machine(Displayed):
 
     @property
     def tilting(self) -> FollowerTilt:
-        """Tilt of the follower across the plane of the cam."""
+        """Compliance and clearance by which the follower tilts across the plane of the cam: of the
+        stem in its guides, or of an arm.
+        """
         arm, bar, bush = self.arm, self.arm_bar, None if self.pivot is None else self.pivot.bush
         if arm is None or (bar is None and bush is None):
             return StemTilt(self.stem, self.guides)
@@ -386,7 +388,7 @@ class Machine(Displayed):
 
     @property
     def _pivot_compliance(self) -> float | None:
-        """Of the bush of a pivot at the end of its arm, m/N; None without one."""
+        """Compliance of the bush of the pivot at the end of the arm, m/N; None without one."""
         if self.arm is None or self.pivot is None or self.pivot.bush is None:
             return None
         bush, share = self.pivot.bush, self.arm.pivot_share(self.arm.held(self.spring.link))
@@ -445,7 +447,9 @@ class Machine(Displayed):
         return self.mass - self.spring_mass
 
     def at_corner(self, corner: Corner) -> Machine:
-        """Machine at a tolerance corner; the contour is not part of it."""
+        """Machine with the factors and the profile error of a tolerance corner; the contour is not
+        part of it.
+        """
         spring, shaft = self.spring, self.crankshaft
         rate = spring.rate * corner.rate
         # A profile deviation outwards compresses the spring by as much.
@@ -495,7 +499,7 @@ def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
 
 
 def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machine:
-    """Machine of a case in one load case."""
+    """Machine of a case in one load case; torque : of the engine there, None without."""
     follower, guides, spring = case.follower, case.guides, case.spring
     card = follower.stem_material
     length = np.inf if follower.stem_length is None else follower.stem_length
@@ -537,7 +541,9 @@ def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machin
 
 
 def friction_range(case: Case) -> FrictionRange:
-    """Friction of both guides; of an arm that of its pivot, and none."""
+    """Least, nominal and greatest friction of guides A and B; of an arm that of its pivot, and
+    none.
+    """
     pivot, tolerance = case.follower.pivot, case.tolerances.friction
     if pivot is None:
         return FrictionRange.of(case.guides.a, case.guides.b, tolerance)

@@ -97,7 +97,9 @@ _OF_RULE = 2.0
 
 
 def _endurance_findings(case: Case) -> Iterator[Implied | None]:
-    """Endurance of the surface of a card, against the rules for a steel of its hardness."""
+    """Findings on endurance pressures of the materials against the rules for a steel of their
+    hardness; None for one within them.
+    """
     for name, card in case.materials.items():
         known = endurance_by_hardness(card)
         for field in ("endurance_pressure", "sliding_endurance_pressure"):
@@ -137,7 +139,9 @@ _TORQUES = ("engine", "engine.file", "torque", "torque.file")
 
 
 def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Implied | None]:
-    """Peak-to-peak torque of the engine, in its design load case, and of further files."""
+    """Findings on the peak-to-peak torque in the design load case, and in those with a file of
+    their own; None where it is usual.
+    """
     for k, state in enumerate(case.load_cases):
         torque = torques.get(state.name)
         if torque is None or (state.torque is None and k > 0):
@@ -289,7 +293,7 @@ def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Impl
 
 
 def _keys_in(case: Case, keys: Sequence[str]) -> Iterator[str]:
-    """Keys of the case that patterns stand for."""
+    """Dotted keys of the case that the patterns stand for."""
     for key in keys:
         if key.startswith("materials.*"):
             yield from (key.replace("*", name) for name in case.materials)
@@ -317,7 +321,7 @@ def _range(row: Mapping[str, Any]) -> Usual:
 
 
 def usual_sources() -> Iterator[tuple[str, Source]]:
-    """Sources of the usual ranges by first key or name."""
+    """Name, by its first key, and source of each usual range."""
     for row in _ranges():
         yield f"usual_ranges.{row.keys[0]}", row.source
     for name, row in _table().items():

@@ -136,6 +136,7 @@ class Scope(Section):
 
     @model_validator(mode="after")
     def _says_why(self) -> Self:
+        """Refuse a scope that leaves out parts without a reason."""
         if self.not_covered and not self.reason.strip():
             raise InputError("scope.reason", "missing", "given with scope.not_covered")
         return self
@@ -236,7 +237,9 @@ class _StandIns(NamedTuple):
         return node if isinstance(node, dict) else {}
 
     def put(self, part: ScopeName, key: str, value: TomlValue | None) -> None:
-        """Enter a value that the case does not state."""
+        """Write a value that the case does not state into its tables, in place, with the source
+        that it stands in for an excluded part.
+        """
         path, _, name = key.rpartition(".")
         table = self.table(path)
         if name not in table and value is not None:
@@ -282,7 +285,7 @@ def is_stand_in(tables: Tables, key: str) -> bool:
 
 
 def _guides(stem: Tables) -> Tables:
-    """Guides that neither rub nor tilt, on the stem of a follower."""
+    """Table of guides that neither rub nor tilt, on the stem of the follower table `stem`."""
     diameter, overhang = _length(stem, "stem_diameter", _STEM), _length(stem, _OVERHANG, _STEM)
     guide: Tables = {
         "length": units.format(min(diameter, 2.0 * overhang), "mm"),

@@ -73,7 +73,9 @@ def aside(numbers: Numbers) -> Value:
 
 
 def _on_the_shaft(numbers: Numbers) -> dict[str, tuple[Value, Value]]:
-    """Cam, and follower with pin and fork as far as they are described, along the camshaft."""
+    """Middle and half width along the camshaft, m, of the cam and of the follower, by name; with
+    pin and fork as far as they are described.
+    """
     case = numbers.known_case
     at, follower = camshaft_of(case).cam_position, case.facing
     name = follower.word if follower.parts.get("fork") is None else "fork"
@@ -82,12 +84,15 @@ def _on_the_shaft(numbers: Numbers) -> dict[str, tuple[Value, Value]]:
 
 
 def _gear(numbers: Numbers) -> tuple[float, float]:
+    """Middle and half width of the gear along the camshaft, m."""
     shaft = camshaft_of(numbers.known_case)
     return shaft.gear_position, 0.5 * gear_of(shaft).width
 
 
 def _pairs_at_bearings(numbers: Numbers) -> dict[str, tuple[tuple[Value, Value], float]]:
-    """Parts on the camshaft with the place of a bearing, m, by both names."""
+    """Middle and half width of each part on the camshaft, and the place of a bearing, m, by the
+    names of both.
+    """
     case, parts = numbers.known_case, _on_the_shaft(numbers)
     shaft = camshaft_of(case)
     if shaft.gear is not None and case.scope.covers("gear"):
@@ -107,7 +112,9 @@ def _beside_bearings(numbers: Numbers) -> Gaps:
 
 
 def _with_bearings(gap: Value, numbers: Numbers) -> Value:
-    """Least gap beside bearings as wide as stated, else by bounds of their width, m."""
+    """Gap (...), m, beside bearings as wide as stated, of `gap` beside bearings of no width;
+    without a stated width by bounds of it, NaN where these do not decide.
+    """
     shaft, limit = camshaft_of(numbers.known_case), numbers.limit(ASSEMBLY_GAP)
     if shaft.bearing_width is not None:
         return gap - 0.5 * shaft.bearing_width
@@ -117,6 +124,9 @@ def _with_bearings(gap: Value, numbers: Numbers) -> Value:
 
 
 def _of_bearings(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the part nearest to a bearing and the numbers of the gap, or the missing width of
+    the bearings.
+    """
     shaft = camshaft_of(solution.machine)
     if demand.value is None or isnan(demand.value):
         lacks = () if shaft.bearing_width is not None else ("camshaft.bearing_width",)
@@ -162,7 +172,7 @@ def _beside_gear(numbers: Numbers) -> Gaps:
 
 
 def _named(gaps: Callable[[Numbers], Gaps]) -> Callable[[Demand, Solution], Demand]:
-    """With the name of the least gap."""
+    """Function that adds the names of the parts with the least of these gaps to a demand."""
 
     def remark(demand: Demand, solution: Solution) -> Demand:
         known = demand.value is not None
@@ -207,6 +217,7 @@ def _teeth_needed(numbers: Numbers) -> Value:
 
 
 def _of_teeth(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the numbers of teeth that the ratio needs, where they differ."""
     gear, ratio = gear_of(camshaft_of(solution.machine)), solution.machine.gear_ratio
     needed = float(_teeth_needed(solution.numbers))
     note = f"camshaft.gear.teeth = {gear.teeth}, {shown(needed, '')} at mechanism.gear_ratio ="
@@ -244,6 +255,7 @@ _TEETH_MIN = 14.0  # of full depth at 20 deg without profile shift; 17.1 in theo
 
 
 def _fewest(numbers: Numbers) -> Allowed:
+    """Least number of teeth of full depth without undercut at the pressure angle of the gear."""
     angle = sin(camshaft_of(numbers.known_case).pressure_angle)
     least = _TEETH_MIN * (sin(radians(20.0)) / angle) ** 2 * (1.0 - ROUNDING) if angle else None
     return Allowed(least)
@@ -336,7 +348,9 @@ _DIAMETER = "camshaft.gear.machine_shaft_diameter"
 
 
 def _beside_shaft(tip: Value, numbers: Numbers) -> Gaps:
-    """Distances of cam and follower from the axis of the machine shaft, m."""
+    """Distances of cam, with its maximum radius `tip`, m, and follower from the axis of the machine
+    shaft, m, by name.
+    """
     case = numbers.known_case
     shaft = camshaft_of(case)
     axis, gaps = machine_shaft_axis(shaft), {"cam": centre_distance(shaft) - tip}
@@ -347,7 +361,9 @@ def _beside_shaft(tip: Value, numbers: Numbers) -> Gaps:
 
 
 def _with_shaft(tip: Value, numbers: Numbers) -> Value:
-    """Least gap beside a machine shaft as stated, else by bounds of its radius, m."""
+    """Gap (...), m, beside a machine shaft of the stated diameter; else by bounds of its radius,
+    NaN where these do not decide.
+    """
     room, stated = least_of(_beside_shaft(tip, numbers)), numbers.get(_DIAMETER)
     if stated is not None:
         return room - 0.5 * stated
@@ -357,6 +373,9 @@ def _with_shaft(tip: Value, numbers: Numbers) -> Value:
 
 
 def _of_shaft(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the part nearest to the machine shaft and the numbers of the gap, or the missing
+    diameter of the shaft.
+    """
     numbers, limit = solution.numbers, solution.machine.limits[ASSEMBLY_GAP]
     shaft, tip = camshaft_of(solution.machine), solution.contour.radius_max().value
     stated = gear_of(shaft).machine_shaft_diameter
@@ -428,7 +447,7 @@ def _lowest_part(numbers: Numbers) -> str:
 
 
 def beside_counterweight(body: CounterweightBody, numbers: Numbers) -> Gaps:
-    """Gaps of a counterweight from bearings, gear, follower and machine shaft, m.
+    """Gaps (...) of a counterweight from bearings, gear, follower and machine shaft, m, by name.
 
     Bearings are as wide as stated, else at most as their bore. The cam carries it.
     """
@@ -455,7 +474,9 @@ def beside_counterweight(body: CounterweightBody, numbers: Numbers) -> Gaps:
 
 
 def counterweight_room(body: CounterweightBody, weight: Counterweight, numbers: Numbers) -> Value:
-    """Least gap of a counterweight (...), m; NaN where it is too small and no size is stated."""
+    """Least gap of a counterweight (...), m; NaN where it is below its limit and the size is not
+    stated but taken as a bound.
+    """
     gap = least_of(beside_counterweight(body, numbers))
     if weight.radius is not None and weight.width is not None:
         return gap
@@ -463,7 +484,7 @@ def counterweight_room(body: CounterweightBody, weight: Counterweight, numbers: 
 
 
 def _balancing(solution: Solution) -> tuple[Counterweight, float, CounterweightBody] | None:
-    """Counterweight, its unbalance, kg m, and its body; None without one."""
+    """Counterweight, its unbalance, kg m, and the body of it; None without one."""
     weight = camshaft_of(solution.machine).counterweight
     if weight is None:
         return None
@@ -496,7 +517,7 @@ def _balancing(solution: Solution) -> tuple[Counterweight, float, CounterweightB
     page="Camshaft",
 )
 def counterweight_gap(solution: Solution) -> Demand | None:
-    """Least gap of the counterweight, m; None without one."""
+    """Least gap of the counterweight from other parts, m; None without one."""
     bodies, limit = _balancing(solution), solution.machine.limits[ASSEMBLY_GAP]
     if bodies is None:
         return None
@@ -549,7 +570,9 @@ def counterweight_gap(solution: Solution) -> Demand | None:
     page="Camshaft",
 )
 def counterweight_unbalance(solution: Solution) -> Demand | None:
-    """Unbalance of the counterweight, kg m; None without one, or without its width."""
+    """Unbalance that the counterweight must have, kg m, against that of a body of its size; None
+    without one, or without its width.
+    """
     bodies = _balancing(solution)
     if bodies is None or bodies[0].width is None:
         return None
@@ -567,7 +590,9 @@ def counterweight_unbalance(solution: Solution) -> Demand | None:
 
 
 def shaft_radius(numbers: Numbers) -> Value:
-    """Greatest radius of the camshaft beside the cam, m; without a diameter that of the bore."""
+    """Greatest radius of the camshaft beside the cam (...), m, within the width of the follower;
+    that of the bore without a diameter.
+    """
     shaft, radius = numbers.known_case.camshaft, numbers["cam.bore_radius"]
     if shaft is None:
         return radius
@@ -583,6 +608,7 @@ _HEIGHT, _LENGTH = "roller.fork.cheek_height", "roller.fork.cheek_length"
 
 
 def _of_thickness(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the thickness that is taken for the shaft."""
     thick = shown(2.0 * float(np.ravel(shaft_radius(solution.numbers))[0]), "mm")
     words = "" if demand.value is None else f"shaft taken as {thick} thick"
     return replace(demand, at=None, note=words)
@@ -687,7 +713,9 @@ _SEAT = "spring.seat_height", "spring.seat_thickness"
 
 
 def _of_seat(demand: Demand, solution: Solution) -> Demand:
-    """With the place of the seat, and what the case lacks to decide the gap."""
+    """Demand with the place of the moving spring seat, or the keys that the case lacks to decide
+    the gap.
+    """
     numbers = solution.numbers
     layout = _layout(solution.contour.lift.highest.value, numbers)
     limit, height, thickness = numbers.limit(ASSEMBLY_GAP), *(numbers.get(key) for key in _SEAT)
@@ -716,7 +744,9 @@ def _seat_gap(lift: Value, numbers: Numbers) -> Value:
 
 
 def _room_of_gas(lift: Value, numbers: Numbers) -> Value:
-    """Lesser clearance of the rod from guide B and of the piston from its end, m."""
+    """Lesser clearance (...), m, at a lift (...), m, of the rod of a gas spring from guide B and of
+    its piston from the end of the gas column.
+    """
     top = numbers["follower.overhang_at_max_lift"] + numbers["guides.spacing"]
     stem = numbers.get("follower.stem_length")
     over = (np.nan if stem is None else stem) - lift - top - 0.5 * numbers["guides.b.length"]
@@ -760,7 +790,8 @@ spring_gap = check(
 
 
 def _beside_coil(lift: Value, numbers: Numbers) -> tuple[Value, Value]:
-    """Gaps of the coil of a torsion spring from the stem and from the guides, m.
+    """Gaps (...) of the coil of a torsion spring from the stem and from the guides, m, at a lift
+    (...), m.
 
     Where `spring.seat_height` does not state the height of its pin, at the worst height.
     """
@@ -787,7 +818,9 @@ def _beside_coil(lift: Value, numbers: Numbers) -> tuple[Value, Value]:
 
 
 def _torsion_gap(lift: Value, numbers: Numbers) -> Value:
-    """Least gap of the coil, m; NaN where its place, which is not stated, decides it."""
+    """Least gap of the coil (...), m, at a lift (...), m; NaN where it depends on a place of the
+    coil that is not stated.
+    """
     stem, guides = _beside_coil(lift, numbers)
     least = np.minimum(stem, guides) + 0.0 * lift
     if numbers.get("spring.seat_height") is not None:
@@ -802,6 +835,7 @@ _OF_COIL = (
 
 
 def _of_coil(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the nearest part and both gaps of the coil, or its missing keys."""
     numbers = solution.numbers
     if demand.value is None or isnan(demand.value):
         lacks = tuple(key for key in _OF_COIL if numbers.get(key) is None)

@@ -95,7 +95,7 @@ def closure(solution: Solution) -> Demand:
     page="Cam",
 )
 def acceleration_step(solution: Solution) -> Demand:
-    """Greatest discontinuity of the acceleration over its range in the turn."""
+    """Greatest discontinuity of s'' over the range of s'' in the turn."""
     lift = solution.contour.pitch.lift
     jump = lift.acceleration_jump
     coarse = "the table is too coarse or too rough to tell a step from a bend of the acceleration"
@@ -147,7 +147,9 @@ def _method_of_undercut(demand: Demand, solution: Solution) -> Demand:
 
 
 def _tool_allowed(numbers: Numbers) -> Allowed:
-    """Minimum concave radius that the tool of a case can machine, m."""
+    """Least allowed concave radius of the contour, m, by the tool of the case or the limit of its
+    radius.
+    """
     limit, stated = numbers.get(f"limits.{TOOL_RADIUS.id}"), numbers.get(_TOOL)
     if limit is None and stated is None:
         return Allowed(None, (_TOOL,))
@@ -295,7 +297,9 @@ def self_intersection(solution: Solution) -> Demand:
     page="Cam",
 )
 def second_contact(solution: Solution) -> Demand:
-    """Penetration of the follower into the contour away from the contact, m."""
+    """Greatest penetration of the follower into the contour away from the contact, m; 0 where it
+    has a clearance.
+    """
     nearest = solution.contour.second_contact()
     depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinite clearance is 0
     angle, gap = _place(float(nearest.theta)), float(nearest.clearance)
@@ -353,7 +357,9 @@ def concave_radius(cam: LoadedCam) -> Array:
     page="Cam",
 )
 def tool_gouge(solution: Solution) -> Demand:
-    """Depth of the tool in the contour away from its contact, m; 0 for a convex cam."""
+    """Depth of the tool in the contour away from its contact, m; 0 for a convex cam. Not evaluated
+    without a tool radius.
+    """
     contour, tool = solution.contour, solution.case.workshop_order.tool_radius
     allowed = solution.machine.limits[SECOND_CONTACT_DEPTH]
     concave = contour.concave_radius_min().value

@@ -138,7 +138,9 @@ class Allowed(NamedTuple):
 
 
 def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allowed]:
-    """Limit stated at a key of the case, or a `share` of it from the table of limits."""
+    """Function for the limit stated at a key of the case, or for a `share` of it from the table of
+    limits.
+    """
 
     def allowed(numbers: Numbers) -> Allowed:
         value = numbers.get(key)
@@ -263,7 +265,9 @@ class Measured(NamedTuple):
         return stated if len(stated) == len(limits) else ()
 
     def limit_of_measure(self, numbers: Numbers) -> float | None:
-        """Limit of the demand in terms of the measure; None: not known, or of no effect."""
+        """Limit of the measure, SI, that corresponds to the limit of the demand; None where this is
+        not known or every value of the measure is within it.
+        """
         limit = self.allowed(numbers).value
         if limit is None or any(numbers.get(key) is None for key in self.needed):
             return None
@@ -406,7 +410,9 @@ class Declaration:
         return replace(self.judged(solution.machine, missing), judged_at=word)
 
     def concerns(self, machine: Machine) -> bool:
-        """Whether a machine has the kind of follower and describes the part of the check."""
+        """Whether the check applies to a machine: by kind of follower, limits that are set, and
+        parts that it describes within the scope.
+        """
         if self.needs not in {"", machine.carrier, *machine.follower.kinds}:
             return False
         if self.if_limited and self.limit is not None and machine.limits[self.limit] is None:
@@ -417,7 +423,7 @@ class Declaration:
         return not self.part or (machine.scope.covers(self.part) and machine.describes(self.part))
 
     def lacks_left_out(self, machine: Machine, numbers: Numbers) -> bool:
-        """Whether a missing key belongs to a part outside the scope."""
+        """Whether the limit or the demand lacks a key that belongs to a part outside the scope."""
         if self.measured is None:
             return False
         needed = (key for key in self.measured.needed if numbers.get(key) is None)
@@ -425,7 +431,9 @@ class Declaration:
         return any(map(machine.scope.leaves_out, missing))
 
     def judged(self, machine: Machine, demand: Demand) -> Check:
-        """Check of a demand on a machine."""
+        """Check of a demand on a machine, with title, source, method and note of the demand or else
+        of the declaration.
+        """
         missing = tuple(dict.fromkeys(demand.missing))
         source = demand.source or self.source
         if self.limit is not None and not demand.source:
@@ -486,7 +494,8 @@ def check(
     certified_by: str = "",
     scales_with: tuple[str, float] | tuple[()] = (),
 ) -> Declaring:
-    """Declare a check of the demand that the decorated function returns; see `Declaration`.
+    """Decorator that declares a check of the demand that the decorated function returns; see
+    `Declaration`.
 
     Id, unit and sense default to those of the function and the limit, fails_from to the tier; a
     check of the design made in load cases rests on their loads.
@@ -583,7 +592,9 @@ class Declaring:
         strokes: tuple[Stroke, ...] = (),
         kept: Kept | None = None,
     ) -> Callable[[Measure], Declaration]:
-        """Declare the check by a measure of the loaded cam; see `Measured`."""
+        """Decorator that declares the check by a measure of the loaded cam, which the decorated
+        function returns; see `Measured`.
+        """
         limit = of_row(self.limit) if allowed is None else allowed
         how = Measured(
             reduce=reduce,
@@ -613,7 +624,9 @@ class Declaring:
 
 
 def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | None:
-    """Demand of a solution by the worst value of a measure, or as solved."""
+    """Demand of a solution by the worst value of a measure over its load cases or, above the
+    screening, as `how.solved` gives it; None where the check does not apply.
+    """
     if how.solved is not None and solution.tier > Tier.SCREENING:
         return how.solved(solution)
     numbers = solution.numbers

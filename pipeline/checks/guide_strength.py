@@ -442,6 +442,7 @@ def pv_limit(guide: Guide) -> float | None:
 
 
 def _pv_source(guide: Guide) -> Source:
+    """Source of the PV limit: the maker's, or the table of nylon."""
     state = _graded_state(guide)
     if state is None:
         return _maker(guide)
@@ -457,7 +458,9 @@ def _graded_state(guide: Guide) -> str | None:
 
 
 def _lubrication(guide: Guide, demand: float) -> list[str]:
-    """Least lubrication of nylon for a PV value, Pa m/s; empty for other materials."""
+    """Note on the least lubrication at which nylon bears a PV value, Pa m/s; empty for other
+    materials.
+    """
     if not _is_nylon(guide):
         return []
     states = [state.replace("_", " ") for state, limit in NYLON_PV.items() if demand <= limit]
@@ -469,6 +472,8 @@ def _is_nylon(guide: Guide) -> bool:
 
 
 def _guide_edge_pressure(side: Side) -> Declaration:
+    """Check of the greatest pressure between stem and bore of guide A or B."""
+
     @check(
         id=f"guide_edge_pressure_{side}",
         title=f"Guide edge pressure in guide {side} vs. yield strength",

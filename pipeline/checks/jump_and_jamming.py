@@ -55,7 +55,9 @@ _LEAST_FORCE = dict.fromkeys(("N", "F_0"), f"{STATED} [N]")
 
 
 def _with_lift_off(demand: Demand, solution: Solution) -> Demand:
-    """With the force and the preload of a follower that leaves the cam, and where it does."""
+    """Demand with the least contact force; where the follower leaves the cam, a demand of zero at
+    the place and a note on it.
+    """
     lowest = worst_measure(solution, _required, "forces", float, at_least=True, order=2)
     if lowest.value < 0.0:
         note, stated = _lifts_off(solution.cycles, lowest), {"N": 0.0}
@@ -173,7 +175,9 @@ def outward(cam: LoadedCam, index: Array) -> Array:
 
 
 def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
-    """With forces and friction at the angle of the demand."""
+    """Demand with the numbers of the jam index at its cam angle: friction coefficients, loads of
+    the guides and axial force, N.
+    """
     if demand.at is None or not demand.at.load_case:
         return demand
     cycle, k = row_of(solution.cycles, demand.at)
@@ -224,7 +228,9 @@ def jam_index_friction_max(cam: LoadedCam) -> Array:
 
 
 def _speed_of_jump(worst: Value, numbers: Numbers) -> Value:
-    """Crank speed, rad/s, from the unloading at a cam speed of 1 rad/s; infinite without one."""
+    """Crank speed (...), rad/s, at which the contact is lost; worst (...) : share of the closing
+    force that the inertia takes at a cam speed of 1 rad/s. Infinite where it takes none.
+    """
     root = np.sqrt(np.asarray(worst))
     some = ~(root <= 0.0)  # NaN stays
     speed = numbers["mechanism.gear_ratio"] / np.where(some, root, 1.0)
@@ -401,7 +407,9 @@ def contact_over_speed(solution: Solution) -> Demand:
     page="Follower",
 )
 def elastic_contact(solution: Solution) -> Demand:
-    """Least contact force over least spring force with an elastic stem."""
+    """Least contact force over least spring force of a follower on an elastic stem, over the load
+    cases and all speeds.
+    """
     worst = least(
         solution.cycles,
         lambda c: c.elastic.response.contact_force / c.least_spring_force,
@@ -474,7 +482,9 @@ _RIGID_RATIO = 10.0  # least natural over rotational frequency of a rigid follow
     page="Follower",
 )
 def rigid_follower(solution: Solution) -> Demand:
-    """Natural frequency of the follower over the greatest rotational speed of the cam."""
+    """Natural frequency of the follower on its stiffness over the greatest rotational speed of the
+    cam.
+    """
     machine, fastest = solution.machine, float(solution.numbers["cam.fastest"])
     frequency = shown(machine.follower_frequency / FULL_TURN, "Hz")
     stiffness = shown(machine.axial_stiffness, "kN/m")
@@ -508,7 +518,9 @@ class Swept(NamedTuple):
     stated: Mapping[str, float]
 
     def barred(self, worst: Extreme) -> Extreme:
-        """An extreme whose error bar reaches down to the least damping of the surge."""
+        """Extreme with an error bar that reaches down to the value at the least damping of the
+        surge.
+        """
         further = worst.value - self.least_damped
         if not further > 0.0 or worst.value == 0.0:
             return worst
@@ -554,7 +566,9 @@ def _least_over_speed(
 
 
 def _flights(histories: list[ElasticHistory]) -> str:
-    """Number of losses of contact per turn, and the highest flight."""
+    """Note on the number of losses of contact per turn, the highest flight and the greatest impact
+    force; empty without any.
+    """
     flights = [flight for history in histories for flight in history.flights]
     if not flights:
         return ""

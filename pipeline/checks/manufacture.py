@@ -97,7 +97,9 @@ _HEIGHT, _LENGTH = "cam.waviness", "cam.waviness_length"
 
 
 def _wave_force(cam: LoadedCam) -> Array:
-    """Inertia force of the follower on the waves of the track, N."""
+    """Amplitude of the inertia force of the follower on the waves of the track (..., n), N, at the
+    speed of the contour.
+    """
     numbers, speed = cam.numbers, cam.speed * cam.motion.contour_speed
     amplitude = 0.5 * numbers[_HEIGHT]
     square: Array = (FULL_TURN * speed / numbers[_LENGTH]) ** 2
@@ -166,7 +168,9 @@ def profile_waviness(cam: LoadedCam) -> Array:
     page="Cam",
 )
 def chord_error(solution: Solution) -> Demand:
-    """Distance of the chords between table points from the contour, m."""
+    """Greatest distance of the chords between the points of the workshop table from the contour,
+    m.
+    """
     limits, tolerance = solution.machine.limits, solution.machine.cam.profile_tolerance
     theta, contour = solution.case.workshop_order.theta, solution.contour
     points = contour.points(theta)
@@ -210,7 +214,9 @@ def chord_error(solution: Solution) -> Demand:
     page="Cam",
 )
 def phase_tolerance(solution: Solution) -> Demand | None:
-    """Ripple reduction at both ends of the phase tolerance of key and gear."""
+    """Ripple reduction at the worse end of the phase tolerance of key and gear; None without an
+    engine.
+    """
     phase = solution.case.tolerances.phase
     least = least_reduction(solution, lambda cycle: _reduction(cycle, phase))
     if least is None:
@@ -228,7 +234,9 @@ def phase_tolerance(solution: Solution) -> Demand | None:
 
 
 def _reduction(cycle: Cycle, phase: float) -> float:
-    """Lesser ripple reduction with the engine torque advanced and delayed by a crank angle."""
+    """Lesser ripple reduction with the engine torque advanced and delayed by a crank angle, rad;
+    NaN without an engine.
+    """
     before = cycle.turn.torque_before
     if before is None:
         return np.nan
@@ -237,7 +245,9 @@ def _reduction(cycle: Cycle, phase: float) -> float:
 
 
 def _shifted(cycle: Cycle, phase: float) -> list[Array]:
-    """Torque with the cam, N m, of an engine torque advanced and delayed by a crank angle."""
+    """Crank torque with the cam (n,), N m, of an engine torque advanced and one delayed by a crank
+    angle, rad.
+    """
     before, after = cycle.turn.torque_before, cycle.turn.torque_after
     if before is None or after is None:
         return [np.full(cycle.theta.size, np.nan)]

@@ -27,7 +27,7 @@ def _data(
     *,
     page: Page,
 ) -> Declaration:
-    """Check that a part is described and lacks no datum; None if the scope leaves it out.
+    """Check that the case has all data of a part.
 
     described_by: tables or keys by which the case describes the part; springs: kinds of
     spring with which a case can have it; (): any.

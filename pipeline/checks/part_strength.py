@@ -69,6 +69,10 @@ def _of_force(stress: Stress) -> PerLoad:
 
 
 def _level_force(stress: Stress) -> Measure:
+    """Measure of the force in the middle of the roller that gives the same stress of a part as the
+    contact with its moment.
+    """
+
     def level_force(cam: LoadedCam) -> Array:
         """Force in the middle of the roller that stresses the part as the contact does, N."""
         numbers, force = cam.numbers, not_negative(cam.normal)
@@ -78,6 +82,9 @@ def _level_force(stress: Stress) -> Measure:
 
 
 def _bending(force: Value, moment: Value, numbers: Numbers) -> Array:
+    """Bending stress of the roller pin (...), Pa, by a force in the middle, N, and a moment of the
+    contact, N m.
+    """
     pin = _described(numbers)[1]
     bent = pin_strength.pin_moment(force, moment, numbers["roller.width"], pin.span, pin.overhung)
     return bent * pin_strength.bending_per_moment(pin.diameter)
@@ -89,6 +96,7 @@ def _bending_allowed(numbers: Numbers) -> Allowed:
 
 
 def _pin_in_words(demand: Demand, solution: Solution) -> Demand:
+    """Demand with mounting and material of the pin."""
     pin = _pin_of(solution.machine.roller)[1]
     method = f"32 M/(pi d^3), {pin.mounting}, load linear along the bearing"
     return replace(demand, figures=_sources(pin.material), method=method)
@@ -223,6 +231,7 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
 
 
 def _shear(force: Value, moment: Value, numbers: Numbers) -> Array:
+    """Shear stress of the roller pin (...), Pa, by a force, N, and a moment of the contact, N m."""
     pin = _described(numbers)[1]
     across = pin_strength.support_force(force, moment, pin.span, pin.overhung)
     return pin_strength.pin_shear_stress(across, pin.diameter)
@@ -274,6 +283,9 @@ roller_pin_shear = check(
 
 
 def _seat(force: Value, moment: Value, numbers: Numbers) -> Array:
+    """Pressure of the pin in its bearing (...), Pa, by a force, N, and a moment of the contact, N
+    m.
+    """
     diameter = _described(numbers)[1].diameter
     return pin_strength.seat_pressure(force, moment, diameter, numbers["roller.width"])
 
@@ -338,6 +350,9 @@ def _fork_and_pin(roller: Roller) -> tuple[Fork, Pin] | None:
 
 
 def _cheek(force: Value, moment: Value, numbers: Numbers) -> Array:
+    """Pressure of the pin in the more loaded cheek of its fork (...), Pa, by a force, N, and a
+    moment, N m; NaN without a fork.
+    """
     both = _fork_and_pin(numbers.known_case.roller)
     if both is None:
         return np.full_like(force, np.nan)
@@ -347,6 +362,9 @@ def _cheek(force: Value, moment: Value, numbers: Numbers) -> Array:
 
 
 def _cheek_allowed(numbers: Numbers) -> Allowed:
+    """Allowed pressure in the cheeks, Pa: stated, or a share of the lower tensile strength of fork
+    and pin.
+    """
     both = _fork_and_pin(numbers.known_case.roller)
     if both is None:
         return Allowed(None)
@@ -357,6 +375,7 @@ def _cheek_allowed(numbers: Numbers) -> Allowed:
 
 
 def _cheek_in_words(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the source of the allowed pressure."""
     both = _fork_and_pin(solution.machine.roller)
     if both is None:
         return demand
@@ -454,7 +473,8 @@ def follower_mass(solution: Solution) -> Demand:
 
 
 def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]]:
-    """Masses by name of the parts that move with the follower, kg; missing keys.
+    """Masses of the parts that move with the follower by name, kg, and the dotted keys that the
+    case lacks for them.
 
     A stem without a length counts up to its far guide. A part outside the scope is left out.
     """
@@ -478,7 +498,9 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
 
 
 def _stem_mass(solution: Solution, inset: float) -> tuple[float, tuple[str, ...]]:
-    """Mass of the stem less an inset, m, at its end, kg; missing keys."""
+    """Mass of the stem, shorter by `inset`, m, at its end, kg; its missing keys. Without a length
+    it counts to its far guide.
+    """
     follower = solution.case.follower
     length = follower.stem_length
     lacks: tuple[str, ...] = ()
@@ -506,6 +528,9 @@ def _groove(numbers: Numbers) -> tuple[Value, Value]:
 
 
 def _ring_bending(numbers: Numbers) -> tuple[float, float]:
+    """Amplitude and mean of the stress in the groove of the outer ring per force, Pa/N; NaN where
+    the roller is modelled as solid.
+    """
     roller = numbers.known_case.roller
     stated = {key: numbers.get(key) for key in _RING_KEYS}
     roller = roller.with_values({key: float(each) for key, each in stated.items() if each})
@@ -523,7 +548,9 @@ def _ring_amplitude(worst: Value, numbers: Numbers) -> Value:
 
 
 def _ring_force(limit: float, numbers: Numbers) -> float | None:
-    """Normal force at an amplitude, N: a N/(1 - m N/R_m) = s_W."""
+    """Normal force, N, at which the Goodman amplitude of the ring is `limit`, Pa: a N/(1 - m N/R_m)
+    = s_W; None where the ring is not described.
+    """
     amplitude, mean = (float(each) for each in _groove(numbers))
     if np.isnan(amplitude):
         return None
@@ -531,7 +558,9 @@ def _ring_force(limit: float, numbers: Numbers) -> float | None:
 
 
 def _ring_in_words(demand: Demand, solution: Solution) -> Demand:
-    """Not judged of a roller that is modelled as solid."""
+    """Demand with the source of the ring, or without a value for a roller that is modelled as
+    solid.
+    """
     roller = solution.machine.roller
     ring = roller.bearing.ring
     if ring is None or roller.solid_reason:
@@ -590,7 +619,7 @@ def _bore(numbers: Numbers) -> Value:
 
 
 def _bore_cards(case: Case) -> tuple[list[Material], tuple[str, ...]]:
-    """Materials of cam and camshaft, and the key of the missing one."""
+    """Materials of cam and camshaft at the bore, and the key of the missing one."""
     shaft, cards = case.camshaft, [case.cam.material]
     if not case.scope.covers("camshaft"):
         return cards, ()
@@ -599,6 +628,9 @@ def _bore_cards(case: Case) -> tuple[list[Material], tuple[str, ...]]:
 
 
 def _bore_allowed(numbers: Numbers) -> Allowed:
+    """Allowed pressure at the bore, Pa: a share of the lower tensile strength less the pressure of
+    the fit.
+    """
     cards, missing = _bore_cards(numbers.known_case)
     allowed = _share_of_tensile(BORE_SHARE, cards, numbers)
     if missing or allowed.value is None:
@@ -607,6 +639,9 @@ def _bore_allowed(numbers: Numbers) -> Allowed:
 
 
 def _with_cards_of_bore(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the materials at the bore, their lower tensile strength and the pressure of the
+    fit.
+    """
     cards = _bore_cards(solution.case)[0]
     strengths = [card.tensile_strength for card in cards if card.tensile_strength is not None]
     pressure = float(np.ravel(_fit_pressure(solution.numbers))[0])
@@ -677,7 +712,7 @@ bore_pressure = check(
     page="Torque",
 )
 def torque_reversals(solution: Solution) -> Demand:
-    """Number of torque reversals at gear and key per turn."""
+    """Greatest number of torque reversals per turn at gear and key over the load cases."""
     worst = worst_case(solution.cycles, lambda cycle: float(len(cycle.parts.reversals)))
     slopes = [abs(one.slope) for cycle in solution.cycles for one in cycle.parts.reversals]
     steepest = max(slopes, default=0.0)
@@ -713,7 +748,9 @@ def torque_reversals(solution: Solution) -> Demand:
     page="Camshaft",
 )
 def cam_unbalance(solution: Solution) -> Demand:
-    """Balance grade e w of the rotor, m/s, and its counter-hole."""
+    """Balance grade e w of the rotor, m/s: unbalance over mass times the greatest cam speed; with a
+    note on the counter-hole.
+    """
     balanced, shaft = balance(solution.machine.cam, solution.contour), solution.machine.camshaft
     manufactured, speed = balanced.as_made, max(machine.cam_speed for machine in solution.machines)
     rotor = manufactured.mass if shaft is None else max(manufactured.mass, shaft.rotor_mass or 0.0)
@@ -730,7 +767,7 @@ def cam_unbalance(solution: Solution) -> Demand:
 
 
 def _set(shaft: Camshaft | None) -> str:
-    """The counterweight that is set on the bench in words."""
+    """End of a note on the counterweight that is set on the bench; empty without one."""
     weight = None if shaft is None else shaft.counterweight
     if weight is None or weight.residual is None:
         return ""
@@ -738,7 +775,7 @@ def _set(shaft: Camshaft | None) -> str:
 
 
 def _hole(balanced: Balance) -> str:
-    """The counter-hole in words."""
+    """End of a note on the counter-hole; empty without one."""
     hole, missed = balanced.hole, f"; {balanced.missed}" if balanced.missed else ""
     if hole is None:
         return missed

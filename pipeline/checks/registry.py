@@ -189,7 +189,7 @@ def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, .
 
 
 def accepted(waiver: Waiver, unit: str) -> Waived:
-    """Demand that a waiver accepts, in SI."""
+    """Demand that a waiver accepts, in SI, and who accepts it; unit : of the check."""
     text = f"{waiver.name}, {waiver.date}: {waiver.reason}"
     quantity = In("" if unit == "-" else unit)
     try:

@@ -92,6 +92,7 @@ _WAHL = "K_w = (4 C - 1)/(4 C - 4) + 0.615/C: Wahl factor, C = D/d"
 
 
 def _design(solution: Solution) -> HelicalSpring:
+    """Wound spring of the machine; InputError where it has none."""
     design = solution.machine.spring.design
     if design is None:
         raise InputError("spring.design", "missing", "given for the checks of the spring")
@@ -110,7 +111,7 @@ def _measure(
 
 
 def _allowed(limit: WireLimit) -> Callable[[Numbers], Allowed]:
-    """What the wire allows."""
+    """Function for the limit that the wire of a spring sets, SI."""
     by_wire = limit.allowed
     if by_wire is None:
         raise InputError(limit.words, "no limit", "set by the wire")
@@ -127,6 +128,9 @@ def _at_rest(demand: Demand, solution: Solution) -> Demand:
 
 
 def _stable(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the modulus of the wire, and a note where the spring is stable at any
+    deflection.
+    """
     design = _design(solution)
     note = STABLE if np.isinf(design.buckling_deflection) else ""
     stated = {"E": design.known_modulus}
@@ -134,7 +138,9 @@ def _stable(demand: Demand, solution: Solution) -> Demand:
 
 
 def _surge_over_speed(demand: Demand, solution: Solution) -> Demand:
-    """With the harmonics that the surge meets, and its greatest force."""
+    """Demand with a note on the harmonics that the surge meets and the greatest force that it
+    adds.
+    """
     design, lift = _design(solution), solution.contour.pitch.lift.values
     travel = np.asarray(end_travel(solution.machine.spring.shape, lift))
     highest, margin = surge_harmonics(travel, demand.value or 0.0)
@@ -165,7 +171,9 @@ class OverSpeed(NamedTuple):
 
 
 def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> OverSpeed:
-    """Greatest value (2, m) over both ends of the spring and all speeds."""
+    """Greatest over both ends of the spring and all speeds of `use`, a function of the sweep for
+    values (2, m); NaN without a wound spring.
+    """
     sweep, damped = solution.hardest_spring, solution.least_damped
     if sweep is None:
         return OverSpeed(np.nan, np.nan, "", np.nan, np.nan)
@@ -180,7 +188,9 @@ def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> Over
 
 
 def _stress_over_speed(solution: Solution) -> Demand:
-    """Greatest shear stress of the wire with surge over the static strength."""
+    """Greatest shear stress of the wire with surge over its static strength, over the speed
+    range.
+    """
     design = _design(solution)
     worst = _over_speed(solution, lambda sweep: design.static_use(sweep.greatest))
     share = worst.least_damped / worst.value - 1.0
@@ -278,7 +288,9 @@ spring_fatigue = check(
 
 
 def spring_fatigue_points(solution: Solution) -> list[FatiguePoint]:
-    """Goodman point of the wire at its worst speed; none without a spring design."""
+    """Stress amplitude and mean of the wire, Pa, at its worst speed, for the Goodman diagram; empty
+    without a wound spring.
+    """
     design, sweep = solution.machine.spring.design, solution.hardest_spring
     if design is None or sweep is None or not np.isfinite(sweep.greatest).all():
         return []
@@ -694,7 +706,9 @@ gas_temperature = _gas_check(
 
 
 def _lost_force(cam: LoadedCam) -> Array:
-    """Share of the preload that is missing at the coldest start after the service interval."""
+    """Share of the preload that a gas spring lacks at the coldest start at the end of the service
+    interval.
+    """
     numbers = cam.numbers
     absolute = cam.spring_preload / numbers["spring.gas.area"] + ATMOSPHERE
     warm = numbers.get("spring.gas.temperature")
@@ -704,6 +718,7 @@ def _lost_force(cam: LoadedCam) -> Array:
 
 
 def _of_warm_gas(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the temperature in operation and the source of the gas spring."""
     warm = solution.numbers.get("spring.gas.temperature")
     stated = {"T": CHARGED_AT if warm is None else float(warm)}
     return replace(_of_gas(demand, solution), stated=stated)
@@ -763,7 +778,9 @@ def gas_of(case: Case) -> GasSpring:
 
 
 def gas_warmth(case: Case, work: Value, rate: Value) -> Value:
-    """Temperature of the gas, degC, by the energy at maximum lift, J, and the strokes per time."""
+    """Temperature of the gas (...), degC, by the energy of a stroke (...), J, and the strokes per
+    time (...), 1/s: heat of the friction of its seals.
+    """
     gas, ambient = gas_of(case), case.cooling.ambient_temperature
     cooling = Cooling(ambient_temperature=ambient, conductance=gas.conductance)
     loss = 2.0 * gas.friction * work * rate
@@ -771,7 +788,9 @@ def gas_warmth(case: Case, work: Value, rate: Value) -> Value:
 
 
 def _self_heating(solution: Solution) -> Demand:
-    """Temperature of the gas by the friction of its seals, degC."""
+    """Temperature of the gas by the friction of its seals, degC, over the load cases by their
+    duty.
+    """
     spring, gas = solution.machine.spring, gas_of(solution.case)
     work = spring.energy(float(solution.contour.pitch.lift.highest.value))
 
@@ -844,6 +863,7 @@ gas_stroke_rate = _gas_check(
 
 
 def _torsion(cam: LoadedCam) -> TorsionWire:
+    """Torsion spring of the cam; InputError where it has none."""
     torsion = cam.spring_shape
     if not isinstance(torsion, TorsionWire):
         raise InputError("spring.torsion", "missing", "given for the checks of the spring")
@@ -876,7 +896,9 @@ def _torsion_check(
     name: str, measure: Measure, key: str, share: float, *, title: str, source: Source, method: str,
     formula: str, reason: str,
 ) -> Declaration:  # fmt: skip
-    """Check of the bending stress of a torsion spring against a share of a value of its table."""
+    """Check of a bending stress of a torsion spring against a `share` of the value at a `key` of
+    its table.
+    """
 
     def allowed(numbers: Numbers) -> Allowed:
         table = f"spring.{numbers.known_case.spring.kind}"

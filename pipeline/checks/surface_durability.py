@@ -53,7 +53,9 @@ RULE_RATIO = 1.5
 
 
 def _tangential(cam: LoadedCam) -> Array:
-    """Magnitude of the tangential force of rolling without slip, N."""
+    """Magnitude of the tangential force at the roller that rolling without slip needs (..., n), N;
+    NaN where the drag is not known.
+    """
     path, drag = roller_of(cam.motion), cam.drag
     if drag is None:
         return np.full(np.shape(cam.normal), np.nan)
@@ -161,7 +163,7 @@ traction_reserve = check(
     page="Contact",
 )
 def film_ratio(solution: Solution) -> Demand:
-    """Least film thickness over composite roughness; not judged at standstill."""
+    """Least film thickness over composite roughness; at standstill only if no load case runs."""
     machine = solution.machine
     oil, kind = machine.lubricant, machine.follower
     running = [cycle for cycle in solution.cycles if cycle.machine.speed > 0]
@@ -185,7 +187,9 @@ def _torsion_demand(
     measure: Callable[[Envelope], float],
     stated: Callable[[Envelope], dict[str, float]],
 ) -> Demand:
-    """Equivalent fatigue stress against the fatigue limit in torsion of the cam, Pa."""
+    """Demand of an equivalent fatigue stress, Pa, that `measure` takes from the map of stresses of
+    a turn, against the fatigue limit in torsion of the cam.
+    """
     card = solution.machine.cam.material
     endured, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
     strengths_stated = endured is not None and card.fatigue_bending is not None
@@ -206,7 +210,9 @@ def _torsion_demand(
 
 
 def _crossland(swept: Envelope) -> dict[str, float]:
-    """Parts of the greatest Crossland stress, Pa."""
+    """Parts of the greatest Crossland stress, Pa: root of the second invariant "s_J" and
+    hydrostatic tension "s_H"; empty where they are not known.
+    """
     if swept.crossland is None or swept.root_j2 is None or swept.tension is None:
         return {}
     index = np.unravel_index(first_greatest(swept.crossland.ravel()), swept.crossland.shape)
@@ -304,7 +310,9 @@ def dang_van(solution: Solution) -> Demand:
     scales_with=(demands.PRESSURE, 1.0),
 )
 def hardened_case(solution: Solution) -> Demand | None:
-    """Maximum von Mises stress over the yield strength at its depth; None if not hardened."""
+    """Greatest von Mises stress over the yield strength at its depth; None if no body is
+    surface-hardened.
+    """
 
     def use(swept: SweptStress, card: Material) -> _StrengthUse:
         strengths = card.yield_strength, card.core_yield_strength
@@ -350,7 +358,9 @@ def hardened_case(solution: Solution) -> Demand | None:
     scales_with=(demands.PRESSURE, 1.0),
 )
 def case_shear(solution: Solution) -> Demand | None:
-    """Maximum shear amplitude over the fatigue limit at its depth; None if not hardened."""
+    """Greatest shear amplitude over the fatigue limit in torsion at its depth; None if no body is
+    surface-hardened.
+    """
 
     def use(swept: SweptStress, card: Material) -> _StrengthUse:
         strengths = card.fatigue_torsion, card.core_fatigue_torsion
@@ -383,7 +393,8 @@ def _hardened_demand(
     keys: tuple[str, ...],
     symbols: tuple[str, ...],
 ) -> Demand | None:
-    """Greatest use of the strength by depth over the hardened bodies, which needs some keys.
+    """Demand of the greatest use of the strength at any depth, over the surface-hardened bodies,
+    which needs the keys `keys` of their materials; None without such a body.
 
     symbols: of stress, strengths of surface and core, depth and case depth in the formula.
 
@@ -446,7 +457,9 @@ def _signed_depth(cycle: Cycle) -> Array:
     scales_with=(demands.NORMAL_FORCE, 0.5),
 )
 def case_depth(solution: Solution) -> Demand | None:
-    """Effective case depth over the greatest depth of maximum shear; None if not hardened."""
+    """Effective case depth over the greatest depth of the maximum shear stress; None if no body is
+    surface-hardened.
+    """
     bodies = hardened_bodies(solution)
     if not bodies:
         return None
@@ -557,7 +570,8 @@ def _estimate(
     lacks: Callable[[Material], tuple[str, ...]],
     reason: Callable[[Material], str],
 ) -> Demand:
-    """Contact pressure against the least estimate of the bodies that have one.
+    """Demand of the greatest contact pressure, Pa, against the least estimate by a rule of hardness
+    over the bodies that have one.
 
     lacks: keys that the rule needs; reason: why it does not hold for a card that has them.
     """
@@ -601,7 +615,7 @@ def _estimate(
     values=given.bodies("*endurance_pressure", "hardness*"),
 )
 def endurance_rules(solution: Solution) -> Demand:
-    """Greatest ratio of two hardness-based endurance rules for cam or follower."""
+    """Greatest ratio of two hardness-based estimates of the endurance pressure of one body."""
     machine = solution.machine
     spread, notes, stated = None, [], dict[str, float]()
     for body, card in machine.bodies.items():
@@ -618,13 +632,18 @@ def endurance_rules(solution: Solution) -> Demand:
 
 
 def _rules(machine: Machine, card: Material) -> dict[str, float]:
+    """Endurance pressures of a material, Pa, by name of the rule: stated by kind of motion, and
+    estimated from its hardness.
+    """
     row = endurance_of(machine, card)
     by_motion = {row.motion: row.pressure} if row.pressure else {}
     return by_motion | endurance_by_hardness(card)
 
 
 def _lambda(cycle: Cycle) -> Array:
-    """Film thickness ratio (n,), infinite where unloaded; NaN where it is not known."""
+    """Film thickness over roughness at each cam angle (n,), infinite where unloaded; NaN where it
+    is not known.
+    """
     film = cycle.rolling.film
     ratio = None if film is None else film.ratio
     if ratio is None:
@@ -642,7 +661,10 @@ def _use_of_strength(
     case: float | None,
     strengths: tuple[float | None, float | None],
 ) -> _StrengthUse:
-    """Greatest stress over the strength at its depth; NaN without case depth or a strength."""
+    """Greatest `stress` over the strength at its depth, which falls linearly from the surface to
+    the end of the case, `case` deep, m; strengths : of surface and core, Pa. NaN without case depth
+    or a strength.
+    """
     surface, core = strengths
     if case is None or surface is None or core is None:
         return _StrengthUse(*(6 * [np.nan]))

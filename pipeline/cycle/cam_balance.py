@@ -78,7 +78,9 @@ class Balance:
 
 
 def balance(cam: CamBody, contour: Contour) -> Balance:
-    """Unbalance of the cam with bore and keyway, and its counter-hole."""
+    """Unbalance of the cam with bore and keyway, and the counter-hole that removes it or as much of
+    it as it can.
+    """
     unbalance, order = undrilled(cam, contour), cam.counter_hole
     wall = WALL if order is None else order.wall
     depth = 0.0 if cam.keyway is None else cam.keyway.depth
@@ -108,7 +110,9 @@ def design_mass(case: Case, contour: Contour) -> float:
 def camshaft_loads(
     loads: Loads, shaft: Camshaft, cam: CamBody, contour: Contour, cam_speed: float
 ) -> ShaftLoads:
-    """Camshaft loads over a turn, with the centrifugal forces of cam and counterweight."""
+    """Forces on the camshaft and its bearings over a turn, with the centrifugal forces of cam and
+    counterweight; cam_speed : rad/s.
+    """
     manufactured, weight = _as_made(cam, contour), shaft.counterweight
     thrown = rotating_force(manufactured.product, manufactured.angle, cam_speed, loads.theta)
     held = np.zeros_like(thrown)
@@ -119,7 +123,7 @@ def camshaft_loads(
 
 
 def rotor_unbalance(made: Unbalance, shaft: Camshaft | None) -> float:
-    """Unbalance of cam and counterweight together, kg m."""
+    """Unbalance of cam and counterweight together, kg m: magnitude of their vector sum."""
     weight = None if shaft is None else shaft.counterweight
     total = made.product * np.exp(1j * made.angle)
     if weight is not None:

@@ -177,7 +177,9 @@ class Cycle(Tabled):
 
     @property
     def surged_force(self) -> Array:
-        """Normal force with the surge of the spring, N, >= 0; without a spring design as solved."""
+        """Normal force (n,), N, >= 0, with the surge of the spring; without a wound spring as
+        solved.
+        """
         loads = self.loads
         surge = spring_surge(self.machine, loads.lift)
         if surge is None:
@@ -208,7 +210,8 @@ class Cycle(Tabled):
 
     @KeptResult
     def sideways(self) -> GuideReactions | None:
-        """Reactions of the guides across the plane of the cam, under a tilt that they force.
+        """Reactions of the guides across the plane of the cam, under the couple of a tilt of the
+        contact that they force.
 
         Of the part of `follower_moment` that bends the stem; None where none is forced.
         """
@@ -329,6 +332,7 @@ class Cycle(Tabled):
         return MappingProxyType({step: self._at_every(step) for step in steps})
 
     def _at_every(self, step: int) -> Cycle:
+        """The cycle at every `step`-th position."""
         count = self.theta.size
         turn, contact = _at_every(self.turn, count, step), _at_every(self.contact, count, step)
         return _ThinnedCycle(turn, self.contour, self.pair, self.bodies, contact, self, step)
@@ -567,7 +571,7 @@ Result = TypeVar("Result")
 
 
 def _at_every(result: Result, count: int, step: int) -> Result:
-    """A result with every few entries of its arrays (count, ...) or (..., count).
+    """The result with every `step`-th entry of its arrays (count, ...) or (..., count).
 
     Those of its parts included.
     """

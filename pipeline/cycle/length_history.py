@@ -85,7 +85,7 @@ class LengthHistory:
         freeze(self, centre=self.centre, level=self.level, tilted=self.tilted, moment=self.moment)
 
     def with_rows(self, rows: NDArray[np.intp], solved: FactorRange) -> LengthHistory:
-        """The history with the factors of some angles."""
+        """The history with the factors `solved` of the angles numbered `rows`."""
         changed = {}
         for name, values in solved._asdict().items():
             column = getattr(self, name).copy()
@@ -134,7 +134,9 @@ class LengthHistory:
         )
 
     def sentence(self, place: int) -> str:
-        """Kind of the stated pressure at one angle, in words."""
+        """Sentence on the kind of pressure along the line at the angle of this number, its moment
+        and tilt.
+        """
         mean = shown(self.mean_length, "mm")
         what = "greatest pressure along the line, which is bounded"
         if self.at_corner[place]:
@@ -154,7 +156,7 @@ class LengthHistory:
         )
 
     def tier(self, place: int) -> str:
-        """Tier of the factor and its error bar at one angle."""
+        """Model of the factor and its error bar at the angle of this number, in words."""
         bar = f"error bar {100.0 * self.error[place]:.2g} %"
         if self.correction is None:
             return f"by half-spaces with mirrored ends, {bar} as stated, finite elements not solved"
@@ -214,7 +216,7 @@ class TurnOfLine(NamedTuple):
 
     @property
     def loads(self) -> ContactLoads:
-        """Contacts at the angles with contact."""
+        """Curvature, force, tilts and couples of the contacts at the angles with contact."""
         rows, tilt = self.rows, self.tilt
         force = self.force[rows]
         radius = self.contact.relative_radius[rows]
@@ -253,7 +255,9 @@ class TurnOfLine(NamedTuple):
 
     @property
     def rigid_moment(self) -> Array:
-        """Upper bound (n,) of the moment about the middle of the follower, N m; ends not known."""
+        """Upper bound of the moment of the contact about the middle of the follower (n,), N m, for
+        bodies whose ends are not known.
+        """
         forced, held = self.tilt.forced, self.held
         most = GREATEST_MOMENT * self.force * self.machine.contact_width
         line = rigid_moment(forced, self.tilt_compliance, held, most)
@@ -267,7 +271,9 @@ class TurnOfLine(NamedTuple):
         return float(moment_compliance(machine, reach, guides.spacing))
 
     def history(self, solved: FactorRange | None) -> LengthHistory:
-        """History of the factors at the angles with contact; None: no contact."""
+        """Pressure along the line over the turn from the factors at the angles with contact; None:
+        no contact at any angle.
+        """
         radius, count = self.contact.relative_radius, self.force.size
         blank = np.where(np.isnan(radius), np.nan, 1.0)
         history = LengthHistory(
@@ -325,7 +331,9 @@ def _parts(turns: Sequence[TurnOfLine], members: Sequence[int]) -> Iterator[list
 
 
 def _together(machine: Machine, loads: Sequence[ContactLoads]) -> FactorRange:
-    """Factors of the contacts of several turns, the worse of both ends."""
+    """Factors of the contacts of several turns, (all contacts,), joined for one evaluation; at an
+    axial offset the worse of both ends.
+    """
     joined = ContactLoads(*(np.concatenate(parts) for parts in zip(*loads, strict=True)))
     pairs, mean_length = machine.finite_pairs, machine.limits[END_MEAN_LENGTH]
     fill_together([length_table(pair, mean_length) for pair in pairs])
@@ -445,7 +453,9 @@ def raised_load(force: Array) -> Array:
 
 
 def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:
-    """Worse contact of both ends at each position, with the greater pressure in the middle."""
+    """Factors of the end with the greater pressure at each position, with the greater pressure of
+    both in the middle.
+    """
     worst = ranges[0]
     for other in ranges[1:]:
         least = np.maximum(worst.level, worst.tilted) * (1.0 + TIE)
@@ -456,7 +466,9 @@ def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:
 
 
 def factor_at_pressure(pair: FinitePair, pressure: float, mean_length: float) -> float:
-    """Stated-pressure factor of an untilted contact at a plane-strain pressure, Pa."""
+    """Pressure along an untilted line of contact over its plane-strain pressure `pressure`, Pa;
+    mean_length : over which the pressure at a corner is averaged, m.
+    """
     half_width = 2.0 * pressure / (pair.contact_modulus * pair.curvature)
     force = 0.5 * np.pi * half_width * pressure * pair.contact_length
     edges, line = length_table(pair, mean_length).of_one(pair.curvature, force)

@@ -42,7 +42,9 @@ from camwright.pipeline.follower.spring_kinds import SpringShape, rise
 
 
 def motion_of(jet: Jet, numbers: Numbers) -> Motion:
-    """Kinematics of the follower from its numbers; see `PitchCurve`, `FacePath` and `ArmPath`."""
+    """Kinematics of the unloaded cam under its follower at the angles of a jet, by the kind of
+    follower that the numbers describe.
+    """
     prime, offset = numbers["cam.prime_radius"], numbers["cam.offset"]
     if numbers.get("follower.arm.length") is not None:
         return _on_an_arm(jet, numbers)
@@ -65,7 +67,9 @@ def pivot_of(numbers: Numbers) -> ArmPivot | None:
 
 
 def _on_an_arm(jet: Jet, numbers: Numbers) -> Motion:
-    """Motion of roller or face of an arm, whose start angle follows from the prime radius."""
+    """Kinematics under roller or face of an arm, whose start angle follows from the prime
+    radius.
+    """
     distance, length = numbers["follower.arm.centre_distance"], numbers["follower.arm.length"]
     arm, prime = Arm(distance, length, _sense(numbers)), numbers["cam.prime_radius"]
     offset, radius = (numbers.get(f"follower.face.{name}") for name in ("offset", "radius"))
@@ -297,7 +301,8 @@ class LoadedCam:
 
     @cached_property
     def hardest(self) -> SpringWork[Value]:
-        """Work of the hardest spring in tolerance up to the lift, without surge.
+        """Preload, greatest force, N, travel, m, and rate, N/m, of the hardest spring in tolerance
+        up to the lift, without surge.
 
         With the greatest preload of the load cases; a wound spring has the rate of its wire. Force
         and travel are those of the spring itself.
@@ -380,6 +385,7 @@ class LoadedCam:
         return self.velocity * (pivot.radius / pivot.length)
 
     def _of_pivot(self, balanced: PivotBalance | None, name: str) -> Array:
+        """Field of the equilibrium about the pivot by its name (..., n); NaN without a pivot."""
         if balanced is None:
             return np.full_like(self.velocity, np.nan)
         return np.asarray(getattr(balanced, name))

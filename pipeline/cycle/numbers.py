@@ -40,7 +40,7 @@ class Numbers:
     )
 
     def get(self, key: str) -> Value | None:
-        """Value at a key; None where the case omits it."""
+        """Value at a dotted key, SI; None where the case omits it."""
         if key in self.changed:
             return self.changed[key]
         if key in DERIVED:
@@ -88,7 +88,8 @@ class Numbers:
     def each(
         self, figures: Callable[[Numbers], Sequence[Value]], keys: Sequence[str], most: int = 0
     ) -> tuple[Value, ...]:
-        """Figures of a part; for designs evaluated with each of their numbers at some keys.
+        """Figures of a part that `figures` gives for the numbers of one machine; of many designs
+        arrays (m, 1), made once for each different set of the numbers at `keys`.
 
         They depend on the case and on these numbers alone, and are made once for all designs of the
         same numbers, load cases and checks; NaN of more than `most` different ones, if not 0.
@@ -106,6 +107,9 @@ class Numbers:
         values: Mapping[str, Value | None],
         most: int,
     ) -> tuple[Value, ...]:
+        """Figures evaluated for each different row of the values, (m, 1) each; NaN for all of more
+        than `most` rows, if not 0.
+        """
         arrays = {key: each for key, each in values.items() if isinstance(each, np.ndarray)}
         if not arrays:
             return tuple(figures(self))
@@ -157,7 +161,7 @@ def _mouth(numbers: Numbers) -> Value:
 
 
 def _extent(numbers: Numbers) -> Value:
-    """Extent of the follower from its reference point towards guide A, m: of its fork, too."""
+    """Extent of the follower, with its fork, from its reference point towards guide A, m."""
     thickness = numbers.get("follower.face.thickness")
     if thickness is not None:
         return thickness
@@ -167,7 +171,9 @@ def _extent(numbers: Numbers) -> Value:
 
 
 def _half_depth(numbers: Numbers) -> Value:
-    """Half of the length of the follower along the cam axis, m: with the pin and fork described."""
+    """Half of the width of the follower along the cam axis, m, with pin and fork where they are
+    described.
+    """
     depth = numbers.get("follower.face.depth")
     if depth is not None:
         return 0.5 * depth
@@ -212,7 +218,9 @@ def _ball_circle(numbers: Numbers) -> Value | None:
 
 
 def _cleanliness_load(numbers: Numbers) -> Value | None:
-    """e_C P_u of the roller bearing, N."""
+    """Contamination factor times fatigue load limit of the roller bearing, e_C P_u, N; None without
+    either.
+    """
     case = numbers.case
     cleanliness = None if case is None else value_of(case, "roller.bearing.contamination")
     limit = numbers.get("roller.bearing.fatigue_load_limit")
@@ -224,7 +232,9 @@ def _cleanliness_load(numbers: Numbers) -> Value | None:
 
 
 def _waviness(numbers: Numbers) -> Value | None:
-    """Height of the waves of the track, m: as stated, else of the process, within the profile."""
+    """Height of the waves of the track, m: stated, else usual for the process, at most the profile
+    tolerance.
+    """
     stated, band = numbers.get("cam.waviness_height"), numbers.get("cam.profile_tolerance")
     if stated is not None or band is None:
         return stated
@@ -249,7 +259,8 @@ def base_radius(numbers: Numbers) -> Value:
 
 
 def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
-    """Cam on its shaft as a ring of its least or greatest radius; None without a fit.
+    """Cam on its shaft as a ring of its least radius or, if `thick`, of that and the travel of the
+    spring, a bound of its greatest; None without a fit.
 
     None without the material of the camshaft, too. The least radius has the lower pressure and,
     of one interference, the greater hoop stress.
@@ -282,6 +293,9 @@ def presses(numbers: Numbers) -> bool:
 
 
 def _interference(numbers: Numbers, end: str) -> Value | None:
+    """Interference of the fit at its `end`, "least" or "greatest", of the radius, m, with the
+    growth by temperatures; None without a fit.
+    """
     ring, case = fitted_ring(numbers), numbers.case
     if ring is None or case is None or case.cam.fit is None:
         return None
@@ -291,7 +305,9 @@ def _interference(numbers: Numbers, end: str) -> Value | None:
 
 
 def _least_fit_pressure(numbers: Numbers) -> Value | None:
-    """Least pressure of the fit, Pa: at the greatest cam speed."""
+    """Least pressure of the fit, Pa: at the least interference and the greatest cam speed; None
+    without a fit.
+    """
     ring, wide = fitted_ring(numbers), fitted_ring(numbers, thick=True)
     least = least_interference(numbers)
     if ring is None or wide is None or least is None:
@@ -307,7 +323,9 @@ def _greatest_fit_pressure(numbers: Numbers) -> Value | None:
 
 
 def _slip_torque(numbers: Numbers) -> Value | None:
-    """Torque at which the cam slips on its seat, N m: stated, or that of the fit."""
+    """Torque at which the cam slips on its seat, N m: stated, or by the least pressure of the fit;
+    None where neither is known.
+    """
     case = numbers.case
     stated = None if case is None else value_of(case, "camshaft.slip_torque")
     if stated is not None or case is None or case.cam.fit is None:

@@ -213,7 +213,8 @@ def _pivot_edge(machine: Machine, loads: Loads, moment: Array) -> Array | None:
 
 
 def spring_surge(machine: Machine, lift: Array) -> Array | None:
-    """Surge force of the spring on the follower (n,), N, by the lift at equal angles, m.
+    """Change of the spring force on the follower by the surge of the coils over the turn (n,), N;
+    lift : (n,), m, at equal angles.
 
     None without a spring design.
     """
@@ -252,7 +253,9 @@ def _in_bore(pin: SolidBar, guide: Guide, diameter: float) -> Callable[[Array], 
 
 
 def _key_pressure(machine: Machine, loads: Loads) -> Array | None:
-    """Pressure of the key on the flank of the keyway in the cam, application factor included."""
+    """Pressure of the key on the flank of the keyway in the cam (n,), Pa, application factor
+    included; None without a key.
+    """
     cam = machine.cam
     key, flanks = cam.key, cam.key_flanks
     if key is None or flanks is None:
@@ -272,7 +275,9 @@ def shaft_of(turn: Turn, contour: Contour) -> ShaftLoads | None:
 def _ring(
     machine: Machine, contour: Contour, loads: Loads, contact_width: float
 ) -> tuple[Array | None, Array | None, Array | None]:
-    """Stress amplitude and mean of the outer ring, and its change of p0 between balls."""
+    """Amplitude and mean of the stress in the outer ring (n,), Pa, and relative change of the
+    contact pressure from over to between balls (n,); None for a solid roller.
+    """
     ring = machine.follower.ring(contact_width, machine.spring.preload)
     if ring is None:
         return None, None, None

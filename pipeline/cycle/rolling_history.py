@@ -117,7 +117,9 @@ class RollingHistory(Displayed):
         return cls(np.full(count, np.nan), None, SweptStress(Envelope.unknown))
 
     def columns(self) -> dict[Column, Array]:
-        """Columns of ``5_cycle.csv``; unknown for a contour that encloses no body."""
+        """Columns (n,) of ``5_cycle.csv`` as far as they are known; NaN for a contour that encloses
+        no body.
+        """
 
         def column(name: str, unit: str, meaning: str) -> Column:
             return Column(name, unit, meaning, unknown=True)
@@ -183,7 +185,8 @@ def rolling_history(
     loads: Loads,
     contact: ContactHistory,
 ) -> RollingHistory:
-    """Rolling or sliding over a turn at the angles of its loads.
+    """Rolling or sliding over a turn at the angles of its loads: traction, heat, film, fatigue and
+    bore stress.
 
     Without the meshed bodies the stresses are those of half-planes, and there is no bore stress.
     """
@@ -229,7 +232,9 @@ def _envelope(
     *,
     governing: bool = False,
 ) -> Envelope:
-    """Map of the maximum stresses, at its own stations; only at those that govern."""
+    """Map of the maximum stresses below the surface over the turn, at its own stations; governing :
+    only at those with the greatest stresses.
+    """
     stations, theta = uniform_turn(STATIONS), loads.theta
     system = replace(machine.system, rubbing=loads.rubbing)
     there = follower_loads(pair.contour.pitch, system, machine.cam_speed, stations)
@@ -254,7 +259,9 @@ def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load
 
 
 def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
-    """Arrays of ``5_envelope.npz`` by load case: a row per station, a column per depth."""
+    """Arrays of ``5_envelope.npz`` by load case and name: a row per station along the contour, a
+    column per depth.
+    """
     arrays = {}
     for load_case, turn in turns.items():
         map_ = turn.envelope
@@ -274,6 +281,9 @@ def rolling_record(turns: Mapping[str, RollingHistory]) -> dict[str, RollingReco
 
 
 def _worst_record(turn: RollingHistory) -> RollingRecord:
+    """Record of the greatest stresses below the surface with their places, of the bore, and of the
+    losses of a turn.
+    """
     record: RollingRecord = {}
     for name in MAPS:
         if getattr(turn.envelope, name) is not None:
@@ -301,6 +311,7 @@ def _worst_record(turn: RollingHistory) -> RollingRecord:
 
 
 def _worst_bore_record(bore: BoreStress) -> BoreMaximum:
+    """Record of the greatest von Mises stress at the bore with its place."""
     k = first_greatest(bore.von_mises)
     return {
         "von_mises_MPa": _MPA * float(bore.von_mises[k]),

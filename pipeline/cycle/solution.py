@@ -162,7 +162,9 @@ class Solution(Displayed):
 
     @KeptResult
     def hardest_spring(self) -> SpringSweep | None:
-        """Forces in the hardest spring in tolerance over the speed; None without its design."""
+        """Least and greatest force at both ends of the hardest spring in tolerance over the speed;
+        None without a wound spring.
+        """
         design = self.machine.spring.design
         if design is None:
             return None
@@ -353,7 +355,9 @@ def certified_solution(
 def _begun_ends(
     solved: Solution, workers: Crew, progress: Progress
 ) -> BegunEnds | LengthCertificate | None:
-    """Certificate of the ends, its blocks handed to workers; that of a refusal; None: no ends."""
+    """Certificate of the contact of finite length, its meshes submitted to worker processes; a
+    refused one where they cannot be made, None without body ends.
+    """
     elements, mean_length = solved.case.solver.end_elements, solved.machine.limits[END_MEAN_LENGTH]
     if elements == 0:
         return None
@@ -375,7 +379,7 @@ def _begun_ends(
 def _with_ends(
     final: Solution, ends: BegunEnds | LengthCertificate, progress: Progress
 ) -> Solution:
-    """The solution with the certificate of its ends, by which the cycles are corrected."""
+    """The solution with the certificate of its ends, and with cycles corrected by it."""
     progress.stage(ENDS)
     try:
         certificate = (
@@ -432,7 +436,8 @@ def is_body(contour: Contour) -> bool:
 
 
 def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:
-    """Meshes at the angle of maximum Hertz pressure over all turns; None without load.
+    """Meshes of cam and follower at the angle of maximum Hertz pressure over all turns; None
+    without load.
 
     Raises
     ------
@@ -469,7 +474,9 @@ def _contact(
     store: ContactStore,
     progress: Progress,
 ) -> ContactHistory:
-    """Contact of a turn: Hertz without meshed bodies, NaN if the contour encloses no body."""
+    """Contact over a turn: by finite elements of the meshed bodies, Hertz without them (None); NaN
+    where the contour encloses no body (`body` False).
+    """
     if not body:
         return ContactHistory.unknown(each.theta.size)
     if bodies is None:
@@ -482,7 +489,9 @@ def _contact(
 def _pieces(
     pair: ContactPair, bodies: CycleBodies, each: Turn, store: ContactStore, progress: Progress
 ) -> Iterator[Arrays]:
-    """Pieces of the contact of a turn in order, from the store if it has them."""
+    """Arrays of the contact over a turn in pieces of `CHUNK` positions in order, each from the
+    store if it has it.
+    """
     name, key = each.machine.load_case, piece_key(pair, each.loads.normal_force, CHUNK)
     total = -(-each.theta.size // CHUNK)
     for index in range(total):

@@ -44,7 +44,7 @@ def in_load_case(numbers: Numbers, machine: Machine) -> Numbers:
 
 
 def numbers_in(machine: Machine) -> dict[str, float | None]:
-    """Numbers of a machine in its load case, without those of the spring."""
+    """Numbers of a machine in its load case by dotted key, SI, without those of the spring."""
     nominal, greatest = machine.friction.nominal, machine.friction.greatest
     friction = {
         f"{key}{which}": value

@@ -158,7 +158,9 @@ class SweptForces(NamedTuple):
 def swept_forces(
     machine: Machine, contour: Contour, rubbing: Rubbing, cam_speed: float
 ) -> SweptForces:
-    """Contact forces at one cam speed, rad/s, with surge and elastic stem; see `speed_sweep`."""
+    """Changes of the contact forces over a turn (n,), N, at one cam speed, rad/s, by surge and by
+    an elastic stem.
+    """
     follower = _Follower.of(machine, contour.pitch, rubbing)
     speed = np.array([cam_speed])
     moving = follower.resonant.stiffness(speed).moving
@@ -227,6 +229,9 @@ class _Resonant:
         pitch: FollowerPath,
         shape: SpringShape | None,
     ) -> _Resonant:
+        """Spring on the lift of a path, with the harmonics of its travel; design : None: without
+        mass.
+        """
         lift = pitch.lift(uniform_turn(ANGLES))
         travel = np.asarray(end_travel(shape, lift))
         return cls(travel, lever(shape, lift), np.fft.rfft(travel), own, design)
@@ -248,7 +253,8 @@ class _Resonant:
         return 2.0 * np.pi * natural_frequency(self.spring.rate, self.design.active_mass)
 
     def stiffness(self, cam_speed: Array) -> DynamicStiffness:
-        """Dynamic stiffness less the rate (m, harmonics) at moving and fixed end, N/m.
+        """Dynamic stiffness of the coils less the rate at moving and fixed end, N/m, (m,
+        harmonics), at cam speeds (m,), rad/s.
 
         Without mass zero, (m, 1).
         """
@@ -269,7 +275,9 @@ class _Resonant:
         return surge if np.ndim(self.lever) == 0 or surge.shape[1] == 1 else surge * self.lever
 
     def end_forces(self, cam_speed: Array) -> tuple[Array, Array]:
-        """Least and greatest force (2, m) over the turn at moving and fixed end, N."""
+        """Least and greatest force over the turn at the moving and the fixed end (2, m), N, each,
+        at cam speeds (m,), rad/s.
+        """
         static = self.spring.force(self.travel)
         ends = self.stiffness(cam_speed)
         forces = [static + self.surge(each) for each in (ends.moving, ends.fixed)]
@@ -323,6 +331,9 @@ class _Follower:
 
     @classmethod
     def of(cls, machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> _Follower:
+        """Forces of a follower on its path over the turn, those of inertia and damping at a cam
+        speed of 1 rad/s.
+        """
         theta = uniform_turn(ANGLES)
         system = replace(machine.system, rubbing=rubbing)
         loads = follower_loads(pitch, system, 1.0, theta)
@@ -444,7 +455,9 @@ def _about(speeds: Array, damping: float) -> Array:
 
 
 def _between(grid: Array, worst: set[int]) -> Array:
-    """Speeds between the neighbours of the worst ones."""
+    """Further speeds between each of the worst of a grid (numbers `worst`) and its neighbours, in
+    the unit of the grid.
+    """
     last = grid.size - 1
     finer = [
         np.linspace(grid[max(k - 1, 0)], grid[min(k + 1, last)], _REFINED_SPEEDS + 2)[1:-1]
@@ -455,7 +468,9 @@ def _between(grid: Array, worst: set[int]) -> Array:
 
 
 def _sampling_error(values: Array, at: NDArray[np.intp]) -> Array:
-    """Vertex of the parabola through three samples less the middle one (m,), magnitude."""
+    """Distance of the vertex of the parabola through the least sample, of number `at` (m,), and its
+    neighbours from that sample, (m,), for values (m, n).
+    """
     row, count = np.arange(at.size), values.shape[1]
     before, here, after = (values[row, (at + step) % count] for step in (-1, 0, 1))
     second = before - 2.0 * here + after

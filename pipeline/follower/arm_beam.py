@@ -24,7 +24,8 @@ _EQUAL_AREA = 0.808  # diameter of a round section over the root of a rectangle'
 
 
 def torsion_of_rectangle(width: float, depth: float) -> tuple[float, float]:
-    """Torsion constant, m4, and modulus, m3, of a rectangle; the order of its sides is free.
+    """Torsion constant, m4, and section modulus of torsion, m3, of a rectangular bar with sides
+    `width` and `depth`, m, in any order.
 
     References
     ----------
@@ -102,7 +103,9 @@ class ArmSection(NamedTuple):
         return float(_EQUAL_AREA * np.sqrt(self.area))
 
     def normal(self, loads: SectionLoads) -> Array:
-        """Normal stress (4, ...) of its corners, Pa, with the notch factor."""
+        """Normal stress at the four corners of the section (4, ...), Pa, of loads (...), with the
+        fatigue notch factor.
+        """
         bent, aside = loads.bending / self.modulus, loads.sideways / self.side_modulus
         pulled = loads.along / self.area
         signs = ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0))
@@ -113,7 +116,9 @@ class ArmSection(NamedTuple):
         return np.asarray(self.notch * loads.twisting / self.torsion_modulus)
 
     def amplitude_and_mean(self, loads: SectionLoads) -> tuple[Array, Array]:
-        """Von Mises amplitude and mean (4,), Pa, of its corners under loads over a turn (n,)."""
+        """Von Mises amplitude and mean stress at its corners (4,) and (4,), Pa, of loads over a
+        turn (n,), from the ranges of normal and shear stress.
+        """
         normal, shear = self.normal(loads), self.shear(loads)
         high, low = normal.max(axis=-1), normal.min(axis=-1)
         most, least = shear.max(), shear.min()
@@ -177,7 +182,8 @@ class ArmBar:
     def of(
         cls, arm: FollowerArm | None, end: FollowerKind, mass: float, link: SpringLink | None
     ) -> ArmBar | None:
-        """Bar of an arm; None of a stem, and of an arm without section or material.
+        """Bar of an arm of a follower with the roller or face `end`; None of a stem, and of an arm
+        without section or material.
 
         Parameters
         ----------
@@ -210,7 +216,8 @@ class ArmBar:
 
     @property
     def roller(self) -> tuple[ArmSection, ...]:
-        """Sections at the roller: of the cheeks or the arm where they leave the eye, and the eye.
+        """Sections at the roller: the eye of the pin, where the pin is described, and the cheeks or
+        the arm where they leave the eye.
 
         The eye is judged where the pin is described.
         """
@@ -224,7 +231,9 @@ class ArmBar:
 
     @property
     def _end(self) -> tuple[float, float, float, int]:
-        """Reach from the roller centre, m, width and depth of the eye, m, and its cheeks."""
+        """Reach of the eye from the roller centre along the arm, m, width over all cheeks and depth
+        of the eye, m, and number of cheeks; 0 cheeks where the arm itself is the eye.
+        """
         hub, pin, fork = self.arm.roller_hub or self.depth, self.pin, self.fork
         if pin is None or fork is None or fork.cheek_height is None or fork.cheek_length is None:
             return 0.5 * hub, self.width, hub, 0
@@ -246,7 +255,8 @@ class ArmBar:
         return (*self.pivot, *(self.roller if self.holds_pin else ()))
 
     def bending(self, distance: float, forces: ArmForces) -> Array:
-        """Bending moment (...) in the plane of the cam at a distance from the pivot, m, N m.
+        """Bending moment (...), N m, in the plane of the cam at a distance from the pivot, m, under
+        forces (...).
 
         Of the contact at the end, of the spring where it acts, and of the inertia of roller, pin
         and fork at the end and of a uniform bar.
@@ -259,7 +269,7 @@ class ArmBar:
         return np.asarray(self.length * moment)
 
     def loads(self, section: ArmSection, forces: ArmForces) -> SectionLoads:
-        """Loads (...) of a section.
+        """Moments and force (...) of a section under the forces (...) on the arm.
 
         Cheeks carry the couple by unequal forces: the loads are those of all cheeks as loaded as
         the most loaded one.
@@ -287,7 +297,7 @@ class ArmBar:
 
     @property
     def compliance(self) -> float:
-        """Deflection of its end per force across it there, m/N, with the spring held.
+        """Deflection of the end of the arm per force across it there, m/N, with the spring held.
 
         Bending and shear of the arm and its cheeks, between its pivot and the place of the spring.
 

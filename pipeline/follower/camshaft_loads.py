@@ -203,7 +203,11 @@ def impact(
 
 
 def _force(rotor: Rotor, place: Array, moving: Array, push: Callable[[Array], Array]) -> float:
-    """Greatest force on the teeth, N, from places (2,), rad, and speeds of gear and cam."""
+    """Greatest force on the teeth, N, from the meeting of the flanks until they part.
+
+    place, moving : (2,), angle, rad, and speed, rad/s, of gear and cam at the meeting
+    push : torque on the cam, N m, at times (n,), s
+    """
     root = np.sqrt([rotor.gear, rotor.cam])
     teeth = rotor.mesh * rotor.radius**2
     stiffness = np.array([[teeth + rotor.shaft, -rotor.shaft], [-rotor.shaft, rotor.shaft]])
@@ -223,7 +227,8 @@ def _force(rotor: Rotor, place: Array, moving: Array, push: Callable[[Array], Ar
 
 
 def _swing(time: Array, push: Array, frequency: float, damping: float = 0.0) -> tuple[Array, Array]:
-    """Displacement and speed (n,) of an oscillator at rest under a push per mass (n,).
+    """Displacement and speed (n,) at times (n,), s, of an oscillator that starts at rest, under a
+    push per mass (n,).
 
     frequency: rad/s, undamped; damping: share of the critical. A swing too fast for the steps
     follows the push.
@@ -298,7 +303,8 @@ class CamshaftGear(Part):
     source: TableSource = NO_SOURCE
 
     def known_backlash(self, radius: float) -> float:
-        """Backlash along the pitch circle of a radius, m: of the case, else as the `defaults`, m.
+        """Backlash along the pitch circle, m, stated or the usual one of a gear with a pitch
+        radius, m.
 
         References
         ----------
@@ -371,6 +377,9 @@ class Counterweight(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a counterweight unless it has its unbalance with an angle, or a residual
+        without.
+        """
         super().__post_init__()
         if (self.unbalance is None) == (self.residual is None):
             count = "neither" if self.residual is None else "both"
@@ -545,7 +554,8 @@ def shaft_loads(
 
 
 def gear_force(torque: Array, shaft: Camshaft) -> Array:
-    """Tooth force on the gear (2, ...), N, at cam torques (...), N m, with drag added.
+    """Tooth force on the gear (2, ...), N, in the engine frame, at cam torques (...), N m, with the
+    drag added.
 
     The tangential force supplies the torque; the radial force separates the gears.
     """
@@ -646,7 +656,9 @@ class KeywayCut(NamedTuple):
 
 
 def keyway_cut(bore: Value, width: float, depth: float) -> KeywayCut:
-    """Area and first moment removed by a keyway beyond a bore radius (...), m."""
+    """Area, m2, and first moment about the cam axis, m3, (...) of a keyway beyond a bore radius
+    (...), m; width and depth, m.
+    """
     half, floor = 0.5 * width, bore + depth
     chord = np.sqrt(bore**2 - half**2)
     under_arc = half * chord + bore**2 * np.arcsin(half / bore)

@@ -122,7 +122,7 @@ class FollowerFace(Part):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """See `FollowerKind`."""
+        """Notes on the place or radius of the face of an arm; see `FollowerKind`."""
         offset, radius = (each and shown(each, "mm") for each in (self.offset, self.radius))
         if radius is not None:
             return (f"face of radius {radius} about the end of the arm",)
@@ -150,7 +150,7 @@ class FollowerFace(Part):
 
     @property
     def _round_off(self) -> float:
-        """Area that the block of a curved face lacks to the rectangle, m^2."""
+        """Area that the block of a curved face lacks to the rectangle, m^2; 0 of a flat one."""
         if self.radius is None:
             return 0.0
         half = min(0.5 * self.width, self.radius)
@@ -188,6 +188,7 @@ class FollowerFace(Part):
         return contour
 
     def _contour(self, lift: Lift, cam: CamBody, arm: FollowerArm | None) -> FacedContour:
+        """Contour under the face: flat on a stem, curved or flat on an arm."""
         if arm is None:
             return FlatFaceContour(FacePath(lift, cam.prime_radius, cam.offset))
         linkage, start = arm.linkage, arm.start(cam.prime_radius, self.offset)
@@ -196,7 +197,7 @@ class FollowerFace(Part):
         return ArmFaceContour(ArmFacePath(lift, linkage, start, self.offset or 0.0))
 
     def disc_lift(self, eccentricity: float, cam: CamBody, arm: FollowerArm | None) -> Lift:
-        """Lift on an eccentric disc, zero at cam angle 0.
+        """Lift of the follower on an eccentric disc, zero at cam angle 0; eccentricity, m.
 
         Raises
         ------

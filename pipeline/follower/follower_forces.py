@@ -129,6 +129,9 @@ class FollowerSystem:
     pivot: ArmPivot | None = None
 
     def __post_init__(self) -> None:
+        """Refuse a spacing that is not positive, and a negative mass, overhang, friction or
+        damping.
+        """
         if not 0.0 < self.guide_spacing < np.inf:
             raise InputError("follower.guide_spacing", self.guide_spacing, "> 0 m")
         for name, unit in (
@@ -155,7 +158,9 @@ class FollowerSystem:
 
     @property
     def load(self) -> ExternalForce:
-        """Weight and external force over the cam angle; of an arm at zero lift."""
+        """Weight and external force over the cam angle, N, towards the cam; of an arm at zero
+        lift.
+        """
         if self.pivot is None:
             return self.external.plus(self.mass * self.gravity_along_axis)
         force = self.pivot.applied(self.external.force, self.pivot.travel(0.0))
@@ -344,7 +349,10 @@ class Loads(Displayed):
 
 
 def ends_of(separated: NDArray[np.bool_], jammed: NDArray[np.bool_]) -> LoadEnds:
-    """End of the loads at the first loss of contact or jamming (..., n); see `Loads.ends`."""
+    """Whether the loads end, the index of the first position without, and whether by loss of
+    contact rather than jamming, (...) each, from where contact is lost and where the follower jams
+    (..., n).
+    """
     lost = separated | jammed
     first = np.argmax(lost & ~np.roll(lost, 1, axis=-1), axis=-1)
     leaves = np.take_along_axis(separated, first[..., None], axis=-1)[..., 0]
@@ -352,7 +360,8 @@ def ends_of(separated: NDArray[np.bool_], jammed: NDArray[np.bool_]) -> LoadEnds
 
 
 def turn_integral(theta: Array, values: Array) -> float:
-    """Integral of a periodic quantity over one turn, by the trapezoidal rule.
+    """Integral over one turn of a periodic quantity (n,) at angles (n,), rad, by the trapezoidal
+    rule.
 
     Spectrally accurate for smooth values at equal angles.
 
@@ -370,7 +379,9 @@ def turn_integral(theta: Array, values: Array) -> float:
 def axial_of_surge(
     pitch: FollowerPath, system: FollowerSystem, loads: Loads, surge: Array
 ) -> Array:
-    """Change of the axial force (n,), N, by a surge of the spring (n,), N."""
+    """Change of the axial contact force (n,), N, friction included, by a surge of the spring force
+    (n,), N.
+    """
     pivot = system.pivot
     if pivot is None:
         return np.asarray(surge / loads.share)
@@ -528,7 +539,8 @@ def follower_loads(
 def torque_on_cam(
     pitch: FollowerPath, system: FollowerSystem, theta: Array
 ) -> Callable[[Array, Array], Array]:
-    """Torque of spring, weight, external force and friction on the cam (n,), N m.
+    """Function of cam speed (n,), rad/s, and acceleration (n,), rad/s2, for the torque of spring,
+    weight, external force and friction on the cam (n,), N m.
 
     By its speed and acceleration (n,).
 
@@ -559,7 +571,7 @@ def torque_on_cam(
 
 
 def _forward(cam_speed: ArrayLike, theta: Array) -> Array:
-    """Cam speed at each angle, rad/s, >= 0."""
+    """Cam speed at each angle (n,), rad/s; InputError for a negative one."""
     speed = np.broadcast_to(finite("cam_speed", cam_speed), theta.shape)
     if (speed < 0.0).any():
         raise InputError("cam_speed", float(speed.min()), ">= 0 rad/s")

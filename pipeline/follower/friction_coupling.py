@@ -122,7 +122,9 @@ def guided_loads(
 def guided_strokes(
     strokes: Sequence[MovingFollower], stem: Stem, guides: GuidePair, knots: int = KNOTS
 ) -> tuple[Guided, ...]:
-    """As `guided_loads` for several motions in the same guides, all positions solved together."""
+    """Loads and guide reactions of several motions in the same guides, each as by `guided_loads`,
+    all positions solved together.
+    """
     points = [
         follower_loads(s.pitch, replace(s.system, rubbing=None), s.cam_speed, s.theta)
         for s in strokes
@@ -179,7 +181,9 @@ def guided_strokes(
 def _guided(
     system: FollowerSystem, loads: Loads, reactions: GuideReactions, free: Array, rounds: int
 ) -> Guided:
-    """Loads and reactions of a stroke, whose residual is checked."""
+    """Loads and reactions of a motion as `Guided`; ContactError where the residual of the axial
+    equilibrium is too great. free (n,) : axial force without friction, N.
+    """
     residual = _residual(system, free, loads, reactions)
     if not residual.max(initial=0.0) <= RESIDUAL:
         raise ContactError(
@@ -189,6 +193,7 @@ def _guided(
 
 
 def _joined(ways: Sequence[Push]) -> Push:
+    """Loads of several motions on the stem, one after another."""
     side = np.concatenate([way.side for way in ways])
     arm = np.concatenate([np.broadcast_to(way.arm, way.side.shape) for way in ways])
     return Push(side, arm, ways[0].spacing)
@@ -252,6 +257,9 @@ class _Bores:
     def __init__(
         self, stem: Stem, guides: GuidePair, knots: int, points: Sequence[Loads], way: Push
     ) -> None:
+        """Beam in its guides and, for each position, overhang and rubbing loads of point supports
+        as the start.
+        """
         self.line, _, half_a = bearing_line(stem, guides, knots)
         self.reach = np.concatenate([each.overhang for each in points]) - half_a
         on_points = [(each.rubbing_a, each.rubbing_b) for each in points]
@@ -268,7 +276,10 @@ class _Bores:
         return self.pushes, self.rigid
 
     def factors(self, push: Array, at: NDArray[np.intp]) -> Array:
-        """Rubbing loads (2, k) over axial force and side-load factor; unloaded: point supports."""
+        """Rubbing loads of guides A and B over axial force and side-load factor (2, k), at axial
+        forces `push` (k,), N, of the positions numbered `at` (k,); those of point supports where
+        unloaded.
+        """
         start = (self.pushes[:, at], self.rigid[:, at]) if self.started else None
         side, moment = push * self.way.side[at], push * self.way.arm[at]
         pushes, rigid = settle(self.line, side, moment - side * self.reach[at], start)

@@ -205,7 +205,8 @@ class ArmPivot:
     def clipped(
         self, required: Array, pressed: Pressed, pull: Pull, direction: Array, least: float
     ) -> PivotBalance:
-        """As `balanced`, with the bounds of `Loads`; real arrays (..., n).
+        """Equilibrium as by `balanced`, with the axial force between zero and a bound; real arrays
+        (..., n), required and pull in N.
 
         Without contact where no positive force is required, or the friction holds the arm off the
         cam; of an arm that locks the required force over the `least` share.

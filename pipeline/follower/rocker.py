@@ -89,6 +89,9 @@ class Rocker(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a rocker unless it has either a ratio or a length, angles with a ratio, and a lash
+        of the output without a ramp.
+        """
         super().__post_init__()
         if (self.ratio is None) == (self.length is None):
             value = "missing" if self.ratio is None else f"{self.ratio:g}"

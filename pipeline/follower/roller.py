@@ -147,7 +147,7 @@ class Roller(Part):
 
     @property
     def body_model(self) -> str:
-        """See `FollowerKind`."""
+        """Model of the roller in the contact, in words; see `FollowerKind`."""
         reason = self.solid_reason
         if reason:
             return f"roller solid on its hub: {reason}"
@@ -177,7 +177,9 @@ class Roller(Part):
 
     @property
     def moving(self) -> MovingParts:
-        """Roller, pin and fork; see `FollowerKind`."""
+        """Masses of roller, pin and fork, kg, extent of the fork along the stem, m, and keys that
+        lack; see `FollowerKind`.
+        """
         pin, fork = self.pin, self.fork
         of_pin = None if pin is None else pin.mass(0.0 if fork is None else fork.cheek_width)
         of_fork = None if pin is None or fork is None else fork.mass(pin)
@@ -192,7 +194,9 @@ class Roller(Part):
         )
 
     def pin_stress(self, force: Array, moment: Array) -> Array | None:
-        """Bending stress of the pin (n,), Pa; see `FollowerKind`."""
+        """Bending stress of the pin (n,), Pa, by normal forces (n,), N, and moments (n,), N m; None
+        without a pin.
+        """
         pin = self.pin
         if pin is None:
             return None
@@ -206,7 +210,8 @@ class Roller(Part):
         return RollerContour(PitchCurve(lift, cam.prime_radius, cam.offset), self.radius)
 
     def ring(self, width: float, preload: float) -> RingOnBalls | None:
-        """Outer ring of the bearing on balls; None for a solid roller, see `solid_reason`.
+        """Outer ring of the bearing on its balls, solved for a contact width, m; None for a roller
+        that is modelled as solid.
 
         Balls have their stiffness at the static rating, without one at the preload (N).
         """
@@ -218,7 +223,9 @@ class Roller(Part):
         return ring_on_balls(ring, steel, self.radius, self.width, width, load)
 
     def elastic(self, width: float, preload: float) -> ElasticParts:
-        """Bearing, pin and fork; see `FollowerKind`."""
+        """Compliances of bearing, pin and fork, m/N, and length of the fork, m; see
+        `FollowerKind`.
+        """
         pin, fork, ring, solved = self.pin, self.fork, self.bearing.ring, self.ring(width, preload)
         cheeks = None if fork is None or pin is None else fork_compliance(fork, pin)
         compliances = {

@@ -179,7 +179,8 @@ def rating_life(
 
 
 def static_safety(normal_force: ArrayLike, static_rating: float) -> float:
-    """Static safety factor s0 = C0 / N_max; infinite without load.
+    """Static safety factor s0 = C0 / N_max of normal forces (n,), N, and a rating, N; infinite
+    without load.
 
     Raises
     ------

@@ -233,7 +233,8 @@ class WoundWire(Generic[Number]):
         return ZIMMERLI[self.treatment][0] / left, shear_strength
 
     def fatigue_stress(self, force_min: ArrayLike, force_max: ArrayLike) -> tuple[Array, Array]:
-        """Amplitude and mean (...) of the shear stress, Pa; a mean below zero counts as zero.
+        """Amplitude and mean (...) of the shear stress of the wire, Pa, of least and greatest
+        forces (...), N; a mean below zero counts as zero.
 
         Raises
         ------
@@ -248,7 +249,8 @@ class WoundWire(Generic[Number]):
         return 0.5 * (high - low), np.where(np.real(mean) > 0.0, mean, 0.0 * mean)
 
     def fatigue_use(self, force_min: ArrayLike, force_max: ArrayLike) -> Array:
-        """Utilisation (...) by the Goodman line of `fatigue_strengths`.
+        """Utilisation (...) of the wire by the Goodman line of `fatigue_strengths`, of least and
+        greatest forces (...), N.
 
         Infinite for a shear strength below the mean stress of Zimmerli.
 
@@ -372,9 +374,9 @@ class WireLimit:
         limit: Value | None = None,
         room: float = 1.0,
     ) -> NDArray[np.bool_]:
-        """Whether springs keep the limit (...) times a room; NaN does not.
+        """Whether springs (...) keep the limit times a `room`; a demand of NaN does not.
 
-        limit: where the wire sets none
+        limit : where the wire sets none; InputError without either
         """
         demand = self.demand(wire, work)
         allowed = limit if self.allowed is None else self.allowed(wire)
@@ -477,6 +479,7 @@ class HelicalSpring(WoundWire[float], Part):
     name: str = ""
 
     def __post_init__(self) -> None:
+        """Refuse a spring that cannot be coiled, or is no longer than its solid length."""
         super().__post_init__()
         if not self.can_be_coiled:
             limit = (
@@ -558,6 +561,9 @@ class Spring(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse tables that are not those of the kind of spring, and a link that this kind cannot
+        have.
+        """
         super().__post_init__()
         kind = self.kind or "coil"
         for name, owner in (*zip(SHAPES, SHAPES, strict=True), ("design", "coil")):
@@ -597,7 +603,9 @@ class Spring(Part):
 
     @property
     def own(self) -> Spring:
-        """The spring at its own ends, with rate and preload over their travel; see `end_travel`."""
+        """The spring at its own ends, with rate and preload over their travel; itself without a
+        link.
+        """
         shape = self.shape
         if self.link is None or shape is None:
             return self
@@ -627,7 +635,9 @@ class Spring(Part):
 
     @property
     def parts(self) -> dict[str, Part | None]:
-        """Tables of the spring by the names of its parts in `[scope]`."""
+        """Table of each part of the spring that `[scope]` names; None where the case does not have
+        it.
+        """
         parts: dict[str, Part | None] = {"spring": self.design}
         stated = {kind: getattr(self, kind) for kind in SHAPES}
         parts |= dict.fromkeys(TABLES_OF_PARTS)
@@ -747,7 +757,7 @@ class DynamicStiffness:
 
     @property
     def moving(self) -> NDArray[np.complex128]:
-        """Of the moving end."""
+        """Force of the moving end per motion of it, less the rate, N/m, (...) complex."""
         if not self.phase.any():
             return np.zeros_like(self.phase)
         square, over_rate = self._decay**2, 1.0j * self._moved
@@ -757,7 +767,9 @@ class DynamicStiffness:
 
     @property
     def fixed(self) -> NDArray[np.complex128]:
-        """Of the fixed end."""
+        """Force of the fixed end per motion of the moving one, less the rate, N/m, (...)
+        complex.
+        """
         if not self.phase.any():
             return np.zeros_like(self.phase)
         over_rate = 2.0j * self._moved

@@ -134,7 +134,9 @@ class SpringShape(Part, ABC):
 
 
 def rise(shape: SpringShape, lift: Array) -> Rise:
-    """Rise of the force at a lift (...), m; linear below zero and beyond the reach."""
+    """Rise of a spring's force over the rate, with its integral and slopes, at a lift (...), m;
+    linear below zero and beyond the reach.
+    """
     real = np.real(lift)
     beyond = (real > shape.reach) | (real < 0.0)
     end = np.where(real < 0.0, 0.0, shape.reach)
@@ -431,6 +433,7 @@ class TorsionSpring(TorsionWire):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse an arm angle at which the force falls with the lift."""
         super().__post_init__()
         if not self.rate > 0.0:
             stated = shown(self.arm_angle, "deg")

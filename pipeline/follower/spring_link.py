@@ -63,6 +63,9 @@ class SpringLink(Part):
     length: float = np.nan
 
     def __post_init__(self) -> None:
+        """Refuse ends between which the spring does not bring the follower to the cam at zero
+        lift.
+        """
         super().__post_init__()
         if not self.sense * np.sin(self.between) < 0.0:
             ends = (0.0, np.pi) if self.action == "push" else (-np.pi, 0.0)
@@ -105,7 +108,9 @@ class SpringLink(Part):
         return w * travel, w * first, w * second, w * third
 
     def ends(self, swing: Array) -> tuple[Array, Array]:
-        """Ends on the arm and fixed (2, ...), m, along the arm from the pivot and outwards."""
+        """Ends of the spring, on the arm and fixed, (2, ...) each, m: along the arm from the pivot
+        and square to it, outwards; at a swing (...), rad.
+        """
         out = (self.arm_angle + 0.0 * swing, self.fixed_angle - swing)
         radii = (self.arm_radius, self.fixed_radius)
         on_arm, fixed = (
@@ -135,6 +140,9 @@ class LinkedSpring(SpringShape):
     spring: SpringShape | None = None
 
     def __post_init__(self) -> None:
+        """Refuse a spring that is described twice or not at all, and a force on the arc that falls
+        at zero lift.
+        """
         link, spring = self.link, self.spring
         if spring is not None and link.action == "pull":
             raise InputError("spring.link.action", "pull", f'"push" with [{spring.table}]')

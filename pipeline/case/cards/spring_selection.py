@@ -75,7 +75,8 @@ def put_spring(case: Tables, folder: Path | None) -> None:
 
 
 def put_force(case: Tables) -> None:
-    """Enter rate and preload of a gas or torsion spring, or one with a link, in place.
+    """Write rate and preload that follow from the table of a gas or torsion spring, or one with a
+    link, into the case, in place.
 
     Raises
     ------
@@ -119,7 +120,9 @@ def _arm_length(case: Tables) -> float:
 
 
 def _demand(case: Tables, spring: Tables) -> SpringDemand[float] | None:
-    """Demand of a case on its spring; None if its rate or preload is missing or not positive."""
+    """Demand of a case on its spring, by rate, preload and greatest travel; None if its rate or
+    preload is missing or not positive.
+    """
 
     def number(table: Tables, key: str, default: float) -> float:
         value = table.get(key)
@@ -156,6 +159,7 @@ def _demand(case: Tables, spring: Tables) -> SpringDemand[float] | None:
 
 
 def _path(name: TomlValue, folder: Path | None) -> Path:
+    """Path of a catalogue by its name: the shipped one, or a file in the folder of the case."""
     if name == SHIPPED:
         return CATALOGUE
     if not isinstance(name, str) or not name:

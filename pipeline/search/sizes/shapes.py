@@ -136,7 +136,8 @@ class RollerShapes:
         return self.case.roller.radius
 
     def smallest(self) -> Shape:
-        """Smallest shape, with the smallest roller.
+        """Smallest shape within the limits, with the smallest roller, and the limits that govern
+        it.
 
         Raises
         ------
@@ -170,7 +171,8 @@ class RollerShapes:
         return RollerSize(self.cam.least_prime_radius(limits, offset), offset)
 
     def _roller_of_tool(self) -> float:
-        """Smallest roller, m; of an open one that from which on the tool sets no larger cam.
+        """Radius of the smallest roller, m; where the radius is open, of the smallest one from
+        which on the tool requires no larger cam.
 
         A concave contour has the radius of its pitch curve and that of the roller: the greater the
         roller, the better a tool fits.
@@ -278,7 +280,9 @@ class FaceShapes:
     least_radius: float = 0.0
 
     def smallest(self) -> Shape:
-        """Smallest shape, with the narrowest face."""
+        """Smallest shape within the limits, with the narrowest face, and the limits that govern
+        it.
+        """
         case, base, governs = self.case, self.case.cam.prime_radius, "given"
         if PRIME in self.gaps:
             base = self.cam.least_base_radius(undercut_factor=case.limits[UNDERCUT_FACTOR])
