@@ -59,6 +59,18 @@ class RockerArm:
         lever: Value = self.length * np.cos(self.angle + swing)
         return lever
 
+    def levers(self, swing: Value) -> tuple[Value, Value, Value]:
+        """Derivatives (...) of the travel by the swing of order 1 to 3, m/rad^k."""
+        first = self.lever(swing)
+        if self.angle is None:
+            return first, 0.0 * first, 0.0 * first
+        return first, -self.length * np.sin(self.angle + swing), -first
+
+    @property
+    def dead_centre(self) -> float:
+        """Swing at which the arm lies along its line, rad; half a turn without a line."""
+        return np.pi if self.angle is None else 0.5 * np.pi - self.angle
+
 
 @dataclass(frozen=True)
 class RockerLinkage:
@@ -99,6 +111,28 @@ class RockerLinkage:
         """Travel of the output per lift of the follower (...)."""
         swing = self.first.swing(lift)
         return self.second.lever(swing) / self.first.lever(swing)
+
+    def travel(self, lift: Value) -> tuple[Value, Value, Value, Value]:
+        """Travel of the end of the second arm (...), m, and three derivatives by the lift.
+
+        By those of the inverse of the lift over the swing.
+        """
+        swing = self.first.swing(lift)
+        s1, s2, s3 = self.first.levers(swing)
+        v1, v2, v3 = self.second.levers(swing)
+        turn = 1.0 / s1
+        bend, change = -s2 * turn**3, (3.0 * s2**2 * turn - s3) * turn**4
+        return (
+            self.second.travel(swing),
+            v1 * turn,
+            v2 * turn**2 + v1 * bend,
+            v3 * turn**3 + 3.0 * v2 * turn * bend + v1 * change,
+        )
+
+    @property
+    def most_lift(self) -> float:
+        """Lift of the follower to the first dead centre of both arms, m."""
+        return float(self.first.travel(min(self.first.dead_centre, self.second.dead_centre)))
 
     def follower_lift(self, opening: Lift, ramp: float) -> Lift:
         """Lift of the follower that opens the output as stated.

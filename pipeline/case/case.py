@@ -317,7 +317,7 @@ class Case(Displayed, Section):
             If the spring is that of another kind of follower.
         """
         arm = self.follower.arm
-        spring = self.spring.on_arm(None if arm is None else arm.length)
+        spring = self.spring.on_arm(None if arm is None else arm.length, self.rocker)
         return self if spring is self.spring else self.model_copy(update={"spring": spring})
 
     @property

@@ -967,15 +967,14 @@ torsion_fatigue = _torsion_check(
 def _rising(numbers: Numbers) -> Allowed:
     """Lift up to which the force of a linked spring rises; None without a link."""
     spring = numbers.known_case.spring
-    return Allowed(None if spring.link is None or spring.shape is None else spring.shape.reach)
+    return Allowed(None if spring.linked is None or spring.shape is None else spring.shape.reach)
 
 
 def _of_link(demand: Demand, solution: Solution) -> Demand:
-    link = solution.machine.spring.link
+    link = solution.machine.spring.linked
     if link is None:
         return demand
-    swing = shown(link.dead_centre, "deg", 4)
-    note = f"dead centre of the spring at a swing of {swing}"
+    note = f"dead centre of the spring at a lift of {shown(link.most_lift, 'mm', 4)}"
     return replace(demand, figures=(link.source,), note=note)
 
 
@@ -1002,7 +1001,7 @@ link_reach = check(
 ).measured(
     "top",
     allowed=_rising,
-    applies=lambda _, numbers: np.array(numbers.known_case.spring.link is not None),
+    applies=lambda _, numbers: np.array(numbers.known_case.spring.linked is not None),
     remark=_of_link,
     deviation=1e-4,
     kept=Kept(),

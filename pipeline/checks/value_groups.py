@@ -11,7 +11,7 @@ from typing import Literal
 from camwright.pipeline.follower.spring_kinds import SHAPES
 
 SPRING = (
-    *("spring.rate", "spring.preload", "spring.link.*"),
+    *("spring.rate", "spring.preload", "spring.link.*", "spring.rocker.*"),
     *(f"{each.table}.*" for each in SHAPES.values()),
 )
 MOTION = (*SPRING, "follower.mass", "limits.overspeed")

@@ -144,3 +144,7 @@ class Rocker(Part):
     def ramp_angle(self) -> float:
         """Cam angle over which the lash is taken up, rad."""
         return pi if self.ramp is None else self.ramp
+
+
+UNIFORM = Rocker(ratio=1.0)
+"""Rocker of a ratio of one."""

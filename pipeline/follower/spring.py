@@ -31,6 +31,7 @@ from camwright.pipeline.base.quantities import (
 )
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.spring_kinds import (
     SHAPES,
     TABLES_OF_PARTS,
@@ -44,7 +45,7 @@ from camwright.pipeline.follower.spring_kinds import (
     rise,
     shaped_deflection,
 )
-from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
+from camwright.pipeline.follower.spring_link import RockerSpring, SpringLink, linked
 
 INDEX_MIN, INDEX_MAX = 3.0, 20.0  # D/d that can be coiled
 DEAD_COILS = 2.0  # of squared and ground ends
@@ -558,6 +559,8 @@ class Spring(Part):
     link: Annotated[SpringLink | None, Used("lift, cycle, checks of the spring")] = None
     """ends of a coil or gas spring on the arm of an oscillating follower; rate and preload
     follow"""
+    rocker: Annotated[RockerSpring | None, Used("lift, cycle, checks of the spring")] = None
+    """coil or gas spring on the output of `[rocker]`; rate and preload follow"""
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
@@ -574,20 +577,26 @@ class Spring(Part):
                 )
             if kind == owner and not stated and name != "design":
                 raise InputError(f"spring.{name}", "missing", f'given with spring.kind = "{kind}"')
-        if self.link is None:
+        if self.linked is None:
             return
         if kind in SHAPES and not SHAPES[kind].linkable:
-            raise InputError("spring.link", "a table", f'left out with spring.kind = "{kind}"')
-        if self.link.action == "pull" and self.design is not None:
+            limit = f'left out with spring.kind = "{kind}"'
+            raise InputError(self.linked.table, "a table", limit)
+        if self.link is not None and self.rocker is not None:
+            raise InputError("spring.rocker", "a table", "left out with spring.link")
+        if self.linked.action == "pull" and self.design is not None:
             limit = "left out with spring.link.action = pull: it is a compression spring"
             raise InputError("spring.design", "a table", limit)
 
     @cached_property
     def shape(self) -> SpringShape | None:
         """Rise of the force over the lift; None: linear."""
-        if self.link is not None:
-            return LinkedSpring(link=self.link, spring=self._shape)
-        return self._shape
+        return self._shape if self.linked is None else linked(self.linked, self._shape)
+
+    @property
+    def linked(self) -> SpringLink | RockerSpring | None:
+        """Table of what is between spring and follower; None: nothing."""
+        return self.link or self.rocker
 
     @property
     def _shape(self) -> SpringShape | None:
@@ -607,18 +616,21 @@ class Spring(Part):
         link.
         """
         shape = self.shape
-        if self.link is None or shape is None:
+        if self.linked is None or shape is None:
             return self
         preload = self.preload / self.lever_at_rest
-        return replace(self, link=None, rate=self.rate * shape.own_share, preload=preload)
+        return replace(
+            self, link=None, rocker=None, rate=self.rate * shape.own_share, preload=preload
+        )
 
-    def on_arm(self, length: float | None) -> Spring:
-        """As it acts on the arc of an arm of a length, m; None: on a stem.
+    def on_arm(self, length: float | None, rocker: Rocker | None = None) -> Spring:
+        """As it acts on the arc of an arm of a length, m, and by a rocker; None: on a stem.
 
         Raises
         ------
         InputError
-            If it is that of a stem on an arm, or that of an arm on a stem.
+            If it is that of a stem on an arm, that of an arm on a stem, or that of a rocker without
+            one or with lash.
         """
         shape = self.shape
         if shape is None:
@@ -627,7 +639,7 @@ class Spring(Part):
             limit = f"left out {'unless' if length is None else 'with'}"
             limit += ' follower.kind = "oscillating"'
             raise InputError(shape.table, "a table", limit)
-        fitted = shape if length is None else shape.on_arm(length)
+        fitted = shape.on_arm(length, rocker)
         if fitted is shape:
             return self
         stated = {fitted.stated.table.removeprefix("spring."): fitted.stated}

@@ -33,6 +33,7 @@ from camwright.pipeline.base.quantities import (
 )
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.follower.rocker import Rocker
 
 ATMOSPHERE = 101_325.0
 """Pressure of the surroundings, Pa."""
@@ -128,8 +129,8 @@ class SpringShape(Part, ABC):
         held = np.asarray(force + 0.0 * lift)
         return np.stack([0.0 * held, -held])
 
-    def on_arm(self, length: float) -> Self:  # noqa: ARG002
-        """As it acts on the arc of an arm of a length, m."""
+    def on_arm(self, length: float | None, rocker: Rocker | None = None) -> Self:  # noqa: ARG002
+        """As it acts on the arc of an arm of a length, m, and by a rocker; None: on a stem."""
         return self
 
 
@@ -508,8 +509,8 @@ class PivotSpring(TorsionWire):
     source: TableSource = NO_SOURCE
     length: float = np.nan
 
-    def on_arm(self, length: float) -> Self:
-        return replace(self, length=length)
+    def on_arm(self, length: float | None, rocker: Rocker | None = None) -> Self:  # noqa: ARG002
+        return self if length is None else replace(self, length=length)
 
     @property
     def preload(self) -> float:

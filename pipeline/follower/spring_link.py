@@ -1,4 +1,4 @@
-"""Coil or gas spring between a point of an arm and a fixed point: lever, force on the arc."""
+"""Coil or gas spring between a point of an arm and a fixed point, or on a rocker: its lever."""
 
 from __future__ import annotations
 
@@ -12,14 +12,17 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
+from camwright.geometry.rocker_lift import RockerLinkage
 from camwright.pipeline.base.quantities import In, Known, Length, Part, Preload, Rate, TableSource
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.follower.rocker import UNIFORM, Rocker
 from camwright.pipeline.follower.spring_kinds import Rise, SpringShape, rise
 
 _PLACES, _ROUNDS = 513, 5
 """Angles at which the slope of the force is tried, and rounds between two of them."""
 
+_OF_GAS = MappingProxyType({"rate": "of `spring.gas`", "preload": "of `spring.gas`"})
 EndAngle = Annotated[float, In("deg", at_least=-180, at_most=180)]
 
 
@@ -40,9 +43,7 @@ class SpringLink(Part):
 
     table: ClassVar[str] = "spring.link"
     labels: ClassVar[tuple[str, ...]] = ("length",)
-    defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"rate": "of `spring.gas`", "preload": "of `spring.gas`"}
-    )
+    defaults: ClassVar[Mapping[str, str]] = _OF_GAS
 
     arm_radius: Annotated[Length, Known("drawing", "60 mm")]
     """distance of the end on the arm from the pivot"""
@@ -107,6 +108,27 @@ class SpringLink(Part):
         w = self.sense
         return w * travel, w * first, w * second, w * third
 
+    def by_lift(self, lift: Value) -> tuple[Value, Value, Value, Value]:
+        """Travel (...) from zero lift, m, and three derivatives by the lift of the follower."""
+        travel, first, second, third = self.travel(lift / self.length)
+        return travel, first / self.length, second / self.length**2, third / self.length**3
+
+    @property
+    def most_lift(self) -> float:
+        """Lift of the follower to the dead centre, m."""
+        return self.dead_centre * self.length
+
+    def on_arm(self, length: float | None, rocker: Rocker | None) -> Self:  # noqa: ARG002
+        """On an arm of a length, m."""
+        return self if length is None else replace(self, length=length)
+
+    def pull(self, force: Array, lift: Array) -> Array:
+        """Force of the spring on the arm (2, ...), N, see `SpringShape.pull_on_arm`."""
+        on_arm, fixed = self.ends(lift / self.length)
+        apart = on_arm - fixed
+        towards = -self.sense * apart / np.sqrt((apart**2).sum(axis=0))
+        return np.stack([force * each for each in towards])
+
     def ends(self, swing: Array) -> tuple[Array, Array]:
         """Ends of the spring, on the arm and fixed, (2, ...) each, m: along the arm from the pivot
         and square to it, outwards; at a swing (...), rad.
@@ -120,11 +142,63 @@ class SpringLink(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
-class LinkedSpring(SpringShape):
-    """Spring between a point of an arm and a fixed point, as its force on the arc of the arm.
+class RockerSpring(Part):
+    """Spring on the output of a rocker without lash, such as that of a valve.
 
-    F(s) = F_s(u) du/ds with the force F_s at the travel u of its ends, and u(s/l) by the distance
-    of the ends; so its energy is that of the spring, and F l its moment about the pivot.
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds, or the rocker has a lash: before it is taken up the spring
+        would not bring the follower to the cam.
+    """
+
+    table: ClassVar[str] = "spring.rocker"
+    labels: ClassVar[tuple[str, ...]] = ("rocker", "length")
+    defaults: ClassVar[Mapping[str, str]] = _OF_GAS
+    action: ClassVar[Literal["push", "pull"]] = "push"
+
+    rate: Annotated[Rate | None, Known("spring catalogue or drawing", "24.2 kN/m")] = None
+    """force of a coil spring per lift of the output"""
+    preload: Annotated[Preload | None, Known("spring drawing", "242 N")] = None
+    """force of a coil spring on the output at zero lift"""
+    source: TableSource = NO_SOURCE
+    rocker: Rocker = UNIFORM
+    length: float | None = None
+
+    @property
+    def linkage(self) -> RockerLinkage:
+        """Arms of the rocker."""
+        return self.rocker.linkage(self.length)
+
+    def on_arm(self, length: float | None, rocker: Rocker | None) -> Self:
+        """On a rocker, with an arm of a length, m; None: of a stem."""
+        if rocker is None:
+            raise InputError("rocker", "missing", "given with [spring.rocker]")
+        if rocker.lash > 0.0:
+            limit = "0 mm with [spring.rocker], or the spring does not reach the cam"
+            raise InputError("rocker.lash", shown(rocker.lash, "mm"), limit)
+        return replace(self, rocker=rocker, length=length)
+
+    def by_lift(self, lift: Value) -> tuple[Value, Value, Value, Value]:
+        """Travel (...) from zero lift, m, and three derivatives by the lift of the follower."""
+        return self.linkage.travel(lift)
+
+    @property
+    def most_lift(self) -> float:
+        """Lift of the follower to the dead centre, m."""
+        return self.linkage.most_lift
+
+    def pull(self, force: Array, lift: Array) -> Array:
+        """Force of the output on the arm (2, ...), N, see `SpringShape.pull_on_arm`."""
+        return self.rocker.push_on_arm(force, lift, self.length or 1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkedSpring(SpringShape):
+    """Spring between a point of an arm and a fixed point, or behind a rocker, on the follower.
+
+    F(s) = F_s(u) du/ds with the force F_s at the travel u of its ends at a lift s; so its energy is
+    that of the spring, and on an arm of a length l its moment about the pivot F l.
 
     Raises
     ------
@@ -136,7 +210,7 @@ class LinkedSpring(SpringShape):
     table: ClassVar[str] = "spring.link"
     carried: ClassVar[Literal["", "stem", "arm"]] = "arm"
 
-    link: SpringLink
+    link: SpringLink | RockerSpring
     spring: SpringShape | None = None
 
     def __post_init__(self) -> None:
@@ -149,13 +223,14 @@ class LinkedSpring(SpringShape):
         for name in ("rate", "preload"):
             stated = getattr(link, name)
             if stated is None and spring is None:
-                raise InputError(f"spring.link.{name}", "missing", "given for a coil spring")
+                raise InputError(f"{self.table}.{name}", "missing", "given for a coil spring")
             if stated is not None and spring is not None:
                 unit = "kN/m" if name == "rate" else "N"
                 limit = f"left out: it follows from {spring.table}"
-                raise InputError(f"spring.link.{name}", shown(stated, unit), limit)
-        if not self._slope(np.zeros(1))[0] > 0.0:
-            _, lever, change, _ = link.travel(0.0)
+                raise InputError(f"{self.table}.{name}", shown(stated, unit), limit)
+        # without the length of the arm NaN: a table not yet on its arm
+        if self._slope(np.zeros(1))[0] <= 0.0:
+            _, lever, change, _ = link.by_lift(0.0)
             least = shown(float(-self._own[0] * change / lever**2), "kN/m")
             limit = f"> {least}: the force on the cam must rise with the lift"
             table = self.table if spring is None else spring.table
@@ -180,14 +255,14 @@ class LinkedSpring(SpringShape):
     def own_share(self) -> float:
         return self._own[1] / self.rate
 
-    def on_arm(self, length: float) -> Self:
-        return replace(self, link=replace(self.link, length=length))
+    def on_arm(self, length: float | None, rocker: Rocker | None = None) -> Self:
+        return replace(self, link=self.link.on_arm(length, rocker))
 
     def end_travel(self, lift: Value) -> Value:
-        return self.link.travel(lift / self.link.length)[0]
+        return self.link.by_lift(lift)[0]
 
     def lever(self, lift: Value) -> Value:
-        return self.link.travel(lift / self.link.length)[1] / self.link.length
+        return self.link.by_lift(lift)[1]
 
     @cached_property
     def preload(self) -> float:
@@ -197,23 +272,23 @@ class LinkedSpring(SpringShape):
     @cached_property
     def rate(self) -> float:
         """Slope of the force on the arc at zero lift, N/m."""
-        return float(self._slope(np.zeros(1))[0] / self.link.length**2)
+        return float(self._slope(np.zeros(1))[0])
 
     @cached_property
     def reach(self) -> float:
         """Lift up to which the force on the arc rises, m, short of the dead centre."""
-        low, high = 0.0, self.link.dead_centre
+        low, high = 0.0, self.link.most_lift
         for _ in range(_ROUNDS):
-            swing = np.linspace(low, high, _PLACES)[1:-1]
-            falls = ~(self._slope(swing) > 0.0)
+            lift = np.linspace(low, high, _PLACES)[1:-1]
+            falls = ~(self._slope(lift) > 0.0)
             k = int(np.argmax(falls)) if falls.any() else falls.size
-            swing = np.concatenate([[low], swing, [high]])
-            low, high = float(swing[k]), float(swing[k + 1])
-        return low * self.link.length
+            lift = np.concatenate([[low], lift, [high]])
+            low, high = float(lift[k]), float(lift[k + 1])
+        return low
 
-    def _slope(self, swing: Array) -> Array:
-        """Slope of the moment by the swing (...), N m/rad; NaN beyond the law of the spring."""
-        travel, lever, change, _ = map(np.asarray, self.link.travel(swing))
+    def _slope(self, lift: Array) -> Array:
+        """Slope of the force by the lift (...), N/m; NaN beyond the law of the spring."""
+        travel, lever, change, _ = map(np.asarray, self.link.by_lift(lift))
         force, rate = self._own
         law = self._risen(travel)
         slope = rate * law.slope * lever**2 + (force + rate * law.travel) * change
@@ -231,11 +306,8 @@ class LinkedSpring(SpringShape):
 
     def within(self, lift: Array) -> Rise:
         """Rise of the force on the arc over its slope at zero lift."""
-        length, (preload, rate) = self.link.length, self._own
-        by_swing = self.link.travel(lift / length)
-        travel, first, second, third = (
-            np.asarray(each) / length**k for k, each in enumerate(by_swing)
-        )
+        preload, rate = self._own
+        travel, first, second, third = map(np.asarray, self.link.by_lift(lift))
         law = self._risen(travel)
         force, slope = preload + rate * law.travel, rate * law.slope
         change = rate * law.travel_d2 * first**3 + 3.0 * slope * first * second + force * third
@@ -247,9 +319,19 @@ class LinkedSpring(SpringShape):
         )
 
     def pull_on_arm(self, force: Array, lift: Array) -> Array:
-        """Along the line of its ends; see `SpringShape`."""
-        on_arm, fixed = self.link.ends(lift / self.link.length)
-        apart = on_arm - fixed
-        towards = -self.link.sense * apart / np.sqrt((apart**2).sum(axis=0))
-        size = force / self.lever(lift)
-        return np.stack([size * each for each in towards])
+        """Along the line of its ends, or that of the output; see `SpringShape`."""
+        return self.link.pull(np.asarray(force / self.lever(lift)), lift)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpringBehindRocker(LinkedSpring):
+    """Spring on the output of a rocker, as its force on the follower."""
+
+    table: ClassVar[str] = "spring.rocker"
+    carried: ClassVar[Literal["", "stem", "arm"]] = ""
+
+
+def linked(link: SpringLink | RockerSpring, spring: SpringShape | None) -> LinkedSpring:
+    """Spring of a link or rocker as it acts on the follower; spring: None of a coil."""
+    kind = SpringBehindRocker if link.table == SpringBehindRocker.table else LinkedSpring
+    return kind(link=link, spring=spring)

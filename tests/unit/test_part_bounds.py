@@ -38,7 +38,11 @@ from camwright.pipeline.follower.pivot import NeedleBearing, Pivot
 from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import GasSpring, PivotSpring, TorsionSpring
-from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
+from camwright.pipeline.follower.spring_link import (
+    RockerSpring,
+    SpringBehindRocker,
+    SpringLink,
+)
 from camwright.pipeline.torque.harmonic_torque import Harmonic, HarmonicTorque
 from camwright.pipeline.torque.machine_torque import Mark
 from camwright.pipeline.torque.motor_line import MotorPoint
@@ -90,10 +94,11 @@ def every_part() -> dict[type[Part], Part]:
     link = SpringLink(
         arm_radius=0.05, fixed_radius=0.06, fixed_angle=1.2, rate=5e4, preload=400.0
     )  # fmt: skip
+    behind = RockerSpring(rate=5e4, preload=400.0)
     rest = (
         steel,
-        *(link, LinkedSpring(link=link), PivotSpring(moment=1.0, angular_rate=20.0)),
-        Rocker(ratio=1.5),
+        *(link, PivotSpring(moment=1.0, angular_rate=20.0)),
+        *(Rocker(ratio=1.5), behind, SpringBehindRocker(link=behind)),
         AxialCrown(kind="circular", radius=0.5),
         FollowerFace(width=0.02, depth=0.01, thickness=0.005, material=steel),
         Crankshaft(inertia=0.01),

@@ -13,6 +13,9 @@ from camwright.geometry.rocker_lift import RockerArm, RockerLinkage
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.follower.rocker import Rocker
+from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.follower.spring_kinds import rise
+from camwright.pipeline.follower.spring_link import RockerSpring, linked
 from camwright.pipeline.results.run_records import lift_columns
 
 STEP = 1e-30
@@ -179,3 +182,61 @@ def test_push_of_the_output_on_the_arm(side):
     np.testing.assert_allclose(moment, -force * rate * 0.1, rtol=1e-8)
     np.testing.assert_allclose(np.hypot(x, y), force, rtol=1e-12)
     assert (y > 0.0).all() == (side == "opposite")
+
+
+# --- A spring on the output ----------------------------------------------------------------------
+BEHIND = {
+    "arm": (Rocker(length=0.06, angle=-0.2), 0.1),
+    "stem": (Rocker(length=0.05, angle=-0.15, input_length=0.03, input_angle=-0.1), None),
+    "ratio": (Rocker(ratio=1.4), None),
+}
+
+
+def behind(name):
+    rocker, length = BEHIND[name]
+    spring = RockerSpring(rate=30e3, preload=350.0)
+    return linked(spring, None).on_arm(length, rocker)
+
+
+def valve_travel(name, lift):
+    """Travel of the output (n,), m, by the swing of both arms."""
+    if name == "ratio":
+        return 1.4 * lift
+    if name == "arm":
+        return 0.06 * (np.sin(-0.2 + lift / 0.1) - np.sin(-0.2))
+    swing = np.arcsin(np.sin(-0.1) + lift / 0.03) + 0.1
+    return 0.05 * (np.sin(-0.15 + swing) - np.sin(-0.15))
+
+
+@pytest.mark.parametrize("name", BEHIND)
+def test_a_spring_on_the_output_stores_its_own_energy(name):
+    """Force and energy by the travel of the output; derivatives by complex steps."""
+    shape, lift = behind(name), np.array([1e-4, 0.003, 0.008])
+    own = valve_travel(name, lift + 1j * STEP)
+    energy = 350.0 * own + 15e3 * own**2
+    spring = Spring(rocker=shape.link, rate=shape.rate, preload=shape.preload)
+    np.testing.assert_allclose(spring.force(lift), np.imag(energy) / STEP, rtol=1e-11)
+    held = [spring.energy(float(each)) for each in lift]
+    np.testing.assert_allclose(held, np.real(energy), rtol=1e-11)
+    law, by_complex = rise(shape, lift), rise(shape, lift + 1j * STEP)
+    np.testing.assert_allclose(np.imag(by_complex.travel) / STEP, law.slope, rtol=1e-11)
+    curved = np.imag(by_complex.slope) / STEP
+    np.testing.assert_allclose(curved, law.travel_d2, rtol=1e-9, atol=1e-9)
+    assert spring.own.rate == pytest.approx(30e3) and spring.own.preload == pytest.approx(350.0)
+
+
+def test_a_valve_spring_closes_an_arm_by_its_rocker():
+    spring = '[spring.rocker]\nrate = "180 kN/m"\npreload = "1700 N"\n\n[spring.design]'
+    whole = text().replace('rate = "100 kN/m"\npreload = "1000 N"', "# of the output", 1)
+    whole = whole.replace("[spring.design]", spring, 1)
+    rocker = '[rocker]\nlength = "60 mm"\nangle = "-5 deg"\n\n[lubricant]'
+    case = parse_case(whole.replace("[lubricant]", rocker, 1))
+    ratio = 0.060 * np.cos(np.radians(5.0)) / 0.100
+    assert case.spring.preload == pytest.approx(1700.0 * ratio, rel=1e-12)
+    assert parse_case(case.to_toml()).spring == case.spring
+    for table, message in (("[lubricant]", "rocker = missing"),
+                           (rocker.replace("[rocker]", '[rocker]\nlash = "0.1 mm"'), "rocker.lash"),
+                           ):  # fmt: skip
+        with pytest.raises(InputError) as error:
+            parse_case(whole.replace("[lubricant]", table, 1))
+        assert str(error.value).startswith(message)

@@ -192,7 +192,7 @@ def test_a_gas_spring_pushes_and_states_its_own_rate():
     with pytest.raises(
         InputError, match=r"spring\.gas\.rate = .*, must be > .* rise with the lift"
     ):
-        LinkedSpring(link=SpringLink(**ends), spring=soft)
+        LinkedSpring(link=SpringLink(**ends, length=LENGTH), spring=soft)
 
 
 # --- Cases ---------------------------------------------------------------------------------------

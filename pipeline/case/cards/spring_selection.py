@@ -23,9 +23,10 @@ from camwright.pipeline.case.cards.spring_catalogue import (
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import put_sources
+from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import SHAPES, SpringShape
-from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
+from camwright.pipeline.follower.spring_link import RockerSpring, SpringLink, linked
 
 SHIPPED = "shipped"
 _REASONS_SHOWN = 3  # refused springs in a message, the nearest
@@ -52,7 +53,7 @@ def put_spring(case: Tables, folder: Path | None) -> None:
     if not isinstance(spring, dict) or "catalogue" not in spring:
         return
     name = spring.pop("catalogue")
-    for key in ("design", "link"):
+    for key in ("design", "link", "rocker"):
         if key in spring:
             raise InputError(f"spring.{key}", "a table", "left out with spring.catalogue")
     if "travel_max" not in spring:
@@ -89,7 +90,7 @@ def put_force(case: Tables) -> None:
     law = _law(spring)
     if law is None:
         return  # `Case` refuses a kind without its table
-    shape = law.on_arm(_arm_length(case))
+    shape = _reduced(law, case)
     for key, value, unit in (("rate", shape.rate, "kN/m"), ("preload", shape.preload, "N")):
         if key in spring:
             limit = f"left out: by {shape.table} it is {units.shown(value, unit)}"
@@ -104,19 +105,27 @@ def _law(spring: Tables) -> SpringShape | None:
     if part is not None and str(kind) not in spring:
         return None
     shape = None if part is None else read_part(part, spring[str(kind)], f"spring.{kind}")
-    if "link" not in spring or (shape is not None and not shape.linkable):
+    if shape is not None and not shape.linkable:
         return shape
-    return LinkedSpring(link=read_part(SpringLink, spring["link"], SpringLink.table), spring=shape)
+    if "link" in spring:
+        return linked(read_part(SpringLink, spring["link"], SpringLink.table), shape)
+    if "rocker" in spring:
+        return linked(read_part(RockerSpring, spring["rocker"], RockerSpring.table), shape)
+    return shape
 
 
-def _arm_length(case: Tables) -> float:
-    """Length of the arm, m; 1 m of a case whose arm or its lack is refused later."""
-    follower = case.get("follower")
+def _reduced(law: SpringShape, case: Tables) -> SpringShape:
+    """Spring on arm and rocker; of a case whose arm or its lack is refused later an arm of 1 m."""
+    follower, rocker = case.get("follower"), case.get(Rocker.table)
     arm = follower.get("arm") if isinstance(follower, dict) else None
-    try:
-        return units.parse(arm.get("length") if isinstance(arm, dict) else None, "m", "")
-    except InputError:
-        return 1.0
+    length = 1.0 if law.carried == "arm" else None
+    if isinstance(arm, dict):
+        try:
+            length = units.parse(arm.get("length"), "m", "")
+        except InputError:
+            length = 1.0
+    table = None if rocker is None else read_part(Rocker, rocker, Rocker.table)
+    return law.on_arm(length, table)
 
 
 def _demand(case: Tables, spring: Tables) -> SpringDemand[float] | None:
