@@ -5,6 +5,7 @@ energy of the spring by the distance of the ends.
 """
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,10 +16,15 @@ from test_oscillating_case import ARM, text
 from camwright.geometry.arm_path import Arm, ArmPath
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Jet
 from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.solved_cam import numbers_of
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.spring import Spring, spring_energy, stored_lift
 from camwright.pipeline.follower.spring_kinds import GasSpring, PivotSpring, rise
@@ -344,3 +350,53 @@ def test_moment_of_a_force_on_the_arc():
 def test_the_lift_of_the_case_is_below_the_reach():
     case = parse_case(linked_text())
     assert given_lift(case).highest.value < case.spring.shape.reach
+
+
+def test_limits_of_a_linked_spring_have_their_derivatives():
+    """Complex steps by the lift against central differences, within 1e-8 of the slope."""
+    case = parse_case(linked_text())
+    numbers, tried = numbers_of(case, machines(case)), 0
+    for one in CHECKS:
+        of_spring = one.id.startswith(("spring_", "link_")) and one.measured is not None
+        if not of_spring or one.measured.reduce != "top" or not one.concerns(machines(case)[0]):
+            continue
+
+        def value(lift, one=one):
+            zero = 0.0 * lift
+            return one.measure(LoadedCam(Jet(lift, zero, zero), numbers, lift))
+
+        top, h = np.array([0.008]), 2e-6
+        wide = (value(top + 2 * h) - value(top - 2 * h)) / (4.0 * h)
+        slope = (4.0 * (value(top + h) - value(top - h)) / (2.0 * h) - wide) / 3.0
+        by_complex = np.imag(value(top + 1j * STEP)) / STEP
+        np.testing.assert_allclose(by_complex, slope, rtol=1e-8, err_msg=one.id)
+        tried += 1
+    assert tried >= 7
+
+
+@pytest.mark.slow
+def test_the_gx120_on_a_linked_spring_passes_as_far_as_a_preview_judges():
+    """The synthesis keeps every limit of the wire at its own travel; none but advice fails."""
+    whole = (Path(__file__).parents[2] / "cases" / "gx120-arm.toml").read_text(encoding="utf-8")
+    spring, rest = whole[whole.index("[spring]") :].split("[spring.design]", 1)
+    linked_spring = """[spring]
+travel_max = "11 mm"
+source = "chosen"
+
+[spring.link]
+rate = "208 kN/m"
+preload = "1180 N"
+arm_radius = "85 mm"
+fixed_radius = "110 mm"
+fixed_angle = "50 deg"
+source = "chosen"
+
+"""
+    thick = rest.replace('wire_diameter = "8 mm"', 'wire_diameter = "8.3 mm"', 1)
+    assert spring in whole and thick != rest
+    case = parse_case(whole[: whole.index("[spring]")] + linked_spring + "[spring.design]" + thick)
+    trial = preview_case(case, corners=False)
+    failed = {each.id for each in trial.checks if each.status == "fail" and each.must_have}
+    assert not failed
+    solid = next(each for each in trial.checks if each.id == "spring_coil_gap")
+    assert solid.limit <= solid.demand < 1.05 * solid.limit  # the limit that ends the lift
