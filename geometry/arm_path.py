@@ -58,6 +58,7 @@ class Arm:
     sense: float
 
     def __post_init__(self) -> None:
+        """Refuse lengths that are not positive; complex ones, of a complex step, are not tried."""
         if not np.iscomplexobj(self.centre_distance):
             positive("follower.arm.centre_distance", self.centre_distance, "m")
         if not np.iscomplexobj(self.length):
@@ -432,6 +433,9 @@ class ArmContour(RoundContour):
         return np.asarray(motion.curvature_slope * motion.contour_speed)
 
     def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
+        """Heights of the follower at rest on a polygon (2, n), m, at cam angles (m,), rad: arc of
+        the roller centre from the line of centres (m,), m.
+        """
         arm, radius = self.pitch.arm, self.roller_radius
 
         def beyond(distance: Array) -> Array:

@@ -62,6 +62,7 @@ class PitchLimits:
     concave_radius: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse angles beyond 0 to 90 deg and negative radii."""
         for name in ("rise", "back"):
             if not 0.0 < getattr(self, name) < 0.25 * FULL_TURN:
                 raise InputError(f"pressure angle, {name}", getattr(self, name), "> 0 and < 90 deg")
@@ -161,6 +162,7 @@ class RollerCam(ABC):
             return max(rise.value / limits.rise, back.value / limits.back)
 
         def curved(offset: float) -> float:
+            """Use of the limits of curvature at an offset, m: greatest limit over radius."""
             pitch = self.extremes(prime_radius, offset)
             least = limits.convex_radius, limits.concave_radius
             radii = pitch.convex_radius.value, pitch.concave_radius.value

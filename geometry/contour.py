@@ -412,6 +412,9 @@ class RoundContour(Contour):
         return self.pitch.radius_of_curvature(theta) - self.follower_radius
 
     def concave_radius_min(self) -> Extremum:
+        """Least concave radius of the contour, m, with its cam angle; infinite where no part is
+        concave.
+        """
         curvature, theta = self.pitch.curvature_min()
         if curvature >= 0:
             return Extremum(np.inf, theta)

@@ -57,12 +57,14 @@ class SwungBar(NamedTuple):
         polygon = contour.points(places)
 
         def apart(points: Array, theta: Array) -> Array:
+            """Distances of contour points from the bar at cam angles, m."""
             cos, sin = np.cos(theta), np.sin(theta)
             along, across = points[0] * cos + points[1] * sin, points[1] * cos - points[0] * sin
             angle = start + contour.lift(theta) / self.arm.length
             return np.asarray(self._at(angle, *self._from_pivot(along, across)))
 
         def least(theta: Array) -> Array:
+            """Least distance of the contour from the bar at each cam angle, m."""
             turn = theta.ravel()[:, None]
             nearest = places[np.argmin(apart(polygon[:, None, :], turn), axis=1)]
             step = 2.0 * np.pi / _BAR_SAMPLES

@@ -110,6 +110,7 @@ class CaseRun:
         progress: Progress = SILENT,
         began: float | None = None,
     ) -> None:
+        """Options of the run; nothing is read or written before the context is entered."""
         self.case = case if positions is None else case.with_positions(positions)
         self.out, self.depth = Path(out), depth
         self._jobs, self._resume, self._replace = jobs, resume, replace

@@ -674,6 +674,7 @@ class LimitValues(Section):
     @field_validator("sources")
     @classmethod
     def _name_limits(cls, sources: dict[str, Source]) -> dict[str, Source]:
+        """Refuse the source of a limit that does not exist."""
         for key in sources:
             if key not in LIMITS:
                 raise refusal(f"a known limit{suggestion(key, LIMITS)}", unknown_key=key)

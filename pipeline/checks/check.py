@@ -143,6 +143,7 @@ def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allow
     """
 
     def allowed(numbers: Numbers) -> Allowed:
+        """Limit at the key, or the share of it; without a value its missing key."""
         value = numbers.get(key)
         if value is None:
             return Allowed(None, (key,))
@@ -641,6 +642,8 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
         return how.remark(Demand(None, allowed, missing=(*lacks, *limit.missing)), solution)
 
     def worst_of(measured: Measure) -> Extreme:
+        """Worst value of a measure, as demand, with its place and error share."""
+
         def value(worst: Value) -> Value:
             return how.value(worst, numbers)
 

@@ -153,7 +153,9 @@ def closures(
 
 
 def seizure_temperature(guide: Guide, stem: Material) -> float | None:
-    """Temperature at which the stem binds in a guide, K; None: unknown, or at none."""
+    """Temperature at which a stem or pin of a material binds in its bush, K, by the clearance,
+    which closes linearly; None: unknown, or at none.
+    """
     of_bush, moisture = guide.material.expansion, guide.material.moisture_growth
     of_stem = stem.expansion
     if guide.wall is None or of_bush is None or of_stem is None or moisture is None:

@@ -53,6 +53,7 @@ def _data(
         page=page,
     )
     def data(solution: Solution) -> Demand | None:
+        """Number of data that the case lacks of the part; None where the scope leaves it out."""
         machine = solution.machine
         if springs and (solution.case.spring.kind or "coil") not in springs:
             return None
@@ -91,6 +92,7 @@ def _roller_bearing(case: Case) -> Tables:
 
 
 def _pivot(case: Case) -> Tables:
+    """Tables of the pivot and of its bearings by name; empty without a pivot."""
     pivot = case.follower.pivot
     if pivot is None:
         return {}

@@ -216,6 +216,9 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
         return 0.5 * (high - low), 0.5 * (high + low)
 
     def safety(cycle: Cycle) -> float:
+        """Fatigue safety factor over the fibres of the pin in a load case; NaN without strengths,
+        infinite without load.
+        """
         if tensile is None or endured is None:
             return np.nan
         worst = float(np.max(goodman(*of_fibres(cycle), tensile)))

@@ -901,6 +901,7 @@ def _torsion_check(
     """
 
     def allowed(numbers: Numbers) -> Allowed:
+        """Allowed bending stress, Pa: the share of the value at the key; its missing keys."""
         table = f"spring.{numbers.known_case.spring.kind}"
         value = numbers.get(f"{table}.{key}")
         needed = (f"{table}.{each}" for each in ("wire_diameter", "mean_diameter", key))
@@ -971,6 +972,7 @@ def _rising(numbers: Numbers) -> Allowed:
 
 
 def _of_link(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the source of the link and the swing to the dead centre of the spring."""
     link = solution.machine.spring.linked
     if link is None:
         return demand

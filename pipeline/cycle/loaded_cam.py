@@ -573,7 +573,9 @@ class LoadedCam:
 
     @property
     def half_width(self) -> Array:
-        """Half-width of the contact, m, inverse to the pressure at equal force."""
+        """Half-width of the contact (..., n), m, less where the line has a greater pressure than in
+        plane strain.
+        """
         numbers, radius = self.numbers, self.motion.size * (1.0 - self.motion.sharpness)
         force = np.where(np.real(self.normal) < _LEAST_FORCE, _LEAST_FORCE, self.normal)
         radius = np.where(np.real(radius) < _LEAST_RADIUS, _LEAST_RADIUS, radius)

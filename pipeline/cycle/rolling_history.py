@@ -100,6 +100,7 @@ class RollingHistory(Displayed):
     film: FilmHistory | None = None
 
     def __post_init__(self) -> None:
+        """Make the arrays read-only."""
         freeze(self, shear_range=self.shear_range)
         if self.traction_demand is not None:
             freeze(self, traction_demand=self.traction_demand)

@@ -555,6 +555,7 @@ def torque_on_cam(
     pressed, external = Pressed.of(slide), system.external.at(theta)
 
     def torque(speed: Array, cam_acceleration: Array) -> Array:
+        """Torque on the cam (n,), N m, at its speeds, rad/s, and accelerations, rad/s2, (n,)."""
         acceleration = lift_d2 * speed**2 + slope * cam_acceleration
         inertia_force = system.mass * acceleration
         viscous_force = system.viscous_damping * slope * speed

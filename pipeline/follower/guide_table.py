@@ -178,6 +178,9 @@ class OverhangTable(GuideTable):
 
     def _nodes(self, along: NDArray[np.intp], guides: GuidePair) -> GuideLoads:
         # The roller does not enter guide A: positions just outside take the node at its mouth.
+        """Loads over their units (nodes, forces) under side forces alone, at overhangs of `along`
+        (nodes, 1) steps, in guides of a spacing.
+        """
         overhang = np.maximum(along * _OVERHANG_STEP * guides.spacing, 0.5 * guides.a.length)
         force, reach = np.broadcast_arrays(_FORCES, overhang)
         reactions = guide_reactions(force.ravel(), reach.ravel(), self._long, guides)
@@ -189,6 +192,9 @@ class MomentTable(GuideTable):
     """Guide loads over size and direction of side force and moment over spacing."""
 
     def _nodes(self, along: NDArray[np.intp], guides: GuidePair) -> GuideLoads:
+        """Loads over their units (nodes, forces) under side force and moment, at directions of
+        `along` (nodes, 1) steps, in guides of a spacing.
+        """
         angle = along * _DIRECTION_STEP
         side = np.ravel(_FORCES * np.cos(angle))
         moment = np.ravel(_FORCES * np.sin(angle) * guides.spacing)

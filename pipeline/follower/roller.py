@@ -256,7 +256,9 @@ class Roller(Part):
     def motion(
         self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
     ) -> SurfaceMotion:
-        """Rolling with creep; without a friction coefficient without slip. See `FollowerKind`."""
+        """Rolling over the turn with creep, or without a friction coefficient free of slip; force
+        (n,), N, theta (n,), rad, speed of the cam, rad/s. See `FollowerKind`.
+        """
         motion = self.rolling(contour, theta, speed)
         driven = self._driven(motion, contact, force, speed)
         loaded = force > 0

@@ -624,7 +624,7 @@ class Spring(Part):
         )
 
     def on_arm(self, length: float | None, rocker: Rocker | None = None) -> Spring:
-        """As it acts on the arc of an arm of a length, m, and by a rocker; None: on a stem.
+        """The spring as it acts on the arc at the length of an arm, m; None: on a stem.
 
         Raises
         ------
@@ -790,6 +790,9 @@ class DynamicStiffness:
         return self._known(over_rate)
 
     def _known(self, over_rate: NDArray[np.complex128]) -> NDArray[np.complex128]:
+        """Stiffness over the rate as dynamic stiffness less the rate, N/m, in place; zero at
+        rest.
+        """
         over_rate -= 1.0
         over_rate *= self.rate
         over_rate[self.phase == 0.0] = 0.0

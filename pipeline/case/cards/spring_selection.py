@@ -134,6 +134,7 @@ def _demand(case: Tables, spring: Tables) -> SpringDemand[float] | None:
     """
 
     def number(table: Tables, key: str, default: float) -> float:
+        """Number at a key of a table; the default for anything else, which is refused later."""
         value = table.get(key)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             return default

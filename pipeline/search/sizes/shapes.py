@@ -164,7 +164,9 @@ class RollerShapes:
         return Shape(prime, offset, roller, 0.0, governs, by_offset)
 
     def _smallest(self, limits: PitchLimits) -> RollerSize:
-        """Smallest prime radius, of any offset where it is open, m."""
+        """Smallest prime radius within limits of the pitch curve, and its offset, best where it is
+        open, m.
+        """
         if self._aside in self.gaps:
             return self.cam.smallest(limits)
         offset = self._stated
@@ -180,6 +182,9 @@ class RollerShapes:
         low, tool = self._least_roller, least_concave_radius(self.case) or 0.0
 
         def fits(roller: float) -> float | None:
+            """The roller radius, m, if the tool machines the contour under it without a larger cam;
+            else None.
+            """
             if not roller < tool:
                 return roller
             without = self._smallest(replace(self.limits(roller), concave_radius=0.0))

@@ -346,6 +346,9 @@ class _SizeSearch:
         grown = more_preload if PRELOAD in self.opened.gaps else stiffer
 
         def holding(factor: float) -> _Sized | None:
+            """Case complete with the spring grown by a factor, if its preview holds the follower;
+            else None.
+            """
             spring = grown(start, factor, reason)
             try:
                 firm = self._judged(self._grown(exact, spring, raised), spring)
@@ -431,6 +434,7 @@ class _SizeSearch:
             return least
 
         def passing(prime: float) -> Shape | None:
+            """Shape with a prime radius, m, if its checks pass; else None."""
             larger = self.shapes.enlarged(shape, prime, _titles(small))
             try:
                 larger, screened = self._fitted(larger, spring)
