@@ -106,10 +106,13 @@ def _arm(turn: SheetTurn) -> DrawnArm | None:
     if not turn.on_arm or distance is None or length is None or prime is None:
         return None
     sense = 1.0 if turn.case["follower"]["arm"].get("swing") == "with" else -1.0
-    linkage, bearing = Arm(distance, length, sense), _BEARING * length
+    deep, hub = (turn.length("follower", "arm", key) for key in ("depth", "hub"))
+    linkage = Arm(distance, length, sense)
+    bearing = 0.5 * (hub or deep or 2.0 * _BEARING * length)
     offset, radius = (turn.length("follower", "face", key) for key in ("offset", "radius"))
     start, depth = float(linkage.start_angle(prime, offset)), offset or radius or 0.0
-    return DrawnArm(distance, length, sense, start, bearing, depth, radius)
+    half = None if deep is None else 0.5 * deep
+    return DrawnArm(distance, length, sense, start, bearing, depth, radius, half)
 
 
 def _counterweight(turn: SheetTurn) -> DrawnSector | None:

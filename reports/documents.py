@@ -236,6 +236,7 @@ class ShopDrawing:
     """Contents of the shop drawing.
 
     radii : sequence   polar angle, deg, and radius, mm, as text
+    swing : sequence   of an arm: cam angle, deg, radius, mm, and arm angle, deg, as text
     drops : sequence   title of each crown; axial coordinate, mm, and drop, um, as text
     block, facts       names and values of the title block; "" is a field to fill by hand
     """
@@ -244,6 +245,7 @@ class ShopDrawing:
     drawing: Drawing
     radii: Sequence[tuple[str, str]]
     extremes: Sequence[tuple[str, str]]
+    swing: Sequence[tuple[str, str, str]]
     drops: Sequence[tuple[str, Sequence[tuple[str, str]]]]
     notes: Sequence[str]
     block: Sequence[tuple[str, str]]
@@ -320,11 +322,35 @@ def _content(material: ReportMaterial, record: Record) -> ShopDrawing:
     ]  # fmt: skip
     radii = [(f"{degrees}°", f"{radius:.4f}") for degrees, radius in record["radii_mm"].items()]
     notes.append(_mating(record["tracks"]))
+    swing = _swing(record.get("arm"))
+    if swing:
+        notes.append(_pivot(record["arm"]))
     return ShopDrawing(
         f"Drawing of the cam, {shortened(title, 100)}", views(part), radii, extremes,
-        list(_drops(record["tracks"])), notes, title_block(case), facts,
+        swing, list(_drops(record["tracks"])), notes, title_block(case), facts,
         results_sha256(material.run.summary["files"]),
     )  # fmt: skip
+
+
+def _swing(arm: Record | None) -> list[tuple[str, str, str]]:
+    """Rows of the swing of an arm by cam angle, as text; none of a stem."""
+    rows = {} if arm is None else arm["by_cam_angle"]
+    return [
+        (f"{degrees}°", f"{radius:.4f}", f"{angle:.4f}")
+        for degrees, (radius, angle) in rows.items()
+    ]
+
+
+def _pivot(arm: Record) -> str:
+    """Note on the pivot of an arm."""
+    _, start = arm["by_cam_angle"]["0"]
+    return (
+        f"Follower: arm of {quantity(arm['length_mm'], 'mm')} from pivot to {arm['reference']}, "
+        f"pivot {quantity(arm['centre_distance_mm'], 'mm')} from the cam axis; arm angle between "
+        f"the lines from the pivot to the cam axis and along the arm, {start:.4f}° at cam angle "
+        f"0°; outwards it swings {arm['swing']} the rotation of the cam. Cam angle: of the line to "
+        "the pivot."
+    )
 
 
 def _part(material: ReportMaterial, record: Record) -> DrawnCam:

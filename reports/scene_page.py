@@ -157,7 +157,7 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
     bodies["bore"] = joined(holes).as_record(_DIGITS)
     arm = mechanism.arm
     end = mechanism.stem_end - mechanism.lowest if arm is None else arm.length
-    stem = mechanism.stem if arm is None else 1.2 * arm.bearing
+    stem = mechanism.stem if arm is None else 2.0 * arm.half
     lean, follower = None, _follower(view, width, stem, end)
     if arm is not None:
         lean = arm.turn(rows["lift_mm"][view.position])
@@ -335,7 +335,7 @@ def _face_on_arm(view: TurnView, width: float, arm: DrawnArm) -> Solid:
     low, high = view.follower.min(axis=1), view.follower.max(axis=1)
     # the y axis of the body points to the cam, downwards here
     block = box((-high[0], -high[1], -width / 2), (-low[0], -low[1], width / 2))
-    thick, half = -float(low[1]), 0.6 * arm.bearing
+    thick, half = -float(low[1]), arm.half
     bottom, top = max(arm.depth - half, 0.25 * thick), max(arm.depth + half, thick)
     end = arm.sense * arm.length
     bar = box((min(0.0, end), bottom, -width / 4), (max(0.0, end), top, width / 4))

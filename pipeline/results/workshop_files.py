@@ -109,6 +109,7 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
             str(degrees): in_unit(radius_at(polygon, radians(degrees)), "mm")
             for degrees in range(0, 360, RADII_STEP)
         },
+        "arm": swing_record(case, contour),
     }
     if keyway is not None and size.keyway_width is not None and size.keyway_depth is not None:
         root = size.root_radius
@@ -131,6 +132,29 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
             "polar_angle_deg": float(np.round(np.degrees(np.arctan2(y, x)), 6) % 360.0),
         }
     return record
+
+
+def swing_record(case: Case, contour: Contour) -> dict[str, Json] | None:
+    """Arm of an oscillating follower and its swing by cam angle; None of a stem.
+
+    Rows of the distance of its reference point from the cam axis, mm, and of the angle at the pivot
+    from the line to the cam axis to the arm, deg.
+    """
+    arm, degrees = case.follower.arm, np.arange(0.0, 360.0, RADII_STEP)
+    angle = case.follower.arm_angle(contour.lift(np.radians(degrees)), case.cam.prime_radius)
+    if arm is None or angle is None:
+        return None
+    radius = np.asarray(arm.linkage.radius(angle))
+    return {
+        "centre_distance_mm": in_unit(arm.centre_distance, "mm"),
+        "length_mm": in_unit(arm.length, "mm"),
+        "swing": arm.swing,
+        "reference": case.facing.reference,
+        "by_cam_angle": {
+            f"{at:.0f}": [in_unit(float(r), "mm"), in_unit(float(psi), "deg")]
+            for at, r, psi in zip(degrees, radius, angle, strict=True)
+        },
+    }
 
 
 def track_record(case: Case, word: str) -> dict[str, Json]:

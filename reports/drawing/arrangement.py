@@ -79,7 +79,7 @@ class DrawnArm:
     sense: of the outward swing, 1 clockwise as the cam turns, -1 against it; start: angle from the
     line to the cam axis at zero lift; bearing: radius drawn about the pivot; depth: of the middle
     of a face below the line from the pivot to the end, towards the cam: its offset or, of a curved
-    face, its radius
+    face, its radius; bar: half of the depth of the arm, None where it is not stated
     """
 
     pivot: float
@@ -89,6 +89,12 @@ class DrawnArm:
     bearing: float
     depth: float = 0.0
     radius: float | None = None
+    bar: float | None = None
+
+    @property
+    def half(self) -> float:
+        """Half of the depth drawn of the arm, mm."""
+        return 0.6 * self.bearing if self.bar is None else self.bar
 
     def turn(self, lift: Array | float) -> Array:
         """Counter-clockwise rotation of the arm from the line to the cam axis, rad."""
@@ -274,7 +280,7 @@ def _arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGro
     mm, and the fixed pivot.
     """
     edge, thin = Pen("ink", _EDGE * m.scale, "steel"), Pen("muted", _THIN * m.scale)
-    half, roller, end = 0.6 * arm.bearing, m.roller or 0.0, (0.0, -arm.length)
+    half, roller, end = arm.half, m.roller or 0.0, (0.0, -arm.length)
     bar = rectangle(-half, -arm.length, half, 0.0)
     swung: tuple[Shape, ...] = (
         DrawnOutline((bar,), edge),
@@ -317,7 +323,7 @@ def _face_of(arm: DrawnArm, face: tuple[float, float]) -> Array:
 def _bar_of_face(arm: DrawnArm, face: tuple[float, float]) -> Array:
     """Corners (2, 4), mm, of the bar from the pivot to the middle of the back of a face."""
     back = np.array([arm.sense * (arm.depth - 0.5 * face[1]), -arm.length])
-    aside = 0.6 * arm.bearing * np.array([-back[1], back[0]]) / np.hypot(*back)
+    aside = arm.half * np.array([-back[1], back[0]]) / np.hypot(*back)
     return np.stack([aside, back + aside, back - aside, -aside], axis=1)
 
 

@@ -16,7 +16,7 @@ from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.template import first_case
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import drawn_angles, lift_columns
-from camwright.pipeline.results.workshop_files import notes_of
+from camwright.pipeline.results.workshop_files import dimensions_record, notes_of
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.screening.screened_checks import SCREENED
 from camwright.reports.drawing.arrangement import (
@@ -107,6 +107,22 @@ def test_workshop_and_lift_state_the_arm():
     (note,) = (each for each in notes_of(case) if "pivot" in each)
     assert note.startswith("pivot 110 mm from the cam axis, 100 mm to the roller centre; arm at 3")
     assert note.endswith("swings outwards with the rotation of the cam")
+
+
+def test_the_drawing_states_the_swing_by_cam_angle():
+    """The roller centre by the law of cosines from the arm angle, which the lift turns."""
+    case = parse_case(text())
+    arm = dimensions_record(case, case.contour(lift_of(case)))["arm"]
+    assert (arm["centre_distance_mm"], arm["length_mm"], arm["swing"]) == (110.0, 100.0, "with")
+    assert len(arm["by_cam_angle"]) == 36
+    start = arm["by_cam_angle"]["0"][1]
+    for degrees, (radius, angle) in arm["by_cam_angle"].items():
+        lift = 1e3 * float(lift_of(case)(np.radians(float(degrees))))
+        assert angle - start == pytest.approx(np.degrees(lift / 100.0), abs=1e-9)
+        square = 110.0**2 + 100.0**2 - 2.0 * 110.0 * 100.0 * np.cos(np.radians(angle))
+        assert radius**2 == pytest.approx(square, rel=1e-12)
+    stem = parse_case(text("lift", STEM))
+    assert dimensions_record(stem, stem.contour(lift_of(stem)))["arm"] is None
 
 
 @pytest.mark.parametrize("swing", ["with", "against"])
