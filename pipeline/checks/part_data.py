@@ -65,7 +65,10 @@ def _data(
                 return Demand(None, 0.0, missing=described_by, note=note)
         described = {path: part for path, part in tables(solution.case).items() if part is not None}
         missing = tuple(f"{path}.{key}" for path, part in described.items() for key in part.lacking)
-        missing = tuple(key for key in missing if not machine.scope.leaves_out(key))
+        spared = machine.follower.spared
+        missing = tuple(
+            key for key in missing if not (machine.scope.leaves_out(key) or key in spared)
+        )
         lacking = {"n": float(len(missing))}
         return Demand(None if missing else 0.0, 0.0, missing=missing, stated=lacking)
 

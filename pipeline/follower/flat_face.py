@@ -49,6 +49,7 @@ class FollowerFace(Part):
     slides: ClassVar[bool] = True
     axial_offset: ClassVar[None] = None
     parts: ClassVar[Mapping[str, Part | None]] = {}
+    spared: ClassVar[tuple[str, ...]] = ("follower.arm.roller_notch",)
     drag: ClassVar[None] = None
     defaults: ClassVar[Mapping[str, str]] = {
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",

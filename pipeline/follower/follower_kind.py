@@ -66,8 +66,8 @@ class FollowerKind(Protocol):
     coefficient of sliding on the cam; `roughness`: rms, m; `slides`: whether its surface slides on
     the cam, not rolls; `end`: of its surface, None where it is not stated; `crown`: None for a
     straight one; `axial_offset`: of its middle from that of the cam, m, None where it is not
-    stated; `parts`: those of the scope by their names there, None: not described; `drag`: against
-    rolling, None without it.
+    stated; `parts`: those of the scope by their names there, None: not described; `spared`: keys
+    that other parts do not need with it; `drag`: against rolling, None without it.
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[object]]]
@@ -96,6 +96,8 @@ class FollowerKind(Protocol):
     def axial_offset(self) -> float | None: ...
     @property
     def parts(self) -> Mapping[str, Part | None]: ...
+    @property
+    def spared(self) -> tuple[str, ...]: ...
     @property
     def drag(self) -> Drag | None: ...
     @property

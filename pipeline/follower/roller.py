@@ -45,6 +45,7 @@ class Roller(Part):
     word: ClassVar[str] = "roller"
     width_key: ClassVar[str] = "roller.width"
     slides: ClassVar[bool] = False
+    spared: ClassVar[tuple[str, ...]] = ()
     defaults: ClassVar[Mapping[str, str]] = {
         "inertia": "that of a solid ring from hub to surface, an upper bound",
         "mass": "that of a solid ring from pin, or else hub, to surface",

@@ -10,17 +10,24 @@ from swung_face import face_text
 from camwright.geometry.arm_face import ArmFacePath, CurvedFacePath
 from camwright.geometry.arrays import rotation
 from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Jet
 from camwright.pipeline.base.envelope import MechanismSizes
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.cycle.arm_bodies import swung_bodies
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.solved_cam import numbers_of
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.workshop_files import notes_of
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.screening.screened_checks import SCREENED
+from camwright.pipeline.search.sizes.open_case import ROLLER, parse_open_case
+from camwright.pipeline.search.sizes.shapes import shapes_of
 from camwright.reports.drawing.arrangement import (
     DrawnArm,
     DrawnMechanism,
@@ -31,6 +38,30 @@ from camwright.reports.drawing.arrangement import (
 )
 
 KINDS = ("flat", "curved")
+DESCRIBED = """\
+width = "28 mm"
+depth = "24 mm"
+bore = "20 mm"
+hub = "36 mm"
+material = "case_hardened"
+pivot_notch = 2.0
+
+[follower.pivot]
+pin_material = "c45"
+ambient_temperature = "30 degC"
+gravity_angle = "0 deg"
+
+[follower.pivot.bush]
+card = "ptfe_lined"
+length = "25 mm"
+diameter = "16 mm"
+wall = "1.5 mm"
+clearance = "0.03 mm"
+housing_resistance = "2 K/W"
+wear_rate = "3e-8 mm^3/N/m"
+
+[follower.face]
+"""
 
 
 @cache
@@ -171,6 +202,18 @@ def test_self_locking_by_moments_about_the_pivot(kind):
     assert one.demand == pytest.approx(float((-0.05 * rubbed / normal).max()), rel=1e-5)
 
 
+def test_an_arm_and_a_pivot_that_are_described_are_judged_with_a_face():
+    """No datum of a roller is missed; pivot and face alone lose work by their friction."""
+    whole = face_text("flat").replace("[follower.face]\n", DESCRIBED, 1)
+    whole = whole[: whole.index("[scope]")] + whole[whole.index("[lubricant]") :]
+    case = parse_case(whole)
+    trial = preview_case(case.with_positions(90), corners=False)
+    assert not failed(trial)
+    made = {each.id: each for each in trial.checks}
+    assert {"arm_fatigue_pivot", "arm_yield", "data_arm", "data_pivot", "arm_gap"} <= made.keys()
+    assert made["friction_balance"].demand < 1e-9
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_screening_judges_faces_as_their_previews(kind):
     """Prime radius, rate, preload and friction as arrays, within the stated deviations."""
@@ -274,3 +317,47 @@ def test_the_block_of_a_face_is_within_its_swung_body(kind):
             points = (arm.length + corners[:, :1]) * along + corners[:, 1:] * towards
             near = min(near, np.hypot(*(points + np.array([arm.centre_distance - u, -v])).T).min())
         assert float(body.from_disc(u, v, 0.0)) <= near + 1e-12
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_measure_is_differentiated_by_a_complex_step(kind):
+    """Along a random change of the lift; the reference is a difference of fourth order.
+
+    Where a magnitude has its kink within the step the difference is none: at few angles.
+    """
+    case = parse_case(face_text(kind))
+    states = machines(case)
+    numbers, draw = numbers_of(case, states), np.random.default_rng(5)
+    theta, waves = np.arange(180) * (2.0 * np.pi / 180), ((2e-3, 1.0), (4e-4, 2.0), (1e-4, 3.0))
+    jet = Jet(*(
+        0.005 * (k == 0) + sum(size * n**k * np.cos(n * theta + n + 0.5 * np.pi * k)
+                               for size, n in waves)
+        for k in range(4)
+    ))  # fmt: skip
+    way = [draw.normal(size=180) * np.abs(each).max() for each in jet]
+    tried = set()
+    for one in CHECKS:
+        how = one.measured
+        if how is None or how.reduce in ("case", "top") or not one.concerns(states[0]):
+            continue
+
+        def at(step, measure=one.measure):
+            moved = Jet(*(a + step * b for a, b in zip(jet, way, strict=True)))
+            return measure(LoadedCam(moved, numbers, 0.008))
+
+        exact, h = np.imag(at(1e-30j)) / 1e-30, 1e-4
+        a, b, c, d = (at(k * h) for k in (-2.0, -1.0, 1.0, 2.0))
+        difference = (a - 8.0 * b + 8.0 * c - d) / (12.0 * h)
+        scale = np.abs(exact).max() + 1e-4 * np.abs(at(0.0)).max() / h
+        assert np.mean(np.abs(exact - difference) <= 1e-8 * scale) > 0.97, one.id
+        tried.add(one.id)
+    assert {"undercut", "contact_pressure", "face_width", "face_pv", "self_locking",
+            "contact_force_margin"} <= tried  # fmt: skip
+
+
+def test_sizes_are_refused_by_the_face_of_the_arm():
+    """And not by the roller that it does not have."""
+    opened = parse_open_case(face_text("flat"))
+    assert ROLLER not in opened.gaps
+    with pytest.raises(InputError, match=r"follower\.face = a table, must be left out"):
+        shapes_of(opened, 0.0)

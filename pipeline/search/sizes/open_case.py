@@ -134,7 +134,8 @@ def parse_open_case(
             _open(stated, key)
         text = tables_text(stated)
     tables = resolved(stated, folder)
-    other = ROLLER if _entry(tables, "follower.kind") == "flat" else FACE
+    flat = _entry(tables, "follower.kind") == "flat"
+    other = ROLLER if flat or _entry(tables, "follower.face.depth") is not None else FACE
     absent = {other, OFFSET if isinstance(_entry(tables, "follower.arm"), dict) else DISTANCE}
     gaps = tuple(key for key in GAPS if key not in absent and _entry(tables, key) is None)
     provisional = {**_PROVISIONAL, **_of_arm(tables)}
