@@ -207,6 +207,8 @@ def contact_temperature(solution: Solution) -> Demand:
     cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
     worst = worst._replace(value=worst.value * limit, cam_angle=float(cycle.theta[k]))
     note = f"flash temperature of {shown(hot, 'K', 3)} on {_film(cycle)[k]:.2g} of the roughness"
+    if np.isnan(hot):
+        note = "no flash temperature on a contour that bounds no body"
     stated = {"T_m": float(np.mean(flash(cycle))), "T_f": hot}
     return Demand(worst.value, limit, worst, note=note, figures=(oil.source,), stated=stated)
 
