@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
-from camwright.pipeline.contact.finite_length import brick_body, length_tiers
+from camwright.pipeline.contact.finite_length import brick_body, length_certificate, length_tiers
 from camwright.pipeline.contact.finite_length.axial_drop import (
     BodyEnd,
     FiniteBody,
@@ -118,6 +118,13 @@ def test_a_contact_much_narrower_has_its_own_cells():
     widths = [point.finite_elements.contact.cells.x[1] for point in points]
     half_widths = [plane_strain(PAIR, force)[0] for force in (400.0, 40.0)]
     np.testing.assert_allclose(widths, [on_ladder(each) / 2 for each in half_widths], rtol=1e-12)
+
+
+def test_a_moment_near_the_end_has_its_blocks_condensed(monkeypatch):
+    """0.25 of force times length takes wider cells, though narrow ones cover its contact."""
+    monkeypatch.setattr(length_certificate, "_is_covered", lambda *_: True)
+    points = begun_ends([load(1.0, 400.0, 0.2)], 1e-4, 2.0).certificate().points
+    assert points[0].finite_elements.contact.moment[0] == pytest.approx(0.2, rel=1e-9)
 
 
 def test_lengths_on_the_ladder_are_the_next_larger():

@@ -19,6 +19,7 @@ from camwright.pipeline.contact.finite_length.length_tiers import (
     both_tiers,
     condensed_block,
     is_kept,
+    least_window,
     meshes_of,
     plane_strain,
     with_depths_on_ladder,
@@ -236,8 +237,9 @@ def _meshes(loads: Sequence[LengthLoad], ratio: float) -> tuple[_Mesh, ...]:
 def _sizes(loads: Sequence[LengthLoad], half_width: float, ratio: float) -> CellSizes:
     """Cells coarser by a ratio, as wide as the contacts of the loads by half-spaces need."""
     sizes = SIZES if ratio == 1 else SIZES.coarser(ratio)
+    least = max(least_window(load.pair, load.force, load.moment) for load in loads)
     for window in _WINDOWS:
-        chosen = replace(sizes, window=window)
+        chosen = replace(sizes, window=max(window, least))
         if all(_is_covered(load, half_width, chosen) for load in loads):
             return chosen
     raise ContactError("contact wider than the window of its pressure cells")

@@ -149,6 +149,12 @@ def on_ladder(length: float) -> float:
     return float(_LADDER_START * _LADDER**step)
 
 
+def least_window(pair: FinitePair, force: float, moment: float | None) -> float:
+    """Least window of the cells under a force, N, and a moment, N m, which widens one end."""
+    heavy = moment is not None and abs(moment) > _LIGHT_MOMENT * force * pair.contact_length
+    return _TILTED if heavy else 0.0
+
+
 def plane_strain(pair: FinitePair, force: float) -> tuple[float, float]:
     """Plane-strain half-width, m, and peak pressure, Pa, at the mean line load of a force, N."""
     half_width, p0 = hertz.line_contact(
@@ -194,8 +200,7 @@ def both_tiers(
     """
     _require_load(pair, force, tilt, moment)
     half_width, p0 = plane_strain(pair, force)
-    if moment is not None and abs(moment) > _LIGHT_MOMENT * force * pair.contact_length:
-        sizes = replace(sizes, window=max(sizes.window, _TILTED))
+    sizes = replace(sizes, window=max(sizes.window, least_window(pair, force, moment)))
     pair = with_depths_on_ladder(pair)
     mesh_width = mesh_half_width or half_width
     meshes = meshes_of(pair, mesh_width, sizes)
