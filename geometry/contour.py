@@ -400,6 +400,15 @@ class RoundContour(Contour):
         curvature, theta = self.pitch.curvature_max()
         return Undercut(theta, 1.0 - self.follower_radius * curvature)
 
+    def relative_radius(self, theta: ArrayLike, wall: Array) -> Array:
+        """Relative radius of curvature, m, on the inner wall of a groove (1) or the outer (-1).
+
+        r (1 - r kappa) and r (1 + r kappa), kappa: curvature of the path; negative if undercut.
+        """
+        radius = self.follower_radius
+        relative: Array = radius * (1.0 - wall * radius * self.pitch.curvature(theta))
+        return relative
+
     def curvature(self, theta: ArrayLike) -> Array:
         curvature = self.pitch.curvature(theta)
         return curvature * reciprocal(1.0 - self.follower_radius * curvature)

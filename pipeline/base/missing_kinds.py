@@ -77,11 +77,11 @@ MISSING_KINDS = (
         keys=("lash", "pushrod", "hydraulic"),
     ),
     MissingKind(
-        "a groove (track, face) cam", "cam",
+        "a groove (track, face) cam under an arm or with two rollers", "cam",
         ("groove", "grooved", "groove_width", "track", "face", "face_cam", "slot", "slotted",
          "box", "box_cam", "closed", "internal"),
-        _PLATE,
-        keys=("groove", "groove_width", "groove_depth", "track", "track_width"),
+        'cam.closure = "groove" with one roller on a stem',
+        keys=("groove_width", "groove_depth", "track", "track_width"),
     ),
     MissingKind(
         "a conjugate (complementary) pair of cams", "cam",

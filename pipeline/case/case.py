@@ -357,6 +357,16 @@ class Case(Displayed, Section):
         if self.follower.arm is not None:
             raise InputError("follower.kind", self.follower.kind, f'"roller" or "flat" for {use}')
 
+    def require_force_closure(self, use: str) -> None:
+        """Refuse a cam that pulls its follower for a use, in words, that is made for one track.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.cam.pulls:
+            raise InputError("cam.closure", self.cam.closure, f'"spring" for {use}')
+
     @property
     def base_circle(self) -> float:
         """Radius of the base circle, m: of the cam surface at zero lift."""

@@ -22,6 +22,7 @@ from camwright.pipeline.case.cards.card_filling import fill_cards
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
 from camwright.pipeline.case.case_values import quantity_of, refused_as_written, steps_of
+from camwright.pipeline.case.closure_tables import with_closure
 from camwright.pipeline.case.consistency import check_sections
 from camwright.pipeline.case.error_text import MissingKeysError, Written, refusal_of
 from camwright.pipeline.case.external_load import external_force
@@ -104,7 +105,7 @@ def resolved(data: Tables, folder: Path | None = None) -> Tables:
     of scope.
     """
     named_tables = with_every_name(with_new_keys(with_added(data)))
-    tables = with_stand_ins(with_rocker(with_arm(named_tables)))
+    tables = with_stand_ins(with_closure(with_rocker(with_arm(named_tables))))
     fill_cards(tables, folder)
     return tables
 

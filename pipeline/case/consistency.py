@@ -189,6 +189,7 @@ def _start(case: Case) -> Iterator[Rule]:
         cycle = shown(case.torque.cycle, "deg")
         limit = f"given with [torque]: {ratio_text(case.torque.cycle / FULL_TURN)} for one cycle"
         raise InputError("mechanism.gear_ratio", "missing", f"{limit} of {cycle} in a cam turn")
+    _closure(case)
     if case.valve_train is not None and case.follower.arm is not None:
         raise InputError("valve_train", "a table", "left out with an arm")
     if case.rocker_linkage is not None and case.rocker is not None and case.rocker.lift == "output":
@@ -237,6 +238,55 @@ def _start(case: Case) -> Iterator[Rule]:
             name = "fired" if load_case.intake_pressure is None else "intake_pressure"
             limit = 'left out unless engine.kind = "cylinder" without a torque file'
             yield Rule(f"load_case[{k}].{name}", _fixed(True), limit)
+
+
+def _closure(case: Case) -> None:
+    """A groove guides the roller of a stem by a stated lift, and leaves out what it cannot have.
+
+    Raises
+    ------
+    InputError
+        If something is stated that a groove does not have, or that is not done for one.
+    """
+    cam = case.cam
+    if not cam.pulls:
+        if cam.groove is not None:
+            raise InputError("cam.groove", "a table", 'left out, or cam.closure = "groove"')
+        return
+    if cam.groove is None:
+        raise InputError("cam.groove", "missing", 'given with cam.closure = "groove"')
+    if case.follower.kind != "roller":
+        limit = '"roller" with cam.closure = "groove", which is done for a stem alone'
+        raise InputError("follower.kind", case.follower.kind, limit)
+    if case.lift is None:
+        limit = 'given with cam.closure = "groove": its synthesis from a torque is not done'
+        raise InputError("lift", "missing", limit)
+    for key, stated in (("cam.counter_hole", cam.counter_hole), ("valve_train", case.valve_train)):
+        if stated is not None:
+            raise InputError(key, "a table", 'left out with cam.closure = "groove"')
+    pin = case.roller.pin
+    if pin is not None and not pin.overhung:
+        limit = '"overhung" with cam.closure = "groove": a cheek on both sides cannot enter it'
+        raise InputError("roller.pin.mounting", pin.mounting, limit)
+    ring = case.roller.bearing.ring
+    if case.spring.absent and ring is not None and case.roller.bearing.C0 is None:
+        raise InputError("roller.bearing.C0", "missing", "given with a ring and without a spring")
+
+
+def _groove() -> Iterator[Rule]:
+    """The groove is within the disc, and the roller within the groove above its fillet."""
+    depth, fillet = "cam.groove.depth", "cam.groove.corner_radius"
+    yield _less(depth, lambda at: at("cam.width"), "< {cam.width}: a floor is left")
+    limit = ">= {roller.width}: the roller is within the groove"
+    yield _at_least(depth, lambda at: at("roller.width"), limit)
+    limit = "<= {}, {cam.groove.depth} less {roller.width}: the roller runs above the fillet"
+    yield _at_most(fillet, lambda at: at(depth) - at("roller.width"), limit)
+    limit = "> {}, {cam.prime_radius} plus {roller.radius}"
+    key = "cam.groove.outer_radius"
+    yield _more(key, lambda at: at("cam.prime_radius") + at("roller.radius"), limit)
+    key, limit = "workshop.tool_radius", "<= {}, {roller.radius} plus half of the clearance"
+    half = lambda at: at("roller.radius") + 0.5 * at("cam.groove.clearance")  # noqa: E731
+    yield _at_most(key, half, limit)
 
 
 def _period(case: Case) -> Iterator[Rule]:
@@ -343,6 +393,8 @@ def _geometry(case: Case) -> Iterator[Rule]:
     )
     if case.follower.arm is not None:
         yield from _arm(case)
+    if case.cam.groove is not None:
+        yield from _groove()
     key = "limits.return_pressure_angle"
     yield _at_least(key, lambda at: at("limits.pressure_angle"), ">= {limits.pressure_angle}")
     yield from _ring(case)

@@ -218,6 +218,17 @@ CAM_RADIUS = OpenLimit(
     "cam_radius", "cam radius", _LENGTH, Source("installation space of the case", confirmed=True),
     found="installation space", example="90 mm",
 )  # fmt: skip
+LANDING_SPEED = OpenLimit(  # of a roller in a groove
+    "landing_speed", "landing speed in the clearance of a groove",
+    In("mm/s", above=0, at_most=1e5),
+    Source("bound of the case, noise and wear of the walls", confirmed=True),
+    found="requirement of the machine", example="50 mm/s",
+)  # fmt: skip
+CROSSOVER_SLIP = OpenLimit(
+    "crossover_slip", "slip of the roller at a crossover", In("m/s", above=0, at_most=1e3),
+    Source("bound of the case, wear of the walls", confirmed=True),
+    found="requirement of the machine", example="4 m/s",
+)  # fmt: skip
 TARGET_LIFE = OpenLimit(
     "target_life", "target life", _LIFE,
     Source(

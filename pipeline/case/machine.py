@@ -439,6 +439,7 @@ class Machine(Displayed):
             viscous_damping=self.viscous_damping,
             face_friction=self.follower.side_friction,
             pivot=self.arm_pivot,
+            held=self.cam.pulls,
         )
 
     @property

@@ -86,7 +86,8 @@ def beyond_ranges(case: Case) -> tuple[Implied, ...]:
     for usual in _ranges():
         for key in _keys_in(case, usual.keys):
             value = value_of(case, key)
-            if isinstance(value, float):
+            absent = key.startswith("spring.") and case.spring.absent
+            if isinstance(value, float) and not absent:
                 judged.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
     return tuple(one for one in judged if one is not None)
 

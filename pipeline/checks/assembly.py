@@ -425,6 +425,7 @@ machine_shaft_gap = check(
     part="gear",
     load_cases=NONE,
     levers=(levers.one("cam.prime_radius", -1, 2.0), *levers.GENTLER),
+    closed_by="force",
     page="Camshaft",
 ).measured(
     "contour",
@@ -665,11 +666,15 @@ def cheek_to_cam(numbers: Numbers) -> Value:
 def _in_fork(numbers: Numbers) -> Gaps:
     """Gaps of cheeks and bridge from roller and cam, m."""
     inner, radius = _inner_face(numbers), numbers["roller.radius"]
-    beside_cam = 0.5 * numbers[_HEIGHT] > radius
+    to_cam = np.where(0.5 * numbers[_HEIGHT] > radius, cheek_to_cam(numbers), np.inf)
+    groove = numbers.known_case.cam.groove
+    if groove is not None:  # the roller at the floor, above its fillet
+        middle = groove.depth - groove.corner_radius - 0.5 * numbers["roller.width"]
+        to_cam = np.asarray(inner - middle)
     return {
         "cheek to roller": inner - 0.5 * numbers["roller.width"],
         "bridge to roller": numbers[_LENGTH] - radius,
-        "cheek to cam": np.where(beside_cam, cheek_to_cam(numbers), np.inf),
+        "cheek to cam": to_cam,
     }
 
 

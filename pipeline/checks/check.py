@@ -309,6 +309,8 @@ class Declaration:
     moved_by_tolerance : bool  its demand differs at a tolerance corner
     error : str                origin of the error bar of the demand
     needs : str                kind of follower, see `Kind`; "": any
+    closed_by : str            what keeps the follower on the cam: "force", of a spring or weight,
+                               or "form", of a groove; "": either
     part : str                 part of the scope that it judges; "": cam or follower
     if_limited : bool          it is made only where the case sets its limit
     within : tuple             parts and subjects of the scope, without all of which it is not
@@ -354,6 +356,7 @@ class Declaration:
     moved_by_tolerance: bool
     error: Error
     needs: Kind
+    closed_by: Literal["", "force", "form"]
     part: PartName | Literal[""]
     within: tuple[ScopeName, ...]
     if_limited: bool
@@ -415,6 +418,8 @@ class Declaration:
         parts that it describes within the scope.
         """
         if self.needs not in {"", machine.carrier, *machine.follower.kinds}:
+            return False
+        if self.closed_by not in ("", "form" if machine.cam.pulls else "force"):
             return False
         if self.if_limited and self.limit is not None and machine.limits[self.limit] is None:
             return False
@@ -480,6 +485,7 @@ def check(
     moved_by_tolerance: bool = True,
     error: Error = "sampling",
     needs: Kind = "",
+    closed_by: Literal["", "force", "form"] = "",
     part: PartName | Literal[""] = "",
     within: tuple[ScopeName, ...] = (),
     if_limited: bool = False,
@@ -527,6 +533,7 @@ def check(
             moved_by_tolerance=moved_by_tolerance,
             error=error,
             needs=needs,
+            closed_by=closed_by,
             part=part,
             within=within,
             if_limited=if_limited,

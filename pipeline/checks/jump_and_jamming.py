@@ -88,6 +88,7 @@ def _required(cam: LoadedCam) -> Array:
     rests_on="",
     values=given.LOADS,
     levers=levers.CONTACT,
+    closed_by="force",
     page="Follower",
 ).measured(
     "forces",
@@ -122,6 +123,7 @@ def contact_force_margin(cam: LoadedCam) -> Array:
     rests_on="",
     values=given.MOTION,
     levers=levers.CONTACT,
+    closed_by="force",
     page="Follower",
 ).measured(
     "forces",
@@ -281,6 +283,7 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     load_cases=SPEED_RANGE,
     values=given.MOTION,
     levers=levers.CONTACT,
+    closed_by="force",
     page="Follower",
 ).measured(
     "forces",
@@ -333,6 +336,7 @@ def _force_at(cam: LoadedCam, speed: Value) -> Array:
     load_cases=SPEED_RANGE,
     values=given.LOADS,
     levers=levers.CONTACT,
+    closed_by="force",
     page="Follower",
 ).measured(
     "forces",
@@ -367,6 +371,7 @@ def contact_at_overspeed(cam: LoadedCam) -> Array:
     load_cases=SPEED_RANGE,
     values=(*given.LOADS, *given.SURGE),
     levers=levers.CONTACT,
+    closed_by="force",
     page="Follower",
 )
 def contact_over_speed(solution: Solution) -> Demand:
@@ -404,6 +409,7 @@ def contact_over_speed(solution: Solution) -> Demand:
         "roller.bearing.ring.*",
     ),
     levers=levers.CONTACT,
+    closed_by="force",
     page="Follower",
 )
 def elastic_contact(solution: Solution) -> Demand:

@@ -57,6 +57,7 @@ def _gap_left(cam: LoadedCam, limit: float) -> Array:
     part="guides",
     load_cases=NONE,
     levers=(levers.one("follower.overhang_at_max_lift", most=2.0),),
+    closed_by="force",
     page="Guides",
 ).measured(
     "contour",
@@ -89,6 +90,7 @@ cam_radius = check(
     lift_can_help=True,
     load_cases=NONE,
     levers=(levers.one("cam.prime_radius", -1, 2.0), *levers.SPRING, *levers.GENTLER),
+    closed_by="force",
     page="Cam",
 ).measured("contour", deviation=1e-4, kept=Kept(factor_max=FACTOR_MAX))(contour_radius)
 
@@ -138,6 +140,7 @@ def _waves_in_words(demand: Demand, solution: Solution) -> Demand:
     method="m a (2 pi v/lambda)^2 of sine waves",
     values=(*given.LOADS, "cam.process", "cam.waviness_*", "cam.profile_tolerance"),
     levers=(levers.one("cam.profile_tolerance", -1, 10.0), levers.MASS, *levers.SPRING),
+    closed_by="force",
     page="Cam",
 ).measured(
     "angles",

@@ -57,6 +57,8 @@ def _data(
         machine = solution.machine
         if springs and (solution.case.spring.kind or "coil") not in springs:
             return None
+        if springs and solution.case.spring.absent:
+            return None
         if coverable is not None:
             if not machine.scope.covers(coverable):
                 return None

@@ -493,7 +493,9 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
         missing += lacks
     elif bar is not None:
         masses["arm"] = bar.mass_at_end(parts.inset)
-    if design is not None:
+    if machine.spring.absent:
+        masses["spring"] = 0.0
+    elif design is not None:
         masses["spring"] = machine.spring_mass
     elif machine.spring.shape is None and machine.scope.covers("spring"):
         missing.append("spring.design")

@@ -105,6 +105,7 @@ traction_demand = check(
     symbols=_ROLLING,
     reason="a roller that slips wears the track, and its endurance is that of sliding",
     values=given.TRACTION,
+    closed_by="force",
     page="Contact",
 ).measured(
     "angles",
@@ -128,6 +129,7 @@ traction_reserve = check(
     reason="a reserve against a friction coefficient lower than stated; grip itself is"
     " traction_demand",
     values=given.TRACTION,
+    closed_by="force",
     page="Contact",
 ).measured(
     "angles",

@@ -127,6 +127,30 @@ class BalanceHole(Part):
     """least wall between the hole and contour, bore or keyway"""
 
 
+Closure = Literal["spring", "groove"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CamGroove(Part):
+    """Groove in the face of a disc, in which the roller runs between two walls."""
+
+    table: ClassVar[str] = "cam.groove"
+    source: TableSource = NO_SOURCE
+
+    clearance: Annotated[
+        float, In("mm", above=0, at_most=1), Known("drawing, tolerance chain", "0.02 mm")
+    ]
+    """width of the groove less the diameter of the roller"""
+    depth: Annotated[Length, Known("drawing", "12 mm")]
+    """depth of the groove along the shaft"""
+    corner_radius: Annotated[float, In("mm", at_least=0, at_most=100), Known("cutter", "1 mm")] = (
+        0.0
+    )
+    """fillet between the walls and the floor of the groove"""
+    outer_radius: Annotated[Length, Known("drawing", "100 mm")]
+    """radius of the disc around the groove"""
+
+
 @dataclass(frozen=True, kw_only=True)
 class CamBody(Part):
     """The cam disc."""
@@ -136,8 +160,13 @@ class CamBody(Part):
     defaults: ClassVar[Mapping[str, str]] = {
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
         "waviness_height": "of the process at the wavelength, within the profile tolerance",
+        "groove": "a spring keeps the follower on the cam",
     }
 
+    closure: Annotated[Closure, Known("own choice", "groove")] = "spring"
+    """what keeps the follower on the cam: the force of a spring, or the outer wall of a groove"""
+    groove: Annotated[CamGroove | None, Used("contour, cycle, checks of the groove")] = None
+    """groove of a roller, with `closure` groove"""
     prime_radius: Annotated[Length, Known("drawing, or own choice", "60 mm")]
     """base circle radius plus roller radius; of a flat face the base circle radius"""
     offset: Annotated[float, In("mm", above=-10_000, below=10_000), Known("drawing")] = 0.0
@@ -182,6 +211,11 @@ class CamBody(Part):
     def line_width(self) -> float:
         """Maximum width of the line contact, m: without the ends."""
         return flat_width(self.width, self.end)
+
+    @property
+    def pulls(self) -> bool:
+        """Whether the cam pulls the follower as well, so that no force need close the contact."""
+        return self.closure == "groove"
 
     @property
     def held_radius(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,8 @@ class ContactPair:
     cam: Elastic
     follower: FollowerBody
     counter_hole: HoleLike | None = None
+    wall: Callable[[Array], Array] | None = None
+    """of a groove: cam angles (...) -> 1 where the inner wall carries, -1 the outer"""
 
     @property
     def contact_modulus(self) -> float:
@@ -46,7 +49,11 @@ class ContactPair:
         ContactError
             If the contour is undercut: 1/R = 1/(r_r (1 - r_r kappa_p)) is positive elsewhere.
         """
-        curvature = self.contour.follower_curvature + self.contour.curvature(theta)
+        if self.wall is None:
+            curvature = self.contour.follower_curvature + self.contour.curvature(theta)
+        else:
+            at = np.asarray(theta, dtype=float)
+            curvature = 1.0 / self.contour.require_roller().relative_radius(at, self.wall(at))
         if not (curvature > 0).all():
             worst = float(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))])
             name, place = self.follower.name, shown(worst, "deg")

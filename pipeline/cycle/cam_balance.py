@@ -9,7 +9,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
-from camwright.geometry.errors import GeometryError
+from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.form_closure import Groove
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.follower.camshaft_loads import (
@@ -18,6 +19,7 @@ from camwright.pipeline.follower.camshaft_loads import (
     ShaftLoads,
     Unbalance,
     counter_hole,
+    disc_unbalance,
     greatest_hole,
     rotating_force,
     shaft_loads,
@@ -97,7 +99,29 @@ def balance(cam: CamBody, contour: Contour) -> Balance:
 def undrilled(cam: CamBody, contour: Contour) -> Unbalance:
     """Unbalance and mass of the cam with bore and keyway, without a counter-hole."""
     density = cam.material.density
-    return unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
+    if cam.groove is None:
+        return unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
+    walls = groove_of(cam, contour)
+    area, moment = walls.section()
+    share = cam.groove.depth / cam.width
+    disc = disc_unbalance(cam.groove.outer_radius, cam.bore_radius, cam.keyway, cam.width, density)
+    left = disc.area - share * area, disc.moment - share * moment
+    mass = density * cam.width
+    return Unbalance(*left, mass * left[0], mass * float(np.hypot(*left[1])))
+
+
+def groove_of(cam: CamBody, contour: Contour) -> Groove:
+    """Groove of a cam around the path of its roller.
+
+    Raises
+    ------
+    InputError
+        If the cam has none.
+    """
+    if cam.groove is None:
+        raise InputError("cam.groove", "missing", "given for its checks")
+    track = contour.require_roller()
+    return Groove(track.pitch, track.roller_radius, cam.groove.clearance)
 
 
 def design_mass(case: Case, contour: Contour) -> float:

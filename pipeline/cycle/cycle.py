@@ -29,6 +29,7 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.finite_length.length_certificate import EndCorrection
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
+from camwright.pipeline.cycle.crossover_history import WallImpact, impacts
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
 from camwright.pipeline.cycle.length_history import LengthHistory, TurnOfLine, length_histories
 from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, shaft_of, spring_surge
@@ -155,7 +156,7 @@ class Cycle(Tabled):
             off = getattr(solved, name) - form[::BETWEEN]
             return np.asarray(form + np.interp(theta, self.theta, off, period=FULL_TURN))
 
-        return replace(closed, **{name: corrected(name) for name in _ALONG})
+        return replace(closed, held=closed.held, **{name: corrected(name) for name in _ALONG})
 
     @cached_property
     def end(self) -> tuple[float, str] | None:
@@ -185,8 +186,9 @@ class Cycle(Tabled):
         if surge is None:
             return loads.normal_force
         axial = axial_of_surge(self.contour.pitch, self.machine.system, loads, surge)
-        added = axial / (loads.lever * np.cos(loads.pressure_angle))
-        return np.asarray(np.maximum(loads.normal_force + added, 0.0))
+        added = loads.wall * axial / (loads.lever * np.cos(loads.pressure_angle))
+        surged = loads.normal_force + added
+        return np.abs(surged) if loads.held else np.asarray(np.maximum(surged, 0.0))
 
     @property
     def cam_speed(self) -> float:
@@ -306,6 +308,11 @@ class Cycle(Tabled):
         return elastic_history(
             turn.machine, lift, turn.loads.lift, turn.driven.speed, flights=flights
         )
+
+    @KeptResult
+    def impacts(self) -> tuple[WallImpact, ...]:
+        """Landings of the roller in its groove; none of a cam that does not pull."""
+        return impacts(self.machine, self.contour)
 
     @property
     def shares(self) -> GuideShares:

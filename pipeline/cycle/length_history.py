@@ -46,6 +46,7 @@ from camwright.pipeline.cycle.line_tilt import (
 from camwright.pipeline.follower.follower_tilt import TiltingLoads
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 from camwright.pipeline.follower.shaft_strength import slope_of
+from camwright.pipeline.follower.spring import NO_FORCE
 
 _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
 _MOMENT_LIMIT_ROUND_OFF = 1e-9  # of the moment at which the contact tips over
@@ -197,7 +198,7 @@ class TurnOfLine(NamedTuple):
     def rows(self) -> NDArray[np.intp]:
         """Angles with contact."""
         radius = self.contact.relative_radius
-        return np.flatnonzero(np.isfinite(radius) & (radius > 0) & (self.force > 0))
+        return np.flatnonzero(np.isfinite(radius) & (radius > 0) & (self.force > NO_FORCE))
 
     @property
     def tilt(self) -> LineTilt:

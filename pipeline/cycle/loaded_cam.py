@@ -27,7 +27,7 @@ from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_sq
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import gear_force
-from camwright.pipeline.follower.follower_forces import levers
+from camwright.pipeline.follower.follower_forces import levers, wall_of
 from camwright.pipeline.follower.pivot_forces import (
     FRICTION,
     ArmPivot,
@@ -85,6 +85,17 @@ def _friction(numbers: Numbers) -> Value:
     """Friction coefficient of a face on the cam; 0 where the case has none."""
     friction = numbers.get("follower.face.friction")
     return 0.0 if friction is None else friction
+
+
+def on_wall(motion: Motion, wall: Array) -> Motion:
+    """Motion of a roller on the wall of a groove that carries: 1 the inner, -1 the outer.
+
+    The outer wall is the parallel curve at the negative radius of the roller, which rolls on it in
+    the other direction: contact, undercut factor and spin are those of that radius.
+    """
+    if not isinstance(motion, RollerMotion):
+        raise GeometryError("the follower in the groove is no roller of a stem")
+    return replace(motion, size=wall * motion.size)
 
 
 def roller_of(path: Motion) -> RoundMotion:
@@ -187,6 +198,12 @@ class LoadedCam:
     def motion(self) -> Motion:
         """Motion of the follower on the unloaded cam."""
         return motion_of(self.jet, self.numbers)
+
+    @property
+    def pulls(self) -> bool:
+        """Whether the cam pulls the follower, too, as the outer wall of a groove does."""
+        case = self.numbers.case
+        return case is not None and case.cam.pulls
 
     @property
     def least_radius(self) -> Value:
@@ -421,10 +438,18 @@ class LoadedCam:
         index: Array = on_a * rubbing.a + on_b * rubbing.b
         return index
 
+    @cached_property
+    def wall(self) -> Array:
+        """Wall that carries: 1 the inner, which pushes outward, -1 the outer of a groove."""
+        return wall_of(self.required, held=self.pulls)
+
     @property
     def direction(self) -> Array:
-        """Direction of the friction of the guides: 1 on the rise, -1 on the return."""
-        return np.asarray(np.sign(np.real(self.slope)))
+        """Direction of the friction of the guides: 1 where the cam drives the follower, else -1.
+
+        Of a cam that does not pull 1 on the rise, -1 on the return.
+        """
+        return np.asarray(np.sign(np.real(self.slope)) * self.wall)
 
     @property
     def jam_worst(self) -> Array | None:
@@ -453,7 +478,7 @@ class LoadedCam:
     @cached_property
     def normal(self) -> Array:
         """Contact force, N."""
-        return self.axial * self.motion.gain
+        return self.axial * self.wall * self.motion.gain
 
     @property
     def surge(self) -> Value:
@@ -465,7 +490,7 @@ class LoadedCam:
         """Contact force with the surge of the spring, N."""
         if self.pivot is not None:
             return self._about(self.pivot, self.surge).axial * self.motion.gain
-        return (self.axial + self.surge / self.share) * self.motion.gain
+        return (self.axial + self.surge / self.share) * self.wall * self.motion.gain
 
     @cached_property
     def torque(self) -> Array:
@@ -559,7 +584,7 @@ class LoadedCam:
         """p0^2 by half-planes at an undercut factor of 1, Pa^2."""
         line_load = self.normal / self.numbers["contact.width"]
         modulus = self.numbers["contact.modulus"]
-        return peak_pressure_square(line_load, 1.0 / self.motion.size, modulus)
+        return peak_pressure_square(line_load, 1.0 / (self.wall * self.motion.size), modulus)
 
     @cached_property
     def p0(self) -> Array:
@@ -576,7 +601,8 @@ class LoadedCam:
         """Half-width of the contact (..., n), m, less where the line has a greater pressure than in
         plane strain.
         """
-        numbers, radius = self.numbers, self.motion.size * (1.0 - self.motion.sharpness)
+        numbers, size = self.numbers, self.wall * self.motion.size
+        radius = size * (1.0 - self.motion.sharpness)
         force = np.where(np.real(self.normal) < _LEAST_FORCE, _LEAST_FORCE, self.normal)
         radius = np.where(np.real(radius) < _LEAST_RADIUS, _LEAST_RADIUS, radius)
         load = force / numbers["contact.width"]

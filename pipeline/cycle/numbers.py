@@ -272,7 +272,8 @@ def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
     if shaft is None:
         return None
     if thick:
-        outer = outer + numbers["spring.travel_max"]
+        disc = numbers.get("cam.groove.outer_radius")
+        outer = outer + numbers["spring.travel_max"] if disc is None else disc
     return FittedRing(numbers["cam.bore_radius"], outer, case.cam.material, shaft)
 
 

@@ -157,7 +157,7 @@ def part_loads(
     friction = turn.friction
     spring = machine.spring.design
     amplitude, mean, correction = _ring(machine, contour, loads, contact_width)
-    motion = machine.follower.rolling(contour, loads.theta, machine.cam_speed)
+    motion = machine.follower.rolling(contour, loads, machine.cam_speed)
     pair = machine.guides
     nominal, worst = machine.guide_friction.nominal, friction.greatest
     return PartLoads(
@@ -283,6 +283,8 @@ def _ring(
         return None, None, None
     force, curvature = loads.normal_force, contour.curvature(loads.theta)
     radius = 1.0 / (1.0 / machine.roller.radius + curvature)
+    if loads.held:
+        radius = contour.require_roller().relative_radius(loads.theta, loads.wall)
     bending = ring.bending
     return (
         bending.stress_amplitude * force,

@@ -191,9 +191,8 @@ def rolling_history(
 
     Without the meshed bodies the stresses are those of half-planes, and there is no bore stress.
     """
-    contour, theta, force = pair.contour, loads.theta, np.asarray(loads.normal_force)
-    follower = machine.follower
-    motion = follower.motion(contour, contact, force, theta, machine.cam_speed)
+    contour, theta, follower = pair.contour, loads.theta, machine.follower
+    motion = follower.motion(contour, contact, loads, machine.cam_speed)
     shear = mises = None
     if motion.traction_share is not None and follower.friction is not None:
         more = rolling_increase(pair.cam.poisson, follower.friction, motion.traction_share)

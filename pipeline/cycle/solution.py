@@ -11,7 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
-from camwright.geometry.errors import CamError
+from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.extrema import TIE, first_greatest
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
@@ -36,7 +36,7 @@ from camwright.pipeline.contact.finite_length.length_certificate import (
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, loaded_cam, two_scale_history
 from camwright.pipeline.cycle.certificate_angles import begun, length_loads, positions_to_certify
-from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
 from camwright.pipeline.cycle.contact_store import (
     NOT_STORED,
     ContactStore,
@@ -282,6 +282,7 @@ def solved_turns(
     error_bars : bool         compute the errors by sampling and by every second crank angle
     """
     states = tuple(each.machine for each in turns)
+    _require_depth(states[0], tier)
     pair = contact_pair(states[0], contour)
     mesh = bodies = None
     if body is None:
@@ -296,12 +297,12 @@ def solved_turns(
         Cycle(
             each,
             contour,
-            pair,
+            loaded,
             bodies,
-            _contact(pair, bodies, each, body, store, progress),
+            _contact(loaded, bodies, each, body, store, progress),
             error_bars=error_bars,
         )
-        for each in turns
+        for each, loaded in ((each, under_load(pair, each.loads)) for each in turns)
     )
     rubbing = {c.load_case: c.loads.rubbing for c in cycles}
     rubbing = {name: replace(each, theta=each.theta - advance) for name, each in rubbing.items()}
@@ -314,6 +315,18 @@ def solved_turns(
         return solved
     halved = tuple(_halved(each) for each in states)
     return replace(solved, crank_speed_halved=SpeedRipple(halved, pitch, rubbing))
+
+
+def _require_depth(machine: Machine, tier: Tier) -> None:
+    """Refuse the contact by finite elements of a groove, whose walls are not meshed.
+
+    Raises
+    ------
+    InputError
+    """
+    if machine.cam.pulls and tier >= Tier.CYCLE:
+        limit = '"spring" for the contact by finite elements; of a groove the depth is preview'
+        raise InputError("cam.closure", machine.cam.closure, limit)
 
 
 def _halved(machine: Machine) -> Machine:

@@ -15,7 +15,7 @@ from camwright.geometry.lift import Jet
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, on_wall
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.follower.follower_forces import Loads
@@ -119,6 +119,15 @@ class ForcesCam(ContourCam):
             loads=loads,
             least_spring_force=cycle.least_spring_force,
         )
+
+    @cached_property
+    def motion(self) -> Motion:
+        unloaded = super().motion
+        return on_wall(unloaded, self.wall) if self.pulls else unloaded
+
+    @property
+    def wall(self) -> Array:
+        return self.loads.wall
 
     @property
     def slope(self) -> Array:

@@ -31,6 +31,7 @@ from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import FaceBody
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.flat_face_motion import FaceSliding, face_motion
+from camwright.pipeline.follower.follower_forces import Loads
 from camwright.pipeline.follower.follower_kind import ElasticParts, MovingParts, SurfaceMotion
 from camwright.pipeline.follower.stem_beam import Stem
 
@@ -179,7 +180,7 @@ class FollowerFace(Part):
     def pin_stress(self, force: Array, moment: Array) -> None:
         """None: a face has no pin; see `FollowerKind`."""
 
-    def rolling(self, contour: Contour, theta: Array, speed: float) -> None:
+    def rolling(self, contour: Contour, loads: Loads, speed: float) -> None:
         """None: the face slides."""
 
     def contour(self, lift: Lift, cam: CamBody, arm: FollowerArm | None = None) -> Contour:
@@ -222,10 +223,11 @@ class FollowerFace(Part):
         return FaceBody(self.width, self.thickness, held, elastic, self.radius, part=part)
 
     def motion(
-        self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
+        self, contour: Contour, contact: ContactHistory, loads: Loads, speed: float
     ) -> SurfaceMotion:
         """Sliding of the face; see `FollowerKind`."""
-        motion = face_motion(contour.pitch, speed, theta)
+        motion = face_motion(contour.pitch, speed, loads.theta)
+        force = loads.normal_force
         return SurfaceMotion(
             motion.entrainment,
             traction_share=(force > 0).astype(float),

@@ -108,6 +108,7 @@ class FollowerSystem:
     rubbing : Rubbing               of guides of finite length, see `guided_loads`; None: of
                                     point supports
     pivot : ArmPivot                of an arm; None: of none, or of one without friction and weight
+    held : bool                     the cam pulls the follower, too, as by the walls of a groove
 
     Raises
     ------
@@ -127,6 +128,7 @@ class FollowerSystem:
     face_friction: float = 0.0
     rubbing: Rubbing | None = None
     pivot: ArmPivot | None = None
+    held: bool = False
 
     def __post_init__(self) -> None:
         """Refuse a spacing that is not positive, and a negative mass, overhang, friction or
@@ -202,7 +204,9 @@ class Loads(Displayed):
     the axial force over it. `travel`: that direction from the follower axis, counter-clockwise,
     rad, of an arm; 0 of a stem. `pivot_load` (2, n): of the arm on its pivot, along and across the
     travel, and `pivot_friction` the moment of its friction over the length of the arm, a magnitude;
-    0 of a stem. With a pivot `jam_index` is that over the axial force.
+    0 of a stem. With a pivot `jam_index` is that over the axial force. `held`: the cam
+    pulls the follower, too: the axial force is negative where it does, the normal force its
+    magnitude.
     """
 
     theta: Array
@@ -237,9 +241,11 @@ class Loads(Displayed):
     pressing: Array = field(default_factory=lambda: readonly(1.0))
     pivot_load: Array = field(default_factory=lambda: readonly(np.zeros((2, 1))))
     pivot_friction: Array = field(default_factory=lambda: readonly(0.0))
+    held: bool = False
 
     def __post_init__(self) -> None:
-        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+        arrays = (name for name in self.__dataclass_fields__ if name != "held")
+        freeze(self, **{name: getattr(self, name) for name in arrays})
 
     @property
     def rubbing(self) -> Rubbing:
@@ -280,22 +286,33 @@ class Loads(Displayed):
     @property
     def frictionless_force(self) -> Array:
         """Axial force without guide friction, N; 0 where the follower leaves the cam."""
-        return np.asarray(np.maximum(self.required_force, 0.0))
+        required = self.required_force
+        return required if self.held else np.asarray(np.maximum(required, 0.0))
+
+    @property
+    def wall(self) -> Array:
+        """Wall of the cam that carries: 1 the inner, which pushes outward, -1 the outer."""
+        return wall_of(self.required_force, held=self.held)
+
+    @property
+    def driving_slope(self) -> Array:
+        """Slope of the lift, m/rad, > 0 where the cam drives the follower against friction."""
+        return np.asarray(self.lift_slope * self.wall)
 
     @property
     def separated(self) -> NDArray[np.bool_]:
         """Where the follower has no contact with the cam (n,), bool; the forces are zero."""
-        return np.asarray(self.normal_force <= 0.0)
+        return np.asarray((self.normal_force <= 0.0) & (not self.held))
 
     @property
     def jammed(self) -> NDArray[np.bool_]:
-        """Where the follower jams at any force (n,), bool; by its guides where it moves outward."""
-        return np.asarray(np.sign(self.lift_slope) * self.jam_index + self.lock >= 1.0)
+        """Where the follower jams at any force (n,), bool; in guides where the cam drives it."""
+        return np.asarray(np.sign(self.driving_slope) * self.jam_index + self.lock >= 1.0)
 
     @property
     def share(self) -> Array:
         """Ratio of the axial force without friction to that with it, see `share_left`."""
-        return share_left(self.lift_slope, self.jam_index, self.lock)
+        return share_left(self.driving_slope, self.jam_index, self.lock)
 
     @property
     def ends(self) -> LoadEnds:
@@ -393,6 +410,16 @@ def axial_of_surge(
     return pivot.balanced(whole_force, pressed, pull, direction).axial - loads.axial_force
 
 
+def wall_of(required: Values, *, held: bool) -> Array:
+    """Wall of the cam that carries a required axial force (...): 1 the inner, -1 the outer.
+
+    Of a cam that does not pull the inner one, its only one, everywhere. Guide friction does not
+    move the change of the wall: it is in proportion to the force.
+    """
+    pulls = np.real(required) < 0.0 if held else np.zeros(np.shape(required), dtype=bool)
+    return np.where(pulls, -1.0, 1.0)
+
+
 def share_left(lift_slope: Array, jam_index: Array, lock: Values | float = 0.0) -> Array:
     """Ratio of the axial force without friction to that with it, at least `JAM_FLOOR`.
 
@@ -482,8 +509,9 @@ def follower_loads(
     on_points = push.on_points(*levers(overhang, system.guide_spacing))
     rubbing_a, rubbing_b = system.rubbing_factors(push, overhang, theta)
     jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.side_factor
-    slide = pitch.slide(theta, system.face_friction)
-    axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index, slide.lock)
+    slide, wall = pitch.slide(theta, system.face_friction), wall_of(demand, held=system.held)
+    carried = demand if system.held else np.maximum(demand, 0.0)
+    axial_force = carried / share_left(slope * wall, jam_index, slide.lock)
     travel, pivot = pitch.travel(theta), system.pivot
     pivot_load, pivot_friction = np.zeros((2, theta.size)), np.zeros(theta.size)
     if pivot is not None:
@@ -492,7 +520,7 @@ def follower_loads(
         held = pivot.clipped(demand, pressed, pull, np.sign(slope), JAM_FLOOR)
         axial_force, jam_index, pivot_friction = held.axial, held.jam_index, held.friction
         pivot_load = np.stack(pressed.total(axial_force, pull))
-    side_load = axial_force * push.side_factor
+    side_load = axial_force * wall * push.side_factor
     friction_a = system.friction_a * rubbing_a * side_load
     friction_b = system.friction_b * rubbing_b * side_load
     sliding = axial_force * slide.torque
@@ -512,7 +540,7 @@ def follower_loads(
         applied_force=applied_force,
         inertia_force=inertia_force,
         axial_force=axial_force,
-        normal_force=axial_force / (slide.lever * np.cos(pressure_angle)),
+        normal_force=axial_force * wall / (slide.lever * np.cos(pressure_angle)),
         tangential_force=axial_force * push.side,
         friction_force_a=friction_a,
         friction_force_b=friction_b,
@@ -533,6 +561,7 @@ def follower_loads(
         pressing=np.asarray(slide.pressing),
         pivot_load=pivot_load,
         pivot_friction=pivot_friction,
+        held=system.held,
     )
 
 
@@ -549,9 +578,9 @@ def torque_on_cam(
     """
     still = follower_loads(pitch, system, 0.0, theta)
     slope, lift_d2 = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
-    closing = still.closing_force
+    closing, jam, lock = still.closing_force, still.jam_index, still.lock
     slide = pitch.slide(theta, system.face_friction)
-    share, arm = still.share, slope + slide.torque
+    arm = slope + slide.torque
     pressed, external = Pressed.of(slide), system.external.at(theta)
 
     def torque(speed: Array, cam_acceleration: Array) -> Array:
@@ -560,7 +589,8 @@ def torque_on_cam(
         inertia_force = system.mass * acceleration
         viscous_force = system.viscous_damping * slope * speed
         demand = closing + inertia_force + viscous_force
-        axial = np.maximum(demand, 0.0) / share
+        share = share_left(slope * wall_of(demand, held=system.held), jam, lock)
+        axial = (demand if system.held else np.maximum(demand, 0.0)) / share
         if system.pivot is not None:
             pull = system.pivot.pull(
                 still.spring_force, external, still.travel, slope * speed, acceleration

@@ -18,6 +18,7 @@ from camwright.pipeline.contact.follower_body import FollowerBody
 from camwright.pipeline.contact.traction import Drag, RollingContact
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
+from camwright.pipeline.follower.follower_forces import Loads
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls
 from camwright.pipeline.follower.roller_motion import RollingRoller
 from camwright.pipeline.follower.stem_beam import Stem
@@ -168,7 +169,7 @@ class FollowerKind(Protocol):
         """Mean turns of the part per cam turn, from its path speed per cam angle, m/rad."""
         ...
 
-    def rolling(self, contour: Contour, theta: Array, speed: float) -> RollingRoller | None:
+    def rolling(self, contour: Contour, loads: Loads, speed: float) -> RollingRoller | None:
         """Motion without slip; None without rolling. Arguments: see `motion`."""
         ...
 
@@ -194,14 +195,13 @@ class FollowerKind(Protocol):
         ...
 
     def motion(
-        self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
+        self, contour: Contour, contact: ContactHistory, loads: Loads, speed: float
     ) -> SurfaceMotion:
         """Motion of the surfaces in the contact.
 
         Parameters
         ----------
-        force : array (n,)   normal force, N, at the angles
-        theta : array (n,)   equal cam angles of a turn, rad
+        loads : Loads        at equal cam angles of a turn
         speed : float        of the cam, rad/s
         """
         ...

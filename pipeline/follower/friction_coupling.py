@@ -132,8 +132,10 @@ def guided_strokes(
     for each in points:
         require_fit(stem, guides, each.overhang, knots)
     way = _joined([Push.of(s.pitch, s.system, s.theta) for s in strokes])
-    slope = np.concatenate([each.lift_slope for each in points])
-    force = np.concatenate([each.frictionless_force for each in points])
+    wall = np.concatenate([each.wall for each in points])
+    slope = np.concatenate([each.driving_slope for each in points])
+    required = np.concatenate([each.frictionless_force for each in points])
+    force = required * wall  # the guides are alike on both sides
     lock = np.concatenate([np.broadcast_to(each.lock, each.theta.shape) for each in points])
     free = force / share_left(slope, np.zeros_like(slope), lock)
     sizes = [s.theta.size for s in strokes]
@@ -148,7 +150,7 @@ def guided_strokes(
 
     outward = slope > 0.0
     high = np.where(outward, force / JAM_FLOOR, free)
-    on_points = np.concatenate([each.axial_force for each in points])
+    on_points = np.concatenate([each.axial_force for each in points]) * wall
     low, start = np.where(outward, free, 0.0), np.where(outward, free, on_points)
     _, rounds = balanced(mapping, low, high, start)
     a, b = bores.last_factors
@@ -170,10 +172,10 @@ def guided_strokes(
         guides,
         np.concatenate([each.end_moment for each in loads]),
         knots=knots,
-        start=bores.solution,
+        start=(bores.pushes * wall, bores.rigid * wall),
     )
     return tuple(
-        _guided(stroke.system, each, reactions.part(span.start, span.stop), force[span], rounds)
+        _guided(stroke.system, each, reactions.part(span.start, span.stop), required[span], rounds)
         for stroke, each, span in zip(strokes, loads, spans, strict=True)
     )
 
@@ -270,11 +272,6 @@ class _Bores:
         self.pushes, self.rigid = np.zeros((size, count)), np.zeros((2, count))
         self.started = False
 
-    @property
-    def solution(self) -> tuple[Array, Array]:
-        """Last solution at every position, to start another."""
-        return self.pushes, self.rigid
-
     def factors(self, push: Array, at: NDArray[np.intp]) -> Array:
         """Rubbing loads of guides A and B over axial force and side-load factor (2, k), at axial
         forces `push` (k,), N, of the positions numbered `at` (k,); those of point supports where
@@ -305,5 +302,5 @@ def _residual(
     rubs = np.sign(loads.lift_slope) * (rubs + loads.pivot_friction)
     miss = loads.axial_force - rubs - loads.lock * loads.axial_force - free
     bounded = loads.share <= JAM_FLOOR
-    push = np.where(bounded, 0.0, loads.axial_force)
+    push = np.where(bounded, 0.0, loads.axial_force * loads.wall)
     return np.divide(np.abs(miss), push, out=np.zeros_like(miss), where=push > 0.0)

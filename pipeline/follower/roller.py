@@ -22,6 +22,7 @@ from camwright.pipeline.contact.follower_body import FollowerBody, RollerBody
 from camwright.pipeline.contact.oil_film import entrainment_speed
 from camwright.pipeline.contact.traction import Drag, RollingContact, ring_inertia, rolling_contact
 from camwright.pipeline.follower.arm import FollowerArm
+from camwright.pipeline.follower.follower_forces import Loads
 from camwright.pipeline.follower.follower_kind import ElasticParts, MovingParts, SurfaceMotion
 from camwright.pipeline.follower.follower_stiffness import (
     bearing_compliance,
@@ -32,6 +33,7 @@ from camwright.pipeline.follower.pin_strength import bending_per_moment, pin_mom
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls, ring_on_balls, solid_reason
 from camwright.pipeline.follower.roller_motion import RollingRoller, roller_motion
 from camwright.pipeline.follower.roller_parts import Bearing, Fork, Pin
+from camwright.pipeline.follower.spring import NO_FORCE
 from camwright.pipeline.follower.stem_beam import Stem
 
 _NO_SLIP = 1e6  # friction coefficient of rolling without slip
@@ -229,10 +231,12 @@ class Roller(Part):
         """
         pin, fork, ring, solved = self.pin, self.fork, self.bearing.ring, self.ring(width, preload)
         cheeks = None if fork is None or pin is None else fork_compliance(fork, pin)
+        # without a preload as stiff as at the static rating, which the outer ring has as well
+        load = self.bearing.C0 or preload if preload <= NO_FORCE else preload
         compliances = {
             "bearing": None
             if ring is None or solved is None
-            else bearing_compliance(solved, ring, preload),
+            else bearing_compliance(solved, ring, load),
             "pin": None if pin is None else pin_compliance(pin, self.width),
             "fork": cheeks,
         }
@@ -243,9 +247,10 @@ class Roller(Part):
         """See `FollowerKind`."""
         return float(np.mean(np.abs(rolling_share(np.asarray(path), self.radius))))
 
-    def rolling(self, contour: Contour, theta: Array, speed: float) -> RollingRoller:
-        """Rolling without slip; see `FollowerKind`."""
-        return roller_motion(contour.require_roller().pitch, self.radius, speed, theta)
+    def rolling(self, contour: Contour, loads: Loads, speed: float) -> RollingRoller:
+        """Rolling without slip on the wall that carries; see `FollowerKind`."""
+        pitch = contour.require_roller().pitch
+        return roller_motion(pitch, self.radius, speed, loads.theta, wall=loads.wall)
 
     def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:  # noqa: ARG002
         """Contact body: roller held at its hub, or outer ring on balls; see `FollowerKind`."""
@@ -255,12 +260,12 @@ class Roller(Part):
         return RollerBody(self.radius, self.hub_radius, Elastic(self.material.E, self.material.nu))
 
     def motion(
-        self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
+        self, contour: Contour, contact: ContactHistory, loads: Loads, speed: float
     ) -> SurfaceMotion:
-        """Rolling over the turn with creep, or without a friction coefficient free of slip; force
-        (n,), N, theta (n,), rad, speed of the cam, rad/s. See `FollowerKind`.
+        """Rolling over the turn with creep, or without a friction coefficient free of slip; speed
+        of the cam, rad/s. See `FollowerKind`.
         """
-        motion = self.rolling(contour, theta, speed)
+        motion, force = self.rolling(contour, loads, speed), loads.normal_force
         driven = self._driven(motion, contact, force, speed)
         loaded = force > 0
         demand = np.abs(driven.demand) / np.where(loaded, force, np.nan)

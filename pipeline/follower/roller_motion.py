@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, Value, Values, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import CentrePath, magnitude
 
@@ -54,13 +54,15 @@ def roller_motion(
     cam_speed: float,
     theta: ArrayLike,
     cam_acceleration: float = 0.0,
+    wall: Value = 1.0,
 ) -> RollingRoller:
     """Spin and rolling speed of a roller without slip.
 
     In the cam frame the roller centre moves along the pitch curve at w |P'| and the roller turns at
     w |P'|/r; relative to a stem it turns at w (|P'| - r)/r, relative to an arm by its own turning
     less. The surface speed through the
-    contact is that of the contact point along the contour, w |P'| (1 - r kappa).
+    contact is that of the contact point along the contour, w |P'| (1 - r kappa). On the outer wall
+    of a groove, -r in place of r, it turns the other way.
 
     Parameters
     ----------
@@ -69,6 +71,7 @@ def roller_motion(
     cam_speed : float          w, rad/s
     theta : array (n,)         rad
     cam_acceleration : float   rad/s2
+    wall : float or array (n,)   1, or -1 on the outer wall of a groove
 
     Returns
     -------
@@ -88,12 +91,12 @@ def roller_motion(
         raise InputError("roller.radius", roller_radius, "> 0 m")
     theta = finite("theta", theta)
     speed = float(finite("cam_speed", cam_speed))
-    motion = pitch.centre_motion(pitch.lift.jet(theta, 2), roller_radius)
+    motion = pitch.centre_motion(pitch.lift.jet(theta, 2), wall * roller_radius)
     stretch, spin_per_turn = motion.path_speed, np.asarray(motion.rolling)
     return RollingRoller(
         theta=theta,
         spin=speed * spin_per_turn,
-        spin_acceleration=speed**2 * motion.slide_slope / roller_radius
+        spin_acceleration=speed**2 * motion.slide_slope / (wall * roller_radius)
         + float(finite("cam_acceleration", cam_acceleration)) * spin_per_turn,
         pitch_speed=speed * stretch,
         rolling_speed=speed * stretch * (1.0 - motion.sharpness),

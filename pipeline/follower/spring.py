@@ -55,6 +55,7 @@ _STRENGTH_DIAMETER = 0.001  # m, of strength_at_1mm
 STATIC_STRENGTH = 0.56  # permissible shear stress over R_m, also at solid length, cold coiled
 DYNAMIC_GAP = 1.5  # minimum gaps of a dynamic load over those of a static one, cold coiled
 ISOTROPIC = 2.6  # E / G at a Poisson ratio of 0.3
+NO_FORCE = 1e-6  # N, of a spring that stands in for none
 DAMPING, LEAST_DAMPING = 0.01, 0.002  # ratio of the surge that a case does not state
 
 Number = TypeVar("Number", float, Array, Value)
@@ -644,6 +645,11 @@ class Spring(Part):
             return self
         stated = {fitted.stated.table.removeprefix("spring."): fitted.stated}
         return replace(self, **stated).with_derived()  # type: ignore[arg-type]
+
+    @property
+    def absent(self) -> bool:
+        """Whether it stands in for no spring, which form closure does without."""
+        return self.preload <= NO_FORCE
 
     @property
     def parts(self) -> dict[str, Part | None]:

@@ -104,6 +104,7 @@ def screen_designs(
     """
     if not 36 <= positions <= 7200:
         raise InputError("positions", positions, "36 to 7200")
+    case.require_force_closure("a screening")
     count = count_of(factors)
     columns = ScreenedDesigns(
         {name: np.full(count, "", dtype=object) for name in ("screen", "governing", "message")}

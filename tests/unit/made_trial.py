@@ -127,6 +127,17 @@ def arm_case(bearing: str = "bush") -> Case:
     return case_of(tables)
 
 
+@cache
+def groove_case() -> Case:
+    """The same case with a groove in place of the spring."""
+    tables = tomllib.loads(CASE_FILE.read_text())
+    del tables["spring"]
+    groove = {"clearance": "0.02 mm", "depth": "12 mm", "outer_radius": "90 mm", "source": "g"}
+    tables["cam"] |= {"closure": "groove", "width": "20 mm", "groove": groove}
+    tables["roller"]["pin"]["mounting"] = "overhung"
+    return case_of(tables)
+
+
 def limits(**values: Any) -> Case:
     """The case with some of its limits replaced."""
     return case(limits=changed(_case().limits, **values))
@@ -461,6 +472,15 @@ def solution(**values: Any) -> Solution:
         crank_speed={"idle": (2.0, 1.0)},
     )
     return changed_solution(plain, **values)
+
+
+@cache
+def in_groove() -> Solution:
+    """A preview of the groove with the harmonic lift, in the load case of the file."""
+    solved = solving.solution(
+        groove_case(), contour(), Tier.PREVIEW, torques={}, positions=POSITIONS
+    )
+    return replace(solved, machines=solved.machines[:1], cycles=solved.cycles[:1])
 
 
 def changed_solution(base: Solution, **values: Any) -> Solution:

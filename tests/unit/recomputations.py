@@ -6,6 +6,7 @@ names the check. Rows of missing data have no demand; `test_part_data` tries the
 
 _ASSEMBLY = "unit/test_assembly.py"
 _CONTACT = "verification/test_contact_audit.py"
+_GROOVE = "verification/test_groove_cam.py"
 _GUIDES = "verification/test_guides_audit.py"
 _ARM = "verification/test_arm_strength.py"
 _PIVOT = "unit/test_pivot_checks.py"
@@ -26,6 +27,13 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "pressure_angle", "curvature_ratio", "undercut", "concave_radius", "curvature_rate",
         "minimum_wall", "spring_travel", "cam_radius", "guide_gap", "chord_error",
     ),
+    (_GROOVE, "test_walls_by_points_and_distances"): (
+        "outer_undercut", "outer_second_contact", "groove_radius", "groove_clearance",
+    ),
+    (_GROOVE, "test_landings_by_an_adaptive_integrator"): (
+        "landing_speed", "landing_pressure", "crossover_slip",
+    ),
+    (_GROOVE, "test_the_rim_is_a_cantilever_plate"): ("groove_wall",),
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",
     ),

@@ -321,6 +321,7 @@ NAME_CHECKS = {
     "geometry.cam_size": "limit of a pitch curve",
     "pipeline.base.missing_kinds": "kind of a motion",
     "pipeline.case.cards.substitution": _FREE,
+    "pipeline.case.closure_tables": "key of a cam",
     "pipeline.case.limits": "row of the table of limits",
     "pipeline.case.requirements_section": _FREE,
     "pipeline.checks.demands": _GROUP,

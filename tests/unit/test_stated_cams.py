@@ -115,6 +115,14 @@ def pivoted(numbers: Numbers) -> dict[str, Any]:
     return {**LOADED, "pivot_load": 500.0 * np.abs(made.WAVE), "pivot_heat": watts}
 
 
+def in_groove(numbers: Numbers) -> dict[str, Any]:
+    """Solved forces on the walls of the groove, the outer one at the negative roller radius."""
+    loads = made.in_groove().cycles[0].loads
+    jet = made.contour().lift.jet(loads.theta, 2)
+    path = RollerMotion(jet, made.BASE, 0.0, loads.wall * numbers["roller.radius"])
+    return {"normal": loads.normal_force, "wall": loads.wall, "motion": path}
+
+
 OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
     "arm_yield": on_arm,
     **dict.fromkeys(
@@ -130,6 +138,7 @@ OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
         pivoted,
     ),
     "concave_radius": hollow,
+    "groove_wall": in_groove,
     "guide_temperature_A": warm,
     "guide_temperature_B": warm,
     "spring_stress": surging,

@@ -356,6 +356,7 @@ def crown(
         If the case lacks an end, or no crown keeps the ratio, naming the least that one reaches.
     """
     chosen = _kind(kind)
+    case.require_force_closure("a crown")
     _require(case, ratio, on, tolerance)
     progress.stage("preview")
     cycles = preview_case(case, corners=False, progress=progress).cycles

@@ -1,0 +1,21 @@
+"""Form closure in the tables of a case: what stands for the spring that a groove does without."""
+
+from __future__ import annotations
+
+from camwright.pipeline.base import units
+from camwright.pipeline.base.source import Source, entry_of
+from camwright.pipeline.case.toml_text import Tables, TomlValue
+
+GROOVE = "groove"
+_NONE = Source("none: the groove holds the follower", confirmed=True)
+_NO_RATE, _NO_PRELOAD = 1e-6, 1e-9  # N/m, N
+
+
+def with_closure(tables: Tables) -> Tables:
+    """Tables of a case; those of a groove without a spring with one of no force in its place."""
+    cam = tables.get("cam")
+    if not isinstance(cam, dict) or cam.get("closure") != GROOVE or "spring" in tables:
+        return tables
+    source: TomlValue = entry_of(_NONE)
+    rate, preload = units.format(_NO_RATE, "kN/m"), units.format(_NO_PRELOAD, "N")
+    return tables | {"spring": {"rate": rate, "preload": preload, "source": source}}

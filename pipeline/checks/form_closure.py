@@ -1,0 +1,317 @@
+"""Checks of form closure: walls of a groove, landings of the roller in its clearance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.extrema import first_greatest
+from camwright.pipeline.base import levers
+from camwright.pipeline.base.source import Source
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.limits import (
+    CAM_RADIUS,
+    CONTACT_SAFETY,
+    CROSSOVER_SLIP,
+    FATIGUE_SAFETY,
+    LANDING_SPEED,
+    SECOND_CONTACT_DEPTH,
+    UNDERCUT_FACTOR,
+)
+from camwright.pipeline.checks import contact_strength
+from camwright.pipeline.checks import value_groups as given
+from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
+from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.checks.missing_keys import lacking_of_card
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cam_balance import groove_of
+from camwright.pipeline.cycle.crossover_history import WallImpact
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.solution import Solution
+
+PLATE_MOMENT = 0.509
+"""Greatest moment per length at the root of a long cantilever plate over a load at its edge."""
+
+
+@check(
+    UNDERCUT_FACTOR,
+    title="Minimum undercut factor of the outer wall",
+    tier=Tier.SCREENING,
+    formula="min(1 + r kappa_p) >= c; r: roller radius, kappa_p: curvature of the pitch curve,"
+    " negative in a hollow, c: limits.undercut_factor",
+    symbols={"r": "roller.radius", "kappa_p": "pitch_curvature"},
+    reason="At zero the outer wall has a cusp; below, the roller is not held.",
+    method="least 1 + roller radius x pitch curvature, refined between samples",
+    lift_can_help=True,
+    needs="roller",
+    closed_by="form",
+    load_cases=NONE,
+    levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
+    page="Cam",
+).measured("contour", value=lambda worst, _: 1.0 - worst, bound=lambda limit, _: 1.0 - limit)
+def outer_undercut(cam: LoadedCam) -> Array:
+    """1 less the undercut factor of the outer wall."""
+    return -cam.motion.sharpness
+
+
+@check(
+    SECOND_CONTACT_DEPTH,
+    title="Interference of the roller with the outer wall outside the contact",
+    formula="max(-g, 0) <= d; g: least gap between the roller and any other point of the outer"
+    " wall, d: limits.second_contact_depth",
+    symbols={"g": f"{STATED} [mm]"},
+    reason="A wall that comes back to the roller blocks it.",
+    method="greatest penetration of the roller into the outer wall outside the contact",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    needs="roller",
+    closed_by="form",
+    load_cases=NONE,
+    levers=levers.SHAPE,
+    page="Cam",
+)
+def outer_second_contact(solution: Solution) -> Demand:
+    """Penetration of the roller into the outer wall away from the contact, m."""
+    nearest = groove_of(solution.machine.cam, solution.contour).second_contact("outer")
+    depth, gap = float(np.maximum(0.0, -nearest.clearance)), float(nearest.clearance)
+    at = None if np.isnan(nearest.theta) else Extreme(depth, "", float(nearest.theta))
+    return Demand(depth, solution.machine.limits[SECOND_CONTACT_DEPTH], at, stated={"g": gap})
+
+
+def _wall_allowed(numbers: Numbers) -> Allowed:
+    """Greatest pulsating bending stress of the cam by its Goodman line, Pa."""
+    card = numbers.known_case.cam.material
+    lacks = lacking_of_card(card, "fatigue_bending", "tensile_strength")
+    if card.fatigue_bending is None or card.tensile_strength is None:
+        return Allowed(None, lacks)
+    both = 1.0 / card.fatigue_bending + 1.0 / card.tensile_strength
+    return Allowed(2.0 / both / numbers.limit(FATIGUE_SAFETY))
+
+
+def _of_wall(demand: Demand, solution: Solution) -> Demand:
+    card = solution.machine.cam.material
+    return replace(demand, figures=(f"{card.name}: {card.source}",))
+
+
+@check(
+    title="Bending stress at the root of the outer wall",
+    unit="MPa",
+    source=Source(
+        "moment 0.509 F at the root of a long cantilever plate under a load at its edge, Jaramillo,"
+        " J. Appl. Mech. 17 (1950) 67, recalled: verify; Goodman line of the material",
+        confirmed=False,
+    ),
+    method="the rim as a plate held at the floor, the whole normal force at its edge; it is the"
+    " same of any depth",
+    lift_can_help=True,
+    needs="roller",
+    closed_by="form",
+    formula="max(6 0.509 N/(R - |P|)^2) <= 2/((1/f + 1/R_m) S) where the outer wall carries; N:"
+    " normal force, R: cam.groove.outer_radius, P: point of the outer wall, f, R_m: fatigue limit"
+    " in bending and tensile strength of the cam, S: limits.fatigue_safety",
+    symbols={
+        "N": "normal_force",
+        "R": "cam.groove.outer_radius",
+        "P": f"{STATED} [mm]",
+        "f": "cam.material.fatigue_bending",
+        "R_m": "cam.material.tensile_strength",
+        "S": f"limits.{FATIGUE_SAFETY.id}",
+    },
+    reason="A thin rim breaks off the disc.",
+    values=(*given.LOADS, "cam.material.fatigue_bending", "cam.material.tensile_strength"),
+    levers=(levers.one("cam.groove.outer_radius", most=1.5), *levers.GENTLER),
+    page="Cam",
+).measured("angles", allowed=_wall_allowed, remark=_of_wall)
+def groove_wall(cam: LoadedCam) -> Array:
+    """Bending stress at the root of the rim, Pa; infinite without a rim, 0 on the inner wall."""
+    thick = cam.numbers["cam.groove.outer_radius"] - cam.motion.contour_radius
+    left = np.where(thick > 0.0, thick, np.nan)
+    stress = np.where(thick > 0.0, 6.0 * PLATE_MOMENT * cam.normal / left**2, np.inf)
+    return np.where(cam.wall < 0.0, stress, 0.0 * cam.normal)
+
+
+@check(
+    title="Profile tolerance over the clearance of the groove",
+    unit="-",
+    source=Source("a roller between walls that close in on it is blocked", confirmed=True),
+    method="width of the profile tolerance, by which both walls together may narrow the groove",
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    needs="roller",
+    closed_by="form",
+    formula="T/c <= 1; T: cam.profile_tolerance, c: cam.groove.clearance",
+    symbols={"T": "cam.profile_tolerance", "c": "cam.groove.clearance"},
+    reason="On both walls at once the roller slides on one of them, seizes or breaks.",
+    load_cases=NONE,
+    values=("cam.profile_tolerance", "cam.groove.clearance"),
+    levers=(levers.one("cam.groove.clearance"),),
+    page="Cam",
+).measured("case", allowed=lambda _: Allowed(1.0))
+def groove_clearance(cam: LoadedCam) -> Array:
+    """Width of the profile tolerance over the clearance of the groove."""
+    numbers = cam.numbers
+    return np.asarray(numbers["cam.profile_tolerance"] / numbers["cam.groove.clearance"])
+
+
+@check(
+    CAM_RADIUS,
+    id="groove_radius",
+    title="Radius of the disc around the groove",
+    tier=Tier.SCREENING,
+    formula="R <= r; R: cam.groove.outer_radius, r: limits.cam_radius",
+    symbols={"R": "cam.groove.outer_radius"},
+    reason="The cam must fit into its space.",
+    method="radius of the disc as stated",
+    moved_by_tolerance=False,
+    needs="roller",
+    closed_by="form",
+    load_cases=NONE,
+    levers=(levers.one("cam.groove.outer_radius", -1, 1.5),),
+    page="Cam",
+).measured("case")
+def groove_radius(cam: LoadedCam) -> Array:
+    """Radius of the disc, m."""
+    return np.asarray(cam.numbers["cam.groove.outer_radius"])
+
+
+def _worst_impact(solution: Solution, measure: Callable[[WallImpact], float]) -> Extreme | None:
+    """Greatest figure of the landings of all load cases; None without a landing."""
+    found = [(measure(one), cycle.load_case, one) for cycle in solution.cycles
+             for one in cycle.impacts]  # fmt: skip
+    if not found:
+        return None
+    value, load_case, one = found[first_greatest([each[0] for each in found])]
+    lost = np.isnan(one.flight.landing)
+    return Extreme(value, load_case, one.flight.take_off if lost else one.flight.landing)
+
+
+def _landing_words(solution: Solution, worst: Extreme) -> str:
+    """Number of landings in a turn of the load case, and the flight before the worst."""
+    cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
+    one = next(
+        each.flight
+        for each in cycle.impacts
+        if worst.cam_angle in (each.flight.landing, each.flight.take_off)
+    )
+    if np.isnan(one.landing):
+        return f"the flight from {shown(one.take_off, 'deg')} does not end within a turn"
+    walls = {1.0: "inner", -1.0: "outer"}
+    return (
+        f"{len(cycle.impacts)} landings a turn; from the {walls[one.start]} wall at"
+        f" {shown(one.take_off, 'deg')} to the {walls[one.wall]}, {shown(one.time, 'ms')}"
+    )
+
+
+_FLIGHT = (
+    "flight of the rigid mass under inertia, weight, external and spring force through the"
+    " clearance, without rebound"
+)
+_CLEARANCE = (levers.one("cam.groove.clearance", -1), *levers.GENTLER)
+
+
+@check(
+    LANDING_SPEED,
+    title="Maximum landing speed on the walls",
+    method=_FLIGHT,
+    lift_can_help=True,
+    needs="roller",
+    closed_by="form",
+    if_limited=True,
+    formula="v <= limits.landing_speed; v: greatest speed of the roller against the wall at the end"
+    " of a flight through the clearance, along the travel; of a small clearance c under inertia"
+    " alone (9/2 c^2 j)^(1/3), j: jerk of the follower where its acceleration is zero",
+    symbols={"v": f"{STATED} [mm/s]"},
+    reason="The noise and the wear of a groove cam grow with it.",
+    values=(*given.LOADS, "cam.groove.clearance"),
+    levers=_CLEARANCE,
+    page="Follower",
+)
+def landing_speed(solution: Solution) -> Demand:
+    """Greatest landing speed, m/s; 0 without a landing."""
+    limit = solution.machine.limits[LANDING_SPEED]
+    worst = _worst_impact(solution, lambda one: one.flight.speed)
+    if worst is None:
+        return Demand(0.0, limit, note="one wall carries all over the turn", stated={"v": 0.0})
+    note = _landing_words(solution, worst)
+    return Demand(worst.value, limit, worst, note=note, stated={"v": worst.value})
+
+
+@check(
+    title="Contact pressure at the landing on a wall",
+    unit="MPa",
+    source=Source("surface endurance of cam and follower, once a turn", confirmed=True),
+    method=f"{_FLIGHT}; stopped on the stiffness of the follower, pressure of Hertz under the"
+    " greatest force",
+    lift_can_help=True,
+    needs="roller",
+    closed_by="form",
+    formula="p <= p_E / S; p: sqrt(N E*/(pi b R)) on the wall of the landing, N: F + sqrt(F^2 + k m"
+    " v^2) over cos(alpha), F: axial force at the landing, v: landing speed, k: follower.stiffness"
+    " or that of the parts between cam and mass in series, m: follower.mass, p_E: least endurance"
+    " pressure of cam and roller, S: limits.contact_safety",
+    symbols={
+        "p": f"{STATED} [MPa]",
+        "p_E": f"{STATED} [MPa]",
+        "S": "limits.contact_safety",
+    },
+    reason="Each landing is a blow on the same places of the walls.",
+    values=(*given.LOADS, *given.CONTACT, "cam.groove.clearance", "follower.stiffness"),
+    levers=_CLEARANCE,
+    page="Contact",
+)
+def landing_pressure(solution: Solution) -> Demand | None:
+    """Greatest pressure of Hertz at a landing, Pa; None without a landing."""
+    if contact_strength.contact_pressure.measured is None:
+        return None
+    limit = contact_strength.contact_pressure.measured.allowed(solution.numbers)
+    worst = _worst_impact(solution, lambda one: one.pressure)
+    if worst is None:
+        return None
+    note, stated = _landing_words(solution, worst), {"p": worst.value}
+    allowed = None if limit.value is None else float(limit.value)
+    if limit.if_exceeded and not (allowed is not None and worst.value > allowed):
+        allowed = None
+    if allowed is not None:
+        stated["p_E"] = allowed * solution.machine.limits[CONTACT_SAFETY]
+    missing = limit.missing
+    if not solution.machine.compliances and solution.machine.stiffness is None:
+        missing = (*missing, "follower.stiffness")
+    return Demand(
+        None if np.isnan(worst.value) else worst.value,
+        allowed,
+        worst,
+        missing,
+        note=note,
+        stated=stated,
+    )
+
+
+@check(
+    CROSSOVER_SLIP,
+    title="Maximum slip of the roller at a crossover",
+    method="the roller keeps its spin in flight and lands where it is to turn the other way",
+    lift_can_help=True,
+    needs="roller",
+    closed_by="form",
+    if_limited=True,
+    formula="2 w v <= limits.crossover_slip; w: cam speed, v: speed along the pitch curve by the"
+    " cam angle, at the landing on the other wall",
+    symbols={"w": f"{STATED} [rad/s]", "v": f"{STATED} [mm]"},
+    reason="It wears and heats roller and walls at the same places in each turn.",
+    values=(*given.LOADS, "cam.groove.clearance"),
+    levers=(levers.one("cam.prime_radius", -1, 2.0),),
+    page="Contact",
+)
+def crossover_slip(solution: Solution) -> Demand:
+    """Greatest slip of the roller's surface at a landing, m/s; 0 without a crossover."""
+    limit = solution.machine.limits[CROSSOVER_SLIP]
+    worst = _worst_impact(solution, lambda one: one.slip)
+    if worst is None:
+        return Demand(0.0, limit, note="one wall carries all over the turn")
+    speed = next(each.cam_speed for each in solution.cycles if each.load_case == worst.load_case)
+    stated = {"w": speed, "v": 0.5 * worst.value / speed}
+    return Demand(worst.value, limit, worst, note=_landing_words(solution, worst), stated=stated)

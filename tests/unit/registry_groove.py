@@ -1,0 +1,213 @@
+"""How the checks of a groove are tried: a harmonic lift in it, without a spring."""
+
+from dataclasses import replace
+from functools import cache
+
+import hand_calculations as by_hand
+import made_trial as made
+import numpy as np
+from check_tools import by_limit, check, limited, tried
+from trial_variants import NAN
+from trial_variants import unknown as unknown_cam
+
+from camwright.geometry.arrays import FULL_TURN, uniform_turn
+from camwright.geometry.form_closure import Groove
+from camwright.pipeline.cycle.solution import Solution
+
+CLEARANCE, OUTER = 20e-6, 0.090
+HALF = 0.5 * made.STROKE
+
+
+def changed(**values) -> Solution:
+    """The groove with other values of its table."""
+    base = made.in_groove()
+    cam = replace(base.case.cam, groove=replace(base.case.cam.groove, **values))
+    return made.changed_solution(base, case=made.changed(base.case, cam=cam))
+
+
+def with_limits(**values) -> Solution:
+    base = made.in_groove()
+    limits = made.changed(base.case.limits, **values)
+    return made.changed_solution(base, case=made.changed(base.case, limits=limits))
+
+
+def flown() -> Solution:
+    """With limits of what a case leaves open."""
+    return with_limits(landing_speed=1.0, crossover_slip=100.0)
+
+
+def with_loads(**values) -> Solution:
+    base = made.in_groove()
+    (cycle,) = base.cycles
+    loads = replace(cycle.loads, **values)
+    return replace(base, cycles=(made.changed_cycle(cycle, loads=loads),))
+
+
+def without_flight() -> Solution:
+    """Landings of which nothing is known."""
+    base = flown()
+    (cycle,) = base.cycles
+    lost = tuple(
+        one._replace(
+            flight=one.flight._replace(speed=np.nan), force=np.nan, pressure=np.nan, slip=np.nan
+        )
+        for one in cycle.impacts
+    )
+    bare = made.changed_cycle(cycle)
+    bare.results["impacts"] = lost
+    return replace(base, cycles=(bare,))
+
+
+def weak(**values) -> Solution:
+    """The groove in steel of other strengths, Pa; None: not stated."""
+    base = made.in_groove()
+    card = replace(base.case.materials["steel"], **values)
+    return made.changed_solution(base, case=made.with_card(base.case, card))
+
+
+# --- by hand: s = h/2 (1 - cos theta), inertia alone ------------------------------------------
+def gap(theta: float) -> float:
+    """Clearance along the travel, m."""
+    slope, height = HALF * np.sin(theta), made.BASE + HALF * (1.0 - np.cos(theta))
+    return CLEARANCE * float(np.hypot(slope, height)) / height
+
+
+@cache
+def landing(*, outer: bool) -> tuple[float, float, float]:
+    """Angle, rad, of the landing on a wall, its speed, m/s, and the path there, m/rad.
+
+    The acceleration is zero at 90 and 270 deg. From the inner wall the roller flies straight on,
+    u = h/2 (t - sin t), up to the clearance; from the outer one with the speed of that wall.
+    """
+    start, flown = (0.25 if outer else 0.75) * FULL_TURN, 0.3
+    rate = 0.0 if outer else (gap(start + 1e-6) - gap(start - 1e-6)) / 2e-6
+    for _ in range(100):
+        wide = gap(start + flown) if outer else gap(start)
+        flown -= (HALF * (flown - np.sin(flown)) - wide - rate * flown) / (
+            HALF * (1.0 - np.cos(flown))
+        )
+    theta, speed = start + flown, made.in_groove().machine.cam_speed
+    opening = (gap(theta + 1e-6) - gap(theta - 1e-6)) / 2e-6 if outer else rate
+    slope, height = HALF * np.sin(theta), made.BASE + HALF * (1.0 - np.cos(theta))
+    against = speed * (HALF * (1.0 - np.cos(flown)) - opening)
+    return theta, float(against), float(np.hypot(slope, height))
+
+
+def landing_pressure() -> float:
+    """Pressure of Hertz on the inner wall, MPa, of the mass stopped on the follower's stiffness."""
+    machine, (theta, speed, path) = made.in_groove().machine, landing(outer=False)
+    height = made.BASE + HALF * (1.0 - np.cos(theta))
+    pressed = machine.mass * machine.cam_speed**2 * HALF * np.cos(theta)
+    struck = machine.axial_stiffness * machine.mass * speed**2
+    force = (pressed + np.sqrt(pressed**2 + struck)) * path / height
+    along, bend = HALF * np.sin(theta), HALF * np.cos(theta)
+    curvature = (2.0 * along**2 + height**2 - height * bend) / path**3
+    radius = made.ROLLER * (1.0 - made.ROLLER * curvature)
+    modulus, width = machine.contact_modulus, machine.contact_width
+    return 1e-6 * float(np.sqrt(force * modulus / (np.pi * width * radius)))
+
+
+def wall_stress() -> float:
+    """Six times 0.509 of the normal force over the square of the rim, MPa, at the worst angle.
+
+    Force and friction of the guides as solved, the rim by points of the outer wall.
+    """
+    solution = made.in_groove()
+    loads = solution.cycles[0].loads
+    pulled = loads.axial_force < 0.0
+    walls = Groove(solution.contour.pitch, made.ROLLER)
+    thick = OUTER - np.hypot(*walls.points(loads.theta, "outer"))
+    return 1e-6 * float(np.max(np.where(pulled, 6.0 * 0.509 * loads.normal_force / thick**2, 0.0)))
+
+
+def pinched() -> Solution:
+    """Five lobes whose hollows are sharper than the roller: the outer wall closes in on it."""
+    return replace(made.in_groove(), contour=made.undercut())
+
+
+def pinched_depth() -> float:
+    """Depth, mm, of the roller in the outer wall by the distances of 3600 points."""
+    contour = made.undercut().require_roller()
+    theta, half = uniform_turn(3600), contour.roller_radius + 0.5 * CLEARANCE
+    wall = contour.pitch.points(theta) + half * contour.pitch.normal(theta)
+    centres = contour.pitch.points(theta[:720])  # of one lobe
+    away = np.hypot(*(wall[:, :, None] - centres[:, None, :]))
+    return 1e3 * (half - float(away.min()))
+
+
+def unknown() -> Solution:
+    return replace(made.in_groove(), contour=unknown_cam().contour)
+
+
+# --- the checks -------------------------------------------------------------------------------
+by_limit(
+    "outer_undercut",
+    "undercut_factor",
+    unknown,
+    1.0 + made.ROLLER / float(by_hand.PITCH_RADIUS.max()),
+    "1 + r kappa at the least curvature of the path",
+    base=made.in_groove,
+)
+by_limit(
+    "outer_second_contact",
+    "second_contact_depth",
+    None,
+    pinched_depth(),
+    "least distance of points of the wall from the roller centre",
+    base=pinched,
+)
+tried(
+    "groove_wall",
+    lambda share: with_limits(
+        fatigue_safety=made.in_groove().case.limits.fatigue_safety
+        * share
+        / check("groove_wall", made.in_groove()).utilisation
+    ),
+    lambda: weak(tensile_strength=None),
+    lambda: with_loads(normal_force=NAN),
+    wall_stress(),
+    "6 x 0.509 F over the square of the rim, Jaramillo (1950)",
+    made.in_groove,
+)
+tried(
+    "groove_clearance",
+    lambda share: changed(clearance=4e-6 / share),
+    None,
+    lambda: changed(clearance=np.nan),
+    4.0 / 20.0,
+    "tolerance of 4 um in a clearance of 20 um",
+    made.in_groove,
+)
+by_limit(
+    "groove_radius",
+    "cam_radius",
+    lambda: changed(outer_radius=np.nan),
+    90.0,
+    "as stated",
+    base=made.in_groove,
+)
+by_limit(
+    "landing_speed",
+    "landing_speed",
+    without_flight,
+    1e3 * landing(outer=False)[1],
+    "w h/2 (1 - cos(w t)) after the zero of the acceleration",
+    base=flown,
+)
+tried(
+    "landing_pressure",
+    limited("landing_pressure", lambda p: weak(endurance_pressure=p), made.in_groove),
+    lambda: weak(endurance_pressure=None, sliding_endurance_pressure=None),
+    without_flight,
+    landing_pressure(),
+    "Hertz (1882) of F + sqrt(F^2 + k m v^2)",
+    made.in_groove,
+)
+by_limit(
+    "crossover_slip",
+    "crossover_slip",
+    without_flight,
+    2.0 * made.in_groove().machine.cam_speed * landing(outer=True)[2],
+    "twice the speed of the roller centre",
+    base=flown,
+)

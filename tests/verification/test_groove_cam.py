@@ -1,0 +1,293 @@
+"""A groove cam by other formulations: its limits, walls, forces, energy, landings and rim.
+
+The case is that of tests/data/groove_feeder.toml: two strokes a turn, no spring.
+"""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from camwright.geometry.arrays import FULL_TURN, uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case_file import case_of, parse_case, read_case
+from camwright.pipeline.checks.form_closure import PLATE_MOMENT
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.crossover_history import impacts
+from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
+from camwright.pipeline.follower.friction_coupling import guided_loads
+from camwright.pipeline.preview import preview_case
+
+FILE = Path(__file__).parents[1] / "data" / "groove_feeder.toml"
+
+
+@cache
+def trial():
+    return preview_case(read_case(FILE), corners=False)
+
+
+def running():
+    """Cycle and machine of the load case of the file."""
+    (cycle,) = (each for each in trial().cycles if each.load_case == "running")
+    return cycle, cycle.machine
+
+
+def demand(name):
+    return next(each for each in trial().checks if each.id == name)
+
+
+# --- forces -----------------------------------------------------------------------------------
+def test_a_strong_spring_makes_the_groove_a_spring_closed_cam():
+    """Forces, guides and torque to 1e-9: bit for bit but for the flag of the closure."""
+    cycle, machine = running()
+    sprung = replace(machine.spring, preload=900.0, rate=20e3)
+    closed = replace(machine.system, spring=sprung, held=False)
+    args = (machine.stem, machine.guides, machine.cam_speed, uniform_turn(90))
+    path = cycle.contour.pitch
+    plate = guided_loads(path, closed, *args)
+    groove = guided_loads(path, replace(closed, held=True), *args)
+    assert not plate.loads.separated.any()
+    for name in ("axial_force", "normal_force", "cam_torque", "friction_force_a", "reaction_a"):
+        plain, held = (getattr(each.loads, name) for each in (plate, groove))
+        assert held == pytest.approx(plain, rel=1e-9, abs=1e-9), name
+
+
+@pytest.mark.parametrize("speed", [10.0, 40.0])
+def test_forces_by_the_equilibrium_of_the_stem(speed):
+    """F_a = F + sign(v) (mu_A |A| + mu_B |B|) by iteration, of either sign; point supports."""
+    cycle, machine = running()
+    theta, path, system = uniform_turn(180), cycle.contour.pitch, machine.system
+    loads = follower_loads(path, system, speed, theta)
+    s, s1, s2 = path.lift.derivatives(theta, 2)
+    tangent = s1 / (path.height_base + s)
+    reach = system.overhang_at_max_lift + path.lift.highest.value - s
+    force = system.mass * speed**2 * s2 + system.spring.force(s)
+    moving = np.where(np.abs(s1) > 1e-9 * path.lift.stroke, np.sign(s1), 0.0)
+    axial = force.copy()
+    for _ in range(200):
+        side = np.abs(axial * tangent)
+        on_b = side * reach / system.guide_spacing
+        axial = force + moving * (system.friction_a * (side + on_b) + system.friction_b * on_b)
+    assert loads.axial_force == pytest.approx(axial, rel=1e-12, abs=1e-9)
+    assert loads.normal_force == pytest.approx(np.abs(axial) * np.hypot(1.0, tangent), rel=1e-12)
+    assert loads.cam_torque == pytest.approx(axial * s1, rel=1e-12, abs=1e-12)
+    assert (axial > 1.0).any() and (axial < -1.0).any()
+    assert not loads.separated.any()
+
+
+def test_the_cam_pays_for_friction_alone():
+    """Work of the cam over a turn is the loss in the guides: 1e-6 of the work on the rises."""
+    cycle, _ = running()
+    loads = cycle.loads
+    rubbed = loads.friction_force * np.abs(loads.lift_slope)
+    work, lost = (turn_integral(loads.theta, each) for each in (loads.cam_torque, rubbed))
+    scale = turn_integral(loads.theta, np.abs(loads.cam_torque))
+    assert lost > 1e-3 * scale
+    assert work == pytest.approx(lost, abs=1e-6 * scale)
+
+
+def test_without_clearance_and_compliance_the_wall_is_the_sign_of_the_force():
+    """A clearance of a nanometre: the walls are changed where the rigid force changes its sign."""
+    cycle, machine = running()
+    narrow = replace(machine.cam.groove, clearance=1e-9)
+    found = impacts(replace(machine, cam=replace(machine.cam, groove=narrow)), cycle.contour)
+    theta = uniform_turn(14400)
+    force = follower_loads(cycle.contour.pitch, machine.system, machine.cam_speed, theta)
+    wall = np.sign(force.axial_force)
+    for one in found:
+        flight = one.flight
+        assert flight.landing == pytest.approx(flight.take_off, abs=np.radians(0.5))
+        beyond = np.interp(flight.landing + np.radians(0.5), theta, wall, period=FULL_TURN)
+        assert beyond == flight.wall
+    assert len(found) == 4
+
+
+# --- contact ----------------------------------------------------------------------------------
+def test_contact_on_both_walls_by_their_radii():
+    """Half-planes of the radii of roller and wall, convex inside, concave outside; Hertz (1882)."""
+    cycle, machine = running()
+    loads, path = cycle.loads, cycle.contour.pitch
+    roller, pulled = machine.roller.radius, loads.axial_force < 0.0
+    middle = path.radius_of_curvature(loads.theta)
+    inside, outside = 1.0 / (middle - roller), -1.0 / (middle + roller)
+    flat = 1.0 / roller + np.where(pulled, outside, inside)
+    load = loads.normal_force / machine.contact_width
+    pressure = np.sqrt(load * machine.contact_modulus * flat / np.pi)
+    assert cycle.contact.p0 == pytest.approx(pressure, rel=1e-9, abs=1.0)
+    assert pulled.any() and not pulled.all()
+
+
+def test_the_roller_turns_the_other_way_on_the_outer_wall():
+    """By the velocity of the roller's surface: that of the wall at the contact, in the plane."""
+    cycle, machine = running()
+    theta, speed = cycle.theta, machine.cam_speed
+    spin, step = cycle.parts.roller_spin, 1e-6
+    path, roller = cycle.contour.pitch, machine.roller.radius
+    sign = np.where(cycle.loads.axial_force < 0.0, 1.0, -1.0)
+    contact = path.points(theta) + sign * roller * path.normal(theta)
+    turned = np.array([[0.0, -1.0], [1.0, 0.0]])
+    moving = (path.points(theta + step) - path.points(theta - step)) / (2.0 * step)
+    # in cam axes the follower moves at w P'; its surface stands still at the contact
+    arm = contact - path.points(theta)
+    across = turned @ arm
+    rate = -np.sum(moving * across, axis=0) / np.sum(across**2, axis=0)
+    assert spin == pytest.approx(speed * (rate - 1.0), rel=1e-5, abs=1e-3)
+
+
+# --- checks -----------------------------------------------------------------------------------
+def test_walls_by_points_and_distances():
+    """outer_undercut, outer_second_contact, groove_radius, groove_clearance without curvature."""
+    contour, machine = trial().contour, trial().solution.machine
+    theta, roller = uniform_turn(7200), machine.roller.radius
+    wall = contour.pitch.points(theta) + roller * contour.pitch.normal(theta)
+    lengths = (
+        np.hypot(*np.diff(each, append=each[:, :1])) for each in (wall, contour.pitch.points(theta))
+    )
+    outer, middle = lengths
+    assert demand("outer_undercut").demand == pytest.approx((outer / middle).min(), rel=1e-4)
+    centres = contour.pitch.points(theta[::20])
+    away = np.hypot(*(wall[:, :, None] - centres[:, None, :])).min(axis=0)
+    assert away.min() > (1.0 - 1e-6) * roller
+    assert demand("outer_second_contact").demand == 0.0
+    assert demand("groove_radius").demand == 0.125
+    assert demand("groove_clearance").demand == pytest.approx(8.0 / 20.0)
+
+
+def test_landings_by_an_adaptive_integrator():
+    """landing_speed, landing_pressure and crossover_slip of the fastest load case."""
+    cycle = max(trial().cycles, key=lambda each: each.cam_speed)
+    machine, path = cycle.machine, cycle.contour.pitch
+    speed, worst = cycle.cam_speed, max(cycle.impacts, key=lambda each: each.flight.speed)
+    start, inner = worst.flight.take_off, worst.flight.wall > 0.0
+
+    def gap(theta):
+        s, s1 = path.lift.derivatives(theta, 1)
+        height = path.height_base + s
+        return machine.cam.groove.clearance * np.hypot(s1, height) / height
+
+    def opening(theta):
+        return speed * (gap(theta + 1e-6) - gap(theta - 1e-6)) / 2e-6
+
+    def flown(time, state):  # distance from the inner wall
+        return state[1], -(speed**2) * path.lift(start + speed * time, 2)
+
+    def lands(time, state):
+        return state[0] if inner else state[0] - gap(start + speed * time)
+
+    lands.terminal, lands.direction = True, -1.0 if inner else 1.0
+    begin = (gap(start), opening(start)) if inner else (0.0, 0.0)
+    flight = solve_ivp(flown, (0.0, 0.05), begin, events=lands, rtol=1e-10, atol=1e-14)
+    time, (_, moving) = flight.t_events[0][0], flight.y_events[0][0]
+    theta, step = start + speed * time, 1e-6
+    against = -moving if inner else moving - opening(theta)
+    assert demand("landing_speed").demand == pytest.approx(against, rel=1e-4)
+    velocity = (path.points(theta + step) - path.points(theta - step)) / (2.0 * step)
+    slip = max(each.slip for each in cycle.impacts)
+    assert demand("crossover_slip").demand == slip
+    assert worst.slip == pytest.approx(2.0 * speed * np.hypot(*velocity), rel=1e-6)
+    # the mass on its stiffness from the landing on, under a force that stays
+    pressed = abs(machine.mass * speed**2 * float(path.lift(theta, 2)))
+    stiffness, mass = machine.axial_stiffness, machine.mass
+    stopped = solve_ivp(
+        lambda _, state: (state[1], (pressed - stiffness * state[0]) / mass),
+        (0.0, 2.0 * np.pi * np.sqrt(mass / stiffness)), (0.0, against),
+        rtol=1e-10, atol=1e-16, max_step=0.01 * np.sqrt(mass / stiffness),
+    )  # fmt: skip
+    s, s1 = path.lift.derivatives(theta, 1)
+    force = (
+        stiffness * stopped.y[0].max() * np.hypot(s1, path.height_base + s) / (path.height_base + s)
+    )
+    assert worst.force == pytest.approx(force, rel=1e-3)
+    radius = machine.roller.radius * (1.0 + machine.roller.radius / path.radius_of_curvature(theta))
+    if worst.flight.wall > 0.0:
+        radius = machine.roller.radius * (2.0 - radius / machine.roller.radius)
+    pressure = np.sqrt(force * machine.contact_modulus / (np.pi * machine.contact_width * radius))
+    assert worst.pressure == pytest.approx(float(pressure), rel=1e-3)
+    greatest = max(each.pressure for each in cycle.impacts)
+    assert demand("landing_pressure").demand == pytest.approx(greatest)
+
+
+def test_the_rim_is_a_cantilever_plate():
+    """groove_wall: 0.509 F at the root of an infinite plate strip under a point load at its edge.
+
+    By a Fourier integral along the edge; each wave is a clamped and free strip of Kirchhoff's
+    plate, of the Poisson ratio 0.3.
+    """
+    poisson = 0.3
+
+    def root(wave):
+        y, (c, s) = wave, (np.cosh(wave), np.sinh(wave))
+        # w = a (ky cosh ky - sinh ky) + b ky sinh ky is clamped at y = 0
+        second = np.array([y * c + s, 2.0 * c + y * s])
+        third = np.array([2.0 * c + y * s, 3.0 * s + y * c])
+        first = np.array([y * s, s + y * c])
+        zero = np.array([y * c - s, y * s])
+        rows = [second - poisson * zero, third - (2.0 - poisson) * first]
+        _, b = np.linalg.solve(np.array(rows), np.array([0.0, 1.0 / wave**3]))
+        return 2.0 * b * wave**2
+
+    moment = quad(root, 1e-4, 60.0, limit=400)[0] / np.pi
+    assert abs(moment) == pytest.approx(PLATE_MOMENT, abs=1e-3)
+    cycle = max(trial().cycles, key=lambda each: each.cam_speed)
+    loads, path = cycle.loads, cycle.contour.pitch
+    wall = path.points(loads.theta) + cycle.machine.roller.radius * path.normal(loads.theta)
+    thick = 0.125 - np.hypot(*wall)
+    pulled = np.where(loads.axial_force < 0.0, loads.normal_force, 0.0)
+    stress = (6.0 * PLATE_MOMENT * pulled / thick**2).max()
+    assert demand("groove_wall").demand == pytest.approx(stress, rel=1e-9)
+
+
+# --- the case ---------------------------------------------------------------------------------
+def test_the_case_passes_by_check():
+    """No check of the design fails or lacks data; one track, and no check of a closing force."""
+    must = [each for each in trial().checks if each.must_have and not each.judged_at]
+    assert [each.id for each in must if each.status != "pass"] == []
+    made = {each.id for each in trial().checks}
+    assert not made & {"jump", "contact_force_margin", "spring_travel", "traction_demand"}
+    assert {"groove_wall", "landing_speed", "outer_undercut"} <= made
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            '[cam]\nclosure = "groove"',
+            '[spring]\nrate = "1 kN/m"\npreload = "5 N"\n\n[cam]',
+            "cam.groove = a table, must be left out, or",
+        ),
+        ('closure = "groove"', 'closure = "yoke"', "cam.closure = yoke, must be"),
+        ("depth = \"18 mm\"", "depth = \"17 mm\"", "cam.groove.depth = 17 mm, must be >="),
+        ("depth = \"18 mm\"", "depth = \"28 mm\"", "cam.groove.depth = 28 mm, must be < "),
+        ('corner_radius = "0.4 mm"', 'corner_radius = "0.6 mm"', "cam.groove.corner_radius = 0.6"),
+        ('outer_radius = "125 mm"', 'outer_radius = "91 mm"', "cam.groove.outer_radius = 91 mm"),
+        ('clearance = "0.02 mm"', 'clearance = "0 mm"', "cam.groove.clearance = 0 mm, must be > 0"),
+        ('mounting = "overhung"', 'mounting = "straddled"', "roller.pin.mounting = straddled"),
+        ('tool_radius = "23.5 mm"', 'tool_radius = "23.6 mm"', "workshop.tool_radius = 23.6 mm"),
+    ],
+)  # fmt: skip
+def test_refusals_of_the_case(old, new, message):
+    text = FILE.read_text(encoding="utf-8")
+    assert old in text
+    with pytest.raises(InputError) as error:
+        parse_case(text.replace(old, new, 1))
+    assert str(error.value).startswith(message)
+
+
+def test_what_is_not_done_is_refused(tmp_path):
+    """Finite elements, run folders, sizes and screening, in one line each."""
+    from camwright.pipeline.run import run_case
+    from camwright.pipeline.screening.design_screening import screen_designs
+    from camwright.pipeline.solver import solve
+
+    case = read_case(FILE)
+    refusal = r'cam\.closure = groove, must be "spring" for '
+    with pytest.raises(InputError, match=refusal + "the contact by finite elements"):
+        solve(case, trial().contour, tier=Tier.CYCLE, torques={}, corners=False)
+    with pytest.raises(InputError, match=refusal + "a run folder"):
+        run_case(case, tmp_path / "run")
+    with pytest.raises(InputError, match=refusal + "a screening"):
+        screen_designs(case, {"follower.mass": np.array([1.0])})
+    assert case_of(case.tables()).cam.groove == case.cam.groove
