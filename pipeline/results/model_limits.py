@@ -87,9 +87,12 @@ MODEL_LIMITS = (
     ),
     ModelLimit(
         "An arm is a straight bar of one rectangular section, which its hubs do not stiffen;"
-        " without a stated one it is rigid. It has no weight, its pivot neither friction nor"
-        " clearance: masses, springs and forces are those reduced to the roller centre. The"
-        " sign-off does not cover the pivot."
+        " without a stated one it is rigid. Without a described pivot it has no weight, friction"
+        " and clearance there. The friction of a pivot is Coulomb friction of its whole load at"
+        " the diameter of the pin, opposite to the swing, none at rest; the lift that balances a"
+        " torque is drawn with the weight of the arm at zero lift, its torque with the true one."
+        " The rating life of needles counts the path that the arm swings: a swing below the"
+        " pitch of the needles is not judged, nor is the load along the pin."
     ),
     ModelLimit(
         "A face does not turn about its stem; its block is held by the stem, or over its whole back"

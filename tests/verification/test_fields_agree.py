@@ -87,6 +87,7 @@ MEASURES = {
     for follower, word in WORDS.items()
     if one.needs in ("", word) and not one.scales_with
     if not (one.part == "guides" and follower == "arm")
+    if not (one.part == "pivot" and follower != "arm")
     if not one.id.startswith(("guide_pressure", "edge_pressure"))
 }
 """Of a load case; the limit at the temperature of a guide is in the correction of its pressure,
