@@ -64,6 +64,11 @@ def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
     return replace(demand, stated={**demand.stated, "mu": mu, **forces})
 
 
+def _friction_kept(cam: LoadedCam, limit: float) -> Array | None:
+    """Jam index over its limit; no constraint of a stem, whose guides have that limit, too."""
+    return None if cam.pivot is None else outward(cam, cam.jam) / limit
+
+
 @check(
     JAM_INDEX,
     title="Maximum jam index of the pivot",
@@ -81,16 +86,18 @@ def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
     values=given.LOADS,
     levers=levers.LOCK,
     page="Pivot",
-).measured("angles", remark=_with_pin, deviation=0.01, kept=Kept(factor_max=FACTOR_MAX))
+).measured(
+    "angles", remark=_with_pin, deviation=0.01, kept=Kept(_friction_kept, factor_max=FACTOR_MAX)
+)
 def pivot_jam_index(cam: LoadedCam) -> Array:
     """Moment of the friction in the pivot over that of the cam on the rise."""
     return outward(cam, cam.jam)
 
 
 def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
-    """No constraint where the maximum friction is not known."""
+    """No constraint of a stem, and where the maximum friction is not known."""
     worst = cam.jam_worst
-    return None if worst is None else outward(cam, worst) / limit
+    return None if cam.pivot is None or worst is None else outward(cam, worst) / limit
 
 
 @check(
