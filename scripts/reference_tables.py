@@ -27,7 +27,7 @@ from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import DECLARED, MODULES, declared_in
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.axial_pressure import AXIAL_ARRAYS
-from camwright.pipeline.cycle.guide_pressure import GUIDE_ARRAYS
+from camwright.pipeline.cycle.guide_pressure import GUIDE_ARRAYS, PIVOT_ARRAYS
 from camwright.pipeline.cycle.rolling_history import ENVELOPE_ARRAYS
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.check_text import check_text, default_of, open_sources, sentence
@@ -140,6 +140,7 @@ def arrays() -> str:
     files = {
         "5_pressure.npz": PRESSURE_ARRAYS,
         "5_guides.npz": GUIDE_ARRAYS,
+        "5_pivot.npz": PIVOT_ARRAYS,
         "5_length.npz": AXIAL_ARRAYS,
         "5_envelope.npz": ENVELOPE_ARRAYS,
         "fields/turn.npz": TURN_ARRAYS,

@@ -36,7 +36,7 @@ from camwright.pipeline.checks.check import (
     check,
     of_key,
 )
-from camwright.pipeline.checks.demands import follower_speed, slope_at, slope_over
+from camwright.pipeline.checks.demands import NORMAL_FORCE, follower_speed, slope_at, slope_over
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
@@ -471,12 +471,16 @@ def _is_nylon(guide: Guide) -> bool:
     return "nylon" in guide.material.name.lower()
 
 
-def _guide_edge_pressure(side: Side) -> Declaration:
-    """Check of the greatest pressure between stem and bore of guide A or B."""
+def _guide_edge_pressure(side: Place) -> Declaration:
+    """Check of the greatest pressure between pin or stem and bore of a bush."""
+    seat = SEATS[side]
+    inside, column = f"Guide edge pressure in {seat.words}", f"guide_edge_pressure_{side}"
+    if side == "pivot":
+        inside, column = "Edge pressure in the bush of the pivot", f"{side}_edge_pressure"
 
     @check(
-        id=f"guide_edge_pressure_{side}",
-        title=f"Guide edge pressure in guide {side} vs. yield strength",
+        id=column,
+        title=f"{inside} vs. yield strength",
         unit="MPa",
         source=Source(
             "yield strength of the bush at its temperature, source of the material",
@@ -484,15 +488,19 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         ),
         method="pin in a bore with clearance, bush in a rigid housing, at the greatest line load of"
         " the beam, with that of a forced tilt at right angles; modulus at 20 degC, an upper bound;"
-        " yield strength at the temperature of the guide",
+        " yield strength at the temperature of the guide"
+        if side != "pivot"
+        else "rigid pin in a bush with clearance in a rigid housing, tilted by the greatest moment"
+        " of the contact; modulus at 20 degC, an upper bound; yield strength at the temperature of"
+        " the bush",
         lift_can_help=True,
         tier=Tier.PREVIEW,
-        error="guide_edges",
-        part="guides",
-        kept_as=f"line load of guide {side} at the yield strength",
-        formula="p <= R(T); p: greatest pressure between stem and bore, where the line load along"
-        " the guide is greatest, R: yield strength of the bush at its temperature T.",
-        symbols={"p": f"guide_edge_pressure_{side}"},
+        error="sampling" if side == "pivot" else "guide_edges",
+        part=seat.part,
+        kept_as=f"line load of {seat.words} at the yield strength",
+        formula="p <= R(T); p: greatest pressure between pin or stem and bore, where the line load"
+        " along the bush is greatest, R: yield strength of the bush at its temperature T.",
+        symbols={"p": column},
         reason="an edge above the yield strength is pressed out, and the guide loses its"
         " length and its clearance.",
         values=(
@@ -502,11 +510,17 @@ def _guide_edge_pressure(side: Side) -> Declaration:
             *given.heat(side),
         ),
         levers=levers.guide(side, "pressure_limit"),
-        page="Guides",
+        page=seat.page,
+        scales_with=(NORMAL_FORCE, 1.0) if side == "pivot" else (),
     )
-    def edge(solution: Solution) -> Demand:
-        """Maximum guide edge pressure, Pa."""
-        card = guide_of(solution.machine, side).material
+    def edge(solution: Solution) -> Demand | None:
+        """Maximum edge pressure, Pa; None of a pivot without a bush."""
+        bush = bush_of(solution.machine, side)
+        if bush is None:
+            return None
+        card, missing = bush.material, _lacking_pin(solution.machine, side)
+        if missing:
+            return Demand(None, card.yield_strength, missing=missing)
         worst = greatest(solution.cycles, lambda cycle: _edge(cycle.parts, side))
         limit = _at_temperature(solution, side, worst.value, card.yield_strength_at)
         return Demand(
@@ -521,7 +535,17 @@ def _guide_edge_pressure(side: Side) -> Declaration:
     return edge
 
 
-def _edge(parts: PartLoads, side: Side) -> Array:
+def _lacking_pin(machine: Machine, place: Place) -> tuple[str, ...]:
+    """Key of the material of the pin of a pivot, where it is missing."""
+    pivot = machine.pivot
+    return lacking(pivot.table, pivot, "pin_material") if place == "pivot" and pivot else ()
+
+
+def _edge(parts: PartLoads, side: Place) -> Array:
+    """Greatest pressure in a bush (n,), Pa."""
+    if side == "pivot":
+        unknown = np.full_like(parts.guide_edge_pressure_a, np.nan)
+        return unknown if parts.pivot_edge_pressure is None else parts.pivot_edge_pressure
     return parts.guide_edge_pressure_a if side == "A" else parts.guide_edge_pressure_b
 
 
@@ -667,6 +691,7 @@ guide_edge_pressure_a, guide_edge_pressure_b = _guide_edge_pressure("A"), _guide
 guide_temperature_a, guide_temperature_b = _guide_temperature("A"), _guide_temperature("B")
 guide_speed_a, guide_speed_b = _guide_speed("A"), _guide_speed("B")
 pivot_pressure, pivot_pv = _guide_pressure("pivot"), _guide_pv("pivot")
+pivot_edge_pressure = _guide_edge_pressure("pivot")
 pivot_temperature, pivot_speed = _guide_temperature("pivot"), _guide_speed("pivot")
 
 

@@ -1,4 +1,4 @@
-"""Line load of both guides over the turn, and bore pressure at its maximum."""
+"""Line load of both guides, or in the bush of a pivot, over the turn; its bore pressure."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from camwright.geometry.errors import ContactError
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.contact.elasticity.radial_compliance import SolidBar
 from camwright.pipeline.contact.pin_in_hole import Conforming, pin_in_hole
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.part_loads import guide_bodies
+from camwright.pipeline.cycle.part_loads import PivotPush, bore_of, guide_bodies
 from camwright.pipeline.follower.guide_reactions import Guide
 
 ANGLES = 721
@@ -78,6 +79,41 @@ def guide_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike]:
     return arrays
 
 
+PIVOT_ARRAYS = (
+    *GUIDE_ARRAYS[:2],
+    Column("position", "mm", "(k,) from the middle of the bush, towards the end that is pressed"),
+    Column("line_load", "N/mm", "(n, k) on the pin there, negative on its other side"),
+    Column("worst_row", "", "row of the maximum line load"),
+    Column("bore_angle", "deg", "(m,) from the line of action of the line load"),
+    Column("bore_pressure", "MPa", "(k, m) in the bore in that row"),
+)
+"""Arrays of ``5_pivot.npz``."""
+
+
+def pivot_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
+    """Arrays of ``5_pivot.npz`` by the headers of `PIVOT_ARRAYS`; None without a bush.
+
+    Each slice of the bush is an independent pin in a hole.
+    """
+    pushes = [PivotPush.of(c.machine, c.loads, c.follower_moment) for c in cycles]
+    pressed = [each for each in pushes if each is not None]
+    if not pressed:
+        return None
+    bush, pin = pressed[0].bush, pressed[0].pin
+    places = 0.5 * bush.length * np.linspace(-1.0, 1.0, SLICES)
+    lines = np.concatenate([each.lines(places) for each in pressed], axis=1)
+    row = first_greatest(np.abs(lines).max(axis=0))
+    return {
+        "load_case": np.repeat([c.load_case for c in cycles], [c.theta.size for c in cycles]),
+        "cam_angle_deg": np.degrees(np.concatenate([c.theta for c in cycles])),
+        "position_mm": _MM * places,
+        "line_load_N_per_mm": _N_PER_MM * lines.T,
+        "worst_row": np.array(row),
+        "bore_angle_deg": np.degrees(_round()),
+        "bore_pressure_MPa": _MPA * _around(pin, bush.diameter, bush, lines[:, row]),
+    }
+
+
 def loaded_length(knots: Array, line: Array) -> Array:
     """Evenly spaced positions, m, over the loaded knots (k,) and their neighbours."""
     on = np.flatnonzero(line)
@@ -88,7 +124,12 @@ def loaded_length(knots: Array, line: Array) -> Array:
 
 
 def bore_pressure(machine: Machine, guide: Guide, line_load: Array) -> Array:
-    """Pressure (k, m), Pa, around a guide's bore under line loads (k,), N/m.
+    """Pressure (k, m), Pa, of the stem around a guide's bore under line loads (k,), N/m."""
+    return _around(guide_bodies(machine, guide)[0], machine.stem.diameter, guide, line_load)
+
+
+def _around(pin: SolidBar, diameter: float, guide: Guide, line_load: Array) -> Array:
+    """Pressure (k, m), Pa, of a pin of a diameter, m, around a bore under line loads (k,), N/m.
 
     Each slice of the guide is an independent pin in a hole; a negative load acts on the other side
     of the bore. Solved at `_TABLE_LOADS` loads, interpolated between them at equal shares of the
@@ -101,7 +142,7 @@ def bore_pressure(machine: Machine, guide: Guide, line_load: Array) -> Array:
         return pressure
     loads = float(size.max()) * np.geomspace(_LEAST_LOAD, 1.0, _TABLE_LOADS)
     try:
-        solved = [_slice(machine, guide, float(load)) for load in loads]
+        solved = [_slice(pin, diameter, guide, float(load)) for load in loads]
     except ContactError:
         pressure[size > 0] = np.nan
         return pressure
@@ -120,11 +161,9 @@ def bore_pressure(machine: Machine, guide: Guide, line_load: Array) -> Array:
     return pressure
 
 
-def _slice(machine: Machine, guide: Guide, load: float) -> Conforming:
-    """Pressure of the stem in the bore of a guide at a line load, N/m, as a pin in a hole."""
-    pin, bore = guide_bodies(machine, guide)
-    radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
-    return pin_in_hole(load, radius, clearance, pin, bore, _KNOTS)
+def _slice(pin: SolidBar, diameter: float, guide: Guide, load: float) -> Conforming:
+    """Pressure of a pin of a diameter, m, in the bore of a guide at a line load, N/m."""
+    return pin_in_hole(load, 0.5 * diameter, 0.5 * guide.clearance, pin, bore_of(guide), _KNOTS)
 
 
 def _shape(contact: Conforming) -> Array:

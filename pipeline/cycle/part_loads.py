@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from camwright.pipeline.follower.guide_friction import (
     friction_power,
 )
 from camwright.pipeline.follower.guide_reactions import Guide
-from camwright.pipeline.follower.pivot_bush import pressed_bush
+from camwright.pipeline.follower.pivot_bush import bush_lines, pressed_bush
 from camwright.pipeline.follower.spring import end_travel, lever, natural_frequency, surge_force
 
 
@@ -160,6 +161,7 @@ def part_loads(
     motion = machine.follower.rolling(contour, loads, machine.cam_speed)
     pair = machine.guides
     nominal, worst = machine.guide_friction.nominal, friction.greatest
+    pivot = PivotPush.of(machine, loads, moment)
     return PartLoads(
         guide_edge_pressure_a=edge_pressure_of(machine, pair.a)(guide_lines[0]),
         guide_edge_pressure_b=edge_pressure_of(machine, pair.b)(guide_lines[1]),
@@ -186,30 +188,55 @@ def part_loads(
         ring_amplitude=amplitude,
         ring_mean=mean,
         ring_correction=correction,
-        pivot_edge_pressure=_pivot_edge(machine, loads, moment),
+        pivot_edge_pressure=None if pivot is None else pivot.edge_pressure,
     )
 
 
-def _pivot_edge(machine: Machine, loads: Loads, moment: Array) -> Array | None:
-    """Greatest pressure (n,), Pa, of the pin in the bush of a pivot, tilted by the contact.
+class PivotPush(NamedTuple):
+    """Load of an arm on the pin of its pivot (n,), in the plane of the contact normal and beside.
 
-    The couple of the contact is in the plane of its normal. None without a bush or the material of
-    its pin.
-
-    moment : array (n,)   of the contact about the middle of the follower, N m
+    force, couple: in that plane, N and N m, >= 0; beside: line load across it, N/m.
     """
-    if machine.arm is None or machine.pivot is None:
-        return None
-    bush, pin = machine.pivot.bush, machine.pivot.pin_material
-    if bush is None or pin is None:
-        return None
-    cos, sin = np.cos(loads.pressure_angle), np.sin(loads.pressure_angle)
-    along, across = loads.pivot_load
-    couple = moment + machine.arm.plane_offset * np.maximum(loads.normal_force, 0.0)
-    pressed = pressed_bush(bush, np.abs(along * cos + across * sin), couple)
-    aside = (across * cos - along * sin) / bush.length
-    load = np.hypot(pressed.line_load, aside)
-    return _in_bore(SolidBar(pin.E, pin.nu), bush, bush.diameter)(load)
+
+    bush: Guide
+    pin: SolidBar
+    force: Array
+    couple: Array
+    beside: Array
+
+    @classmethod
+    def of(cls, machine: Machine, loads: Loads, moment: Array) -> PivotPush | None:
+        """Of a turn; None without a bush, or the material of its pin.
+
+        moment : array (n,)   of the contact about the middle of the follower, N m
+        """
+        if machine.arm is None or machine.pivot is None:
+            return None
+        bush, card = machine.pivot.bush, machine.pivot.pin_material
+        if bush is None or card is None:
+            return None
+        cos, sin = np.cos(loads.pressure_angle), np.sin(loads.pressure_angle)
+        along, across = loads.pivot_load
+        couple = moment + machine.arm.plane_offset * np.maximum(loads.normal_force, 0.0)
+        pressed, aside = along * cos + across * sin, across * cos - along * sin
+        pin = SolidBar(card.E, card.nu)
+        return cls(bush, pin, np.abs(pressed), couple, aside / bush.length)
+
+    @property
+    def edge_pressure(self) -> Array:
+        """Greatest pressure (n,) between pin and bush, Pa."""
+        pressed = pressed_bush(self.bush, self.force, self.couple)
+        load = np.hypot(pressed.line_load, self.beside)
+        return _in_bore(self.pin, self.bush, self.bush.diameter)(load)
+
+    def lines(self, places: Array) -> Array:
+        """Line load (k, n), N/m, at places (k,), m, towards the end that the couple presses.
+
+        Of the plane of the couple and of that across it together; negative where the couple
+        presses the pin against the force.
+        """
+        lines = bush_lines(self.bush, self.force, self.couple, places)
+        return np.asarray(np.where(lines < 0.0, -1.0, 1.0) * np.hypot(lines, self.beside))
 
 
 def spring_surge(machine: Machine, lift: Array) -> Array | None:
@@ -234,10 +261,13 @@ def _own_force(machine: Machine, loads: Loads) -> Array:
 
 def guide_bodies(machine: Machine, guide: Guide) -> tuple[SolidBar, Bush]:
     """Stem and bush of a guide as pin and hole."""
-    stem, bush = machine.stem, guide.material
-    return SolidBar(stem.elastic_modulus, stem.poisson_ratio), Bush(
-        bush.E, bush.nu, 2.0 * guide.wall_share
-    )
+    stem = machine.stem
+    return SolidBar(stem.elastic_modulus, stem.poisson_ratio), bore_of(guide)
+
+
+def bore_of(guide: Guide) -> Bush:
+    """Bush of a guide as a hole."""
+    return Bush(guide.material.E, guide.material.nu, 2.0 * guide.wall_share)
 
 
 def edge_pressure_of(machine: Machine, guide: Guide) -> Callable[[Array], Array]:
@@ -247,8 +277,7 @@ def edge_pressure_of(machine: Machine, guide: Guide) -> Callable[[Array], Array]
 
 def _in_bore(pin: SolidBar, guide: Guide, diameter: float) -> Callable[[Array], Array]:
     """Pressure of a pin of a diameter, m, in a bore (...), Pa, by its line load, N/m."""
-    bore = Bush(guide.material.E, guide.material.nu, 2.0 * guide.wall_share)
-    radius, clearance = 0.5 * diameter, 0.5 * guide.clearance
+    radius, clearance, bore = 0.5 * diameter, 0.5 * guide.clearance, bore_of(guide)
     return lambda line_load: peak_pressure(line_load, radius, clearance, pin, bore)[0]
 
 

@@ -53,6 +53,20 @@ def pressed_bush(bush: Guide, force: Array, couple: Array) -> PressedBush:
     return PressedBush(tilt, greatest)
 
 
+def bush_lines(bush: Guide, force: Array, couple: Array, places: Array) -> Array:
+    """Line load (k, n), N/m, on a pin at places (k,), m, from the middle of its bush.
+
+    Positive where the force (n,), N, presses; the couple (n,), N m, presses the end of greatest
+    place; see `pressed_bush`.
+    """
+    pressed = pressed_bush(bush, force, couple)
+    modulus, gap = bush.foundation_modulus, 0.5 * bush.clearance
+    end = gap + pressed.line_load / modulus
+    sunk = end - pressed.tilt * (0.5 * bush.length - np.asarray(places)[:, None])
+    loads = modulus * np.sign(sunk) * np.maximum(np.abs(sunk) - gap, 0.0)
+    return np.asarray(np.where(pressed.line_load > 0.0, loads, 0.0))
+
+
 def _between_edges(bush: Guide, force: Array, couple: Array) -> tuple[Array, Array]:
     """Tilt, rad, and greatest line load, N/m, (m,) each, of a pin that a force, N, and a couple, N
     m, (m,) press to both sides of its bush; tilt by bisection.

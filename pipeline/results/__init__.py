@@ -47,6 +47,7 @@ In the order of a run:
 | ``trial_N/5_speed_sweep.csv`` | extremes of the turn over the speed               |
 | ``trial_N/5_pressure.npz`` | contact pressure at every position                   |
 | ``trial_N/5_guides.npz``   | line load of the guides, pressure in their bores     |
+| ``trial_N/5_pivot.npz``    | line load in the bush of a pivot, pressure around it |
 | ``trial_N/5_length.npz``   | pressure along the line of contact, ends and tilt    |
 | ``trial_N/5_envelope.npz`` | maximum stresses of the turn below the contour       |
 | ``trial_N/6_checks.json``  | checks                                               |

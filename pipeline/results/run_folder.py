@@ -93,6 +93,7 @@ FILES: Mapping[str, Callable[[Any], bytes | str]] = {
     run_reader.SWEEP_FILE: _csv,
     "5_pressure.npz": npz_bytes,
     "5_guides.npz": npz_bytes,
+    "5_pivot.npz": npz_bytes,
     "5_length.npz": npz_bytes,
     "5_envelope.npz": npz_bytes,
     "6_checks.json": _json,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from camwright.meshes.mesh_files import write_msh
 from camwright.pipeline.cycle.axial_pressure import axial_arrays
-from camwright.pipeline.cycle.guide_pressure import guide_arrays
+from camwright.pipeline.cycle.guide_pressure import guide_arrays, pivot_arrays
 from camwright.pipeline.cycle.rolling_history import envelope_arrays
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_records import (
@@ -43,6 +43,8 @@ def write_trial_files(folder: RunFolder, trial: Trial) -> None:
     folder.write("5_pressure.npz", pressure_arrays(cycles), number)
     if trial.solution.machine.arm is None:
         folder.write("5_guides.npz", guide_arrays(cycles), number)
+    if (pivot := pivot_arrays(cycles)) is not None:
+        folder.write("5_pivot.npz", pivot, number)
     if (axial := axial_arrays(cycles)) is not None:
         folder.write("5_length.npz", axial, number)
     write_judgement(folder, trial)

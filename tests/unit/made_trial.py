@@ -390,6 +390,7 @@ def _parts(base: Cycle) -> PartLoads:
         friction=replace(parts.friction, greatest=roughest),
         guide_edge_pressure_a=30e6 + 10e6 * WAVE,
         guide_edge_pressure_b=20e6 + 10e6 * WAVE,
+        pivot_edge_pressure=25e6 + 10e6 * WAVE,
         heat_a=heat,
         heat_b=heat,
         heat_max_a=hot_a,

@@ -88,6 +88,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_ARM, "test_fatigue_and_yield_of_the_arm_by_stress_tensors"): (
         "arm_fatigue_pivot", "arm_fatigue_roller", "arm_yield",
     ),
+    (_ARM, "test_edge_pressure_of_the_pivot_over_the_turn"): ("pivot_edge_pressure",),
     # spring and motion
     (_SPRING, "test_margin_and_jump_from_motion_in_time"): (
         "contact_force_margin", "jump", "jump_speed", "contact_at_overspeed",

@@ -651,6 +651,24 @@ def needles(**values):
     return on_pivot("needle_bearing", **values)
 
 
+WARM = (56.85 - 20.0) / 80.0  # of the way from the strength of nylon at 20 degC to that at 100
+
+
+def without_pin():
+    """The solution on an arm of which no material of the pin is stated."""
+    case = made.arm_case()
+    pivot = made.changed(case.follower.pivot, pin_material=None)
+    return made.arm_solution(
+        case=made.changed(case, follower=made.changed(case.follower, pivot=pivot))
+    )
+
+
+def edgeless():
+    """The solution on an arm with unknown pressures in its bush."""
+    cycle = cycle_with("parts", made.cycle(made.arm_contour()), pivot_edge_pressure=NAN)
+    return made.arm_solution(cycles=(cycle,))
+
+
 NO_LOAD = {"pivot_load": np.full((2, made.POSITIONS), np.nan)}
 # bush of 10 by 20 mm, 500 N sin, 0.4 m/s sin by 5 over 60 mm on the pin; nylon as of the guides
 PIN_SPEED = 0.4 * 5.0 / 60.0
@@ -665,6 +683,19 @@ tried(
     lambda: on_pivot(loads=NO_LOAD),
     500.0 / 200.0,
     "R/(d l)",
+    base=made.arm_solution,
+)
+tried(
+    "pivot_edge_pressure",
+    limited(
+        "pivot_edge_pressure",
+        lambda p: on_nylon(yield_strength=(p - 40e6 * WARM) / (1.0 - WARM)),
+        made.arm_solution,
+    ),
+    without_pin,
+    edgeless,
+    35.0,
+    "greatest of the turn",
     base=made.arm_solution,
 )
 tried(

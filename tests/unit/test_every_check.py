@@ -61,6 +61,7 @@ MUST_HAVE = {
     *("guide_edge_pressure_A", "guide_edge_pressure_B", "guide_temperature_A"),
     *("guide_temperature_B", "guide_speed_A", "guide_speed_B", "guide_expansion_A"),
     *("guide_expansion_B", "guide_wear_A", "guide_wear_B"),
+    "pivot_edge_pressure",
     *("pivot_pressure", "pivot_pv", "pivot_temperature", "pivot_speed", "pivot_expansion"),
     *("pivot_wear", "pivot_jam_index", "pivot_jam_index_friction_max", "pivot_static"),
     "pivot_life",

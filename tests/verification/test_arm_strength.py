@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from numpy.polynomial import chebyshev
+from pin_in_hole_elements import pin_in_hole_by_elements
 
 from camwright.geometry.arrays import rotation
 from camwright.pipeline.base.material import Material
@@ -22,12 +23,14 @@ from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.contact.elasticity.radial_compliance import Bush, SolidBar
 from camwright.pipeline.contact.pin_in_hole import pin_in_hole
 from camwright.pipeline.cycle.cycle import turn_of_line
+from camwright.pipeline.cycle.guide_pressure import pivot_arrays
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.part_loads import PivotPush
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.arm_beam import ArmBar, torsion_of_rectangle
 from camwright.pipeline.follower.guide_contact import BearingLine, settle
 from camwright.pipeline.follower.guide_reactions import Guide, lobatto
-from camwright.pipeline.follower.pivot_bush import pressed_bush
+from camwright.pipeline.follower.pivot_bush import bush_lines, pressed_bush
 from camwright.pipeline.follower.roller_parts import Fork, Pin
 from camwright.pipeline.follower.shaft_strength import slope_of
 from camwright.pipeline.follower.spring_link import SpringLink
@@ -441,6 +444,41 @@ def test_edge_pressure_of_the_pivot_over_the_turn(swing, measured):
     assert int(np.argmax(edge)) == k
     one = pin_in_hole(float(load[k]), 0.008, 0.015e-3, pin, bore)
     measured("edge pressure of a pivot", edge[k], one.peak_pressure, rtol=5e-3)
+    check = DECLARED["pivot_edge_pressure"](solution)
+    assert check.demand == max(c.parts.pivot_edge_pressure.max() for c in solution.cycles)
+    window = 1.4 * one.contact_angle
+    _, solved = pin_in_hole_by_elements(load[k] / 0.008, 0.015 / 8.0, pin, bore, window)
+    peak = float(solved.pressure[0].max())
+    measured("edge pressure of a pivot by elements", edge[k], peak, rtol=0.02)
+
+
+def test_line_loads_of_the_bush_over_the_turn_add_up_to_the_reaction():
+    """Along the bush in equilibrium with force and couple; around it with each slice."""
+    solution = trial("with", "0 mm", PIVOT).solution
+    cycle, bush = solution.cycles[0], solution.machine.pivot.bush
+    places = np.linspace(-0.5, 0.5, 20_001) * bush.length
+    force, couple = FORCES[:-1], COUPLES[:-1]
+    lines = bush_lines(bush, force, couple, places)
+    np.testing.assert_allclose(np.trapezoid(lines, places, axis=0), force, rtol=1e-6, atol=1e-6)
+    turned = np.trapezoid(lines * places[:, None], places, axis=0)
+    np.testing.assert_allclose(turned, couple, rtol=1e-6, atol=1e-6)
+    arrays = pivot_arrays(solution.cycles)
+    first, k = arrays["line_load_N_per_mm"][: cycle.theta.size], int(arrays["worst_row"])
+    along = arrays["position_mm"]
+    push = PivotPush.of(solution.machine, cycle.loads, cycle.follower_moment)
+    load = np.hypot(push.force, push.beside * bush.length)
+    np.testing.assert_allclose(load, np.hypot(*cycle.loads.pivot_reaction), rtol=1e-9)
+    inplane = np.sign(first) * np.sqrt(np.maximum(first**2 - (1e-3 * push.beside[:, None]) ** 2, 0))
+    # 81 places on the ends of a contact
+    pressed = np.trapezoid(inplane, along, axis=1)
+    both = np.trapezoid(np.abs(inplane), along, axis=1)
+    assert (np.abs(pressed - push.force) <= 2e-2 * both).all()
+    around, angle = arrays["bore_pressure_MPa"], np.radians(arrays["bore_angle_deg"])
+    slices = np.trapezoid(around * np.cos(angle), angle, axis=1) * 0.5e3 * bush.diameter
+    line = arrays["line_load_N_per_mm"][k]
+    np.testing.assert_allclose(slices, line, rtol=5e-3, atol=5e-3 * np.abs(line).max())
+    peak = max(c.parts.pivot_edge_pressure.max() for c in solution.cycles)
+    assert around.max() == pytest.approx(1e-6 * peak, rel=5e-3)
 
 
 # --- Demands ------------------------------------------------------------------------------------
