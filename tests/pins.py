@@ -130,7 +130,7 @@ def of_gradients(name: str) -> Json:
     smoothing = case.smoothing.model_copy(update={"corners": True})
     case = case.model_copy(update={"smoothing": smoothing})
     problem = problem_of(case, engine_torques(case))
-    if problem.ratings.follower == "roller":
+    if case.follower.face is None:
         problem = described(problem)
     problem = with_corrections(problem, 3)
     search, variables, ratings = Search(problem), problem.variables, problem.ratings

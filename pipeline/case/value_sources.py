@@ -20,7 +20,7 @@ UNSTATED = Source("stated without a source", confirmed=False)
 OF_A_CHECK = "checks."
 """Prefix of a value that the program holds: the limit that a check declares."""
 _WILD = re.compile(r"[*?[]")
-_WORDS = ("source", "sources", "name", "condition")
+_WORDS = ("source", "sources", "name", "condition", "closure")
 _NO_VALUES = (
     "schema_version",
     "name",
