@@ -26,7 +26,6 @@ from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.checks.missing_keys import lacking_of_card
-from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import groove_of
 from camwright.pipeline.cycle.crossover_history import WallImpact
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
@@ -40,7 +39,6 @@ PLATE_MOMENT = 0.509
 @check(
     UNDERCUT_FACTOR,
     title="Minimum undercut factor of the outer wall",
-    tier=Tier.SCREENING,
     formula="min(1 + r kappa_p) >= c; r: roller radius, kappa_p: curvature of the pitch curve,"
     " negative in a hollow, c: limits.undercut_factor",
     symbols={"r": "roller.radius", "kappa_p": "pitch_curvature"},
@@ -139,7 +137,6 @@ def groove_wall(cam: LoadedCam) -> Array:
     unit="-",
     source=Source("a roller between walls that close in on it is blocked", confirmed=True),
     method="width of the profile tolerance, by which both walls together may narrow the groove",
-    tier=Tier.SCREENING,
     moved_by_tolerance=False,
     needs="roller",
     closed_by="form",
@@ -161,7 +158,6 @@ def groove_clearance(cam: LoadedCam) -> Array:
     CAM_RADIUS,
     id="groove_radius",
     title="Radius of the disc around the groove",
-    tier=Tier.SCREENING,
     formula="R <= r; R: cam.groove.outer_radius, r: limits.cam_radius",
     symbols={"R": "cam.groove.outer_radius"},
     reason="The cam must fit into its space.",

@@ -128,6 +128,7 @@ def test_the_run_folder_holds_what_is_listed(folder: Path) -> None:
         "1_speed.csv",
         "corners.json",
         "trial_1/2_limits.csv",
+        "trial_1/5_pivot.npz",
         "workshop/crown_cam.csv",
         "figures/",
         "fields/ends.vtu",

@@ -140,7 +140,16 @@ def test_the_source_of_every_limit_is_looked_up_and_no_other():
     sources = Watched()
     of_return = with_limits(pressure_angle=0.3, return_pressure_angle=0.2)
     needles = made.arm_solution("needle_bearing")
-    for solution in (made.solution(), hollow(), soft(), faced(), of_return, needles, on_arm()):
+    for solution in (
+        made.solution(),
+        hollow(),
+        soft(),
+        faced(),
+        of_return,
+        needles,
+        on_arm(),
+        made.in_groove(),
+    ):
         limits = made.changed(solution.case.limits, sources=sources)
         case = made.changed(solution.case, limits=limits)
         all_checks(made.changed_solution(solution, case=case))

@@ -323,6 +323,7 @@ NAME_CHECKS = {
     "pipeline.case.cards.substitution": _FREE,
     "pipeline.case.closure_tables": "key of a cam",
     "pipeline.case.limits": "row of the table of limits",
+    "pipeline.case.value_sources": "key of a cam",
     "pipeline.case.requirements_section": _FREE,
     "pipeline.checks.demands": _GROUP,
     "pipeline.cycle.cycle": _COLUMN,

@@ -21,7 +21,7 @@ from camwright.pipeline.case.lift_section import CamLiftPoint
 from camwright.pipeline.case.section import section_of
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.contact.axial_shape import AxialCrown
-from camwright.pipeline.contact.cam_body import BalanceHole
+from camwright.pipeline.contact.cam_body import BalanceHole, CamGroove
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.engine.cylinder import CylinderEngine, ExhaustLiftPoint
 from camwright.pipeline.engine.engine_torque import TorqueTable
@@ -108,6 +108,7 @@ def every_part() -> dict[type[Part], Part]:
         needles := NeedleBearing(diameter=0.016, length=0.016, friction=0.0025),
         Pivot(needle_bearing=needles),
         BalanceHole(),
+        CamGroove(clearance=2e-5, depth=0.012, outer_radius=0.09),
         Counterweight(unbalance=1e-4, angle=0.0, position=0.0),
         ShaftSection(
             name="groove", position=0.0, diameter=0.016, notch_bending=2.0, notch_torsion=1.5
