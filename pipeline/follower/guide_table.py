@@ -153,7 +153,9 @@ class GuideTable(ABC):
         return np.asarray(numbers[flat].reshape(along.shape))
 
     def _solve(self, along: int, across: int) -> None:
-        """Add the ratios (6, forces) at a node and at the others of its group."""
+        """Solve and keep the ratios of `GuideLoads` (6, forces) at a node, number `along` in
+        overhang or direction and `across` in spacing, and at the others of its group.
+        """
         guides = self.guides
         if across != _STATED:
             guides = replace(guides, spacing=float(np.exp(across * _SPACING_STEP)))
@@ -177,10 +179,10 @@ class OverhangTable(GuideTable):
     """Guide loads over side force and overhang, in units of point-support reactions."""
 
     def _nodes(self, along: NDArray[np.intp], guides: GuidePair) -> GuideLoads:
-        # The roller does not enter guide A: positions just outside take the node at its mouth.
         """Loads over their units (nodes, forces) under side forces alone, at overhangs of `along`
         (nodes, 1) steps, in guides of a spacing.
         """
+        # The roller does not enter guide A: positions just outside take the node at its mouth.
         overhang = np.maximum(along * _OVERHANG_STEP * guides.spacing, 0.5 * guides.a.length)
         force, reach = np.broadcast_arrays(_FORCES, overhang)
         reactions = guide_reactions(force.ravel(), reach.ravel(), self._long, guides)
