@@ -31,7 +31,7 @@ In the order of the calculation:
 | `arm_face`          | cam surface under a face of an arm          | psi, rad; f, q, m            |
 | `arm_size`          | prime radius and centre distance of an arm  | r, c, m                      |
 | `swung_bar`         | distances of an arm over its swing          | psi, rad; m                  |
-| `form_closure`      | walls of a groove, second disc, yoke        | x, y, m; rho, m              |
+| `form_closure`      | walls of a groove                           | x, y, m                      |
 | `measured_contour`  | measured contour against the nominal one    | phase, rad; deviation, m     |
 | `cutter_path`       | path of a milling cutter or grinding wheel  | x, y, m                      |
 | `cutouts`           | bore, keyway and counter-hole               | m                            |

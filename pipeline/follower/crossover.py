@@ -43,19 +43,6 @@ class Landing(NamedTuple):
         return self.wall != self.start
 
 
-def closed_form_landing(clearance: float, jerk: float) -> tuple[float, float]:
-    """Time, s, and landing speed, m/s, of a crossover of small clearance under inertia alone.
-
-    The acceleration passes zero at a rate j: t = (6 c/j)^(1/3), v = (9/2 c^2 j)^(1/3).
-
-    Parameters
-    ----------
-    clearance : float   c, m, along the travel
-    jerk : float        j, m/s3, at the zero of the acceleration
-    """
-    return (6.0 * clearance / jerk) ** (1.0 / 3.0), (4.5 * clearance**2 * jerk) ** (1.0 / 3.0)
-
-
 def landings(
     required: Array,
     clearance: Array,

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.motion_laws import Segment, SegmentMotion
-from camwright.pipeline.follower.crossover import INNER, OUTER, closed_form_landing, landings
+from camwright.pipeline.follower.crossover import INNER, OUTER, landings
 
 COUNT = 14400
 THETA = uniform_turn(COUNT)
@@ -41,6 +41,14 @@ LAWS = (
     ("polynomial_345", 30.0, 9.396), ("polynomial_4567", 52.5, 11.322),
 )  # fmt: skip
 """Law, jerk in the middle by the greatest of its kind, landing speed at 20 um, mm/s."""
+
+
+def closed_form_landing(clearance, jerk):
+    """Time, s, and landing speed, m/s, under inertia: (6 c/j)^(1/3), (9/2 c^2 j)^(1/3).
+
+    clearance, m, along the travel; jerk, m/s3, at the zero of the acceleration.
+    """
+    return (6.0 * clearance / jerk) ** (1.0 / 3.0), (4.5 * clearance**2 * jerk) ** (1.0 / 3.0)
 
 
 @pytest.mark.parametrize(("law", "jerk", "landed"), LAWS)
