@@ -36,7 +36,8 @@ def dead_load(case: Case) -> float:
     """Weight and mean external force, N, positive towards the cam; of an arm at zero lift."""
     follower, mean = case.follower, external_force(case).mean
     if follower.pivot is not None and follower.arm is not None:
-        pivot = follower.pivot.about(follower.arm, follower.mass, case.cam.prime_radius)
+        prime, offset = case.cam.prime_radius, case.facing.offset
+        pivot = follower.pivot.about(follower.arm, follower.mass, prime, offset)
         return float(pivot.applied(mean, pivot.travel(0.0)))
     return follower.mass * follower.gravity_along_axis + mean
 

@@ -420,7 +420,8 @@ class Machine(Displayed):
         """Pivot of the arm with what acts about it; None without one."""
         if self.arm is None or self.pivot is None:
             return None
-        pivot = self.pivot.about(self.arm, self.mass, self.cam.prime_radius)
+        prime, offset = self.cam.prime_radius, self.follower.offset
+        pivot = self.pivot.about(self.arm, self.mass, prime, offset)
         return replace(pivot, friction=self.friction.nominal[0], spring=self.spring.shape)
 
     @property

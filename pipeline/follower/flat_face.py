@@ -120,7 +120,7 @@ class FollowerFace(Part):
     @property
     def reference(self) -> str:
         """See `FollowerKind`."""
-        return "middle of the face"
+        return "end of the arm" if self.on_arm else "middle of the face"
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -66,7 +66,8 @@ class FollowerKind(Protocol):
     along the line of contact; `line_width`: maximum width of the line contact, m; `friction`:
     coefficient of sliding on the cam; `roughness`: rms, m; `slides`: whether its surface slides on
     the cam, not rolls; `end`: of its surface, None where it is not stated; `crown`: None for a
-    straight one; `axial_offset`: of its middle from that of the cam, m, None where it is not
+    straight one; `offset`: of a flat face on an arm from the pivot towards the cam, m, None of any
+    other; `axial_offset`: of its middle from that of the cam, m, None where it is not
     stated; `parts`: those of the scope by their names there, None: not described; `spared`: keys
     that other parts do not need with it; `drag`: against rolling, None without it.
     """
@@ -95,6 +96,8 @@ class FollowerKind(Protocol):
     def crown(self) -> AxialCrown | None: ...
     @property
     def axial_offset(self) -> float | None: ...
+    @property
+    def offset(self) -> float | None: ...
     @property
     def parts(self) -> Mapping[str, Part | None]: ...
     @property

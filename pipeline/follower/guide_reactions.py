@@ -43,6 +43,19 @@ def _no_press_fit(field: str, clearance: float) -> None:
         raise InputError(field, shown(clearance, "mm"), ">= 0 mm: a press fit cannot slide")
 
 
+def require_about(table: str, nominal: float, low: float | None, high: float | None) -> None:
+    """Refuse a least or greatest friction, of a table, on the wrong side of the nominal one.
+
+    Raises
+    ------
+    InputError
+    """
+    if low is not None and not low <= nominal:
+        raise InputError(f"{table}.friction_min", low, f"<= friction = {nominal:.4g}")
+    if high is not None and not nominal <= high:
+        raise InputError(f"{table}.friction_max", high, f">= friction = {nominal:.4g}")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Guide(Part):
     """Guide of the stem; its limits hold for dry running unless the source states otherwise.
@@ -142,13 +155,7 @@ class Guide(Part):
         """
         super().__post_init__()
         _no_press_fit("guide.clearance", self.clearance)
-        low, high = self.friction_min, self.friction_max
-        if low is not None and not low <= self.friction:
-            limit = f"<= friction = {self.friction:.4g}"
-            raise InputError("guide.friction_min", low, limit)
-        if high is not None and not self.friction <= high:
-            limit = f">= friction = {self.friction:.4g}"
-            raise InputError("guide.friction_max", high, limit)
+        require_about("guide", self.friction, self.friction_min, self.friction_max)
 
     @cached_property
     def foundation_modulus(self) -> float:
@@ -325,7 +332,7 @@ class GuideReactions(Displayed):
         """Load, N, and loaded length, m, of the side of a guide (0: A, 1: B) that has the greater
         mean line load at the position of this number.
 
-        At the number of a position; the loaded length, m, is that of `mean_line_load`.
+        The loaded length is that of `mean_line_load`.
         """
         lines = (self.line_pressure_a, self.knots_a), (self.line_pressure_b, self.knots_b)
         load, knots = lines[guide]

@@ -20,7 +20,7 @@ from camwright.pipeline.base.quantities import (
 )
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.follower.arm import FollowerArm
-from camwright.pipeline.follower.guide_reactions import Guide
+from camwright.pipeline.follower.guide_reactions import Guide, require_about
 from camwright.pipeline.follower.pivot_forces import ArmPivot
 from camwright.pipeline.follower.roller_parts import DynamicRating, StaticRating
 
@@ -53,6 +53,11 @@ class NeedleBearing(Part):
     C: Annotated[DynamicRating | None, Known("bearing catalogue", "10.5 kN")] = None
     C0: Annotated[StaticRating | None, Known("bearing catalogue", "14 kN")] = None
     source: TableSource = NO_SOURCE
+
+    def __post_init__(self) -> None:
+        """Refuse a least or greatest friction on the wrong side of the nominal one."""
+        super().__post_init__()
+        require_about(self.table, self.friction, self.friction_min, self.friction_max)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,12 +136,16 @@ class Pivot(Part):
         mass = self.swinging_mass
         return self if mass is None else replace(self, swinging_mass=factor * mass)
 
-    def about(self, arm: FollowerArm, mass: float, prime_radius: float) -> ArmPivot:
-        """Pivot of an arm with a mass at its reference point, kg, at a prime radius, m."""
+    def about(
+        self, arm: FollowerArm, mass: float, prime_radius: float, offset: float | None
+    ) -> ArmPivot:
+        """Pivot of an arm with a mass at its reference point, kg, at a prime radius, m; offset of a
+        flat face from the pivot, m, None of a round surface.
+        """
         return ArmPivot(
             length=arm.length,
             sense=arm.sense,
-            start=float(arm.linkage.angle(prime_radius)),
+            start=arm.start(prime_radius, offset),
             radius=0.5 * self.bearing.diameter,
             friction=self.bearing.friction,
             mass=mass if self.swinging_mass is None else self.swinging_mass,

@@ -45,6 +45,7 @@ class Roller(Part):
 
     table: ClassVar[str] = "roller"
     word: ClassVar[str] = "roller"
+    offset: ClassVar[None] = None
     width_key: ClassVar[str] = "roller.width"
     slides: ClassVar[bool] = False
     spared: ClassVar[tuple[str, ...]] = ()

@@ -17,6 +17,7 @@ from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks.arm_strength import arm_forces
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.cycle.arm_bodies import swung_bodies
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
@@ -170,7 +171,7 @@ def test_the_drawing_states_arm_and_face():
     lines = [each for kind in KINDS for each in notes_of(parse_case(face_text(kind)))]
     assert "face 5 mm from the pivot towards the cam" in lines
     assert "face of radius 23.5 mm about the end of the arm" in lines
-    assert sum("95 mm to the middle of the face; arm at" in each for each in lines) == 2
+    assert sum("95 mm to the end of the arm; arm at" in each for each in lines) == 2
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -212,6 +213,35 @@ def test_an_arm_and_a_pivot_that_are_described_are_judged_with_a_face():
     made = {each.id: each for each in trial.checks}
     assert {"arm_fatigue_pivot", "arm_yield", "data_arm", "data_pivot", "arm_gap"} <= made.keys()
     assert made["friction_balance"].demand < 1e-9
+    # the pivot swings as the contour does: a weight or a linked spring acts at the true angle
+    machine, theta = trial.solution.machine, np.linspace(0.0, 6.0, 7)
+    pitch = trial.contour.pitch
+    travel = machine.arm_pivot.travel(pitch.lift(theta))
+    np.testing.assert_allclose(travel, pitch.travel(theta), rtol=1e-12)
+
+
+def test_a_flat_face_twists_and_bends_its_arm_where_it_touches():
+    """Normal force at its place: torsion by it, bending as of a beam with the load there."""
+    whole = face_text("flat").replace("[follower.face]\n", DESCRIBED, 1)
+    whole = whole[: whole.index("[scope]")] + whole[whole.index("[lubricant]") :]
+    whole = whole.replace('depth = "24 mm"', 'depth = "24 mm"\nplane_offset = "10 mm"', 1)
+    trial = preview_case(parse_case(whole).with_positions(90), corners=False)
+    cam, machine = next(iter(trial.solution.cams.values())), trial.solution.machine
+    bar, forces = machine.arm_bar, arm_forces(cam)
+    normal, place = cam.normal, cam.motion.from_pivot
+    assert np.ptp(place) > 0.005
+    section = bar.pivot[-1]
+    loads = bar.loads(section, forces)
+    touched = normal > 0.0
+    away = np.where(touched, forces.couple, 0.0) / normal + 0.010
+    np.testing.assert_allclose(loads.twisting, normal * away, rtol=1e-9)
+    # beyond the section only the contact, the mass and, at the pivot, no spring
+    still = forces._replace(inertia=0.0 * normal, closing=0.0 * normal)
+    bent = bar.bending(section.distance, still)
+    rub = forces.across * bar.length - normal * place  # moment of the friction of the face
+    expected = normal * (place - section.distance) + rub
+    np.testing.assert_allclose(bent, expected, rtol=1e-9)
+    assert (np.sign(loads.sideways) == np.sign(forces.along)).all()
 
 
 @pytest.mark.parametrize("kind", KINDS)
