@@ -80,6 +80,7 @@ def arm_forces(cam: LoadedCam) -> ArmForces:
     across, sense = cam.axial, _arm_of(cam.numbers).sense
     return ArmForces(
         across=across,
+        pressed=across * cam.motion.pressing,
         along=np.asarray(-sense * across * cam.motion.side),
         normal=cam.normal,
         closing=cam.closing,
@@ -152,7 +153,7 @@ def _arm_fatigue(place: Literal["pivot", "roller"], needs: Literal["", "roller"]
     def fatigue(solution: Solution) -> Demand:
         """Least fatigue safety factor over the sections at the place and the load cases."""
         machine, limit = solution.machine, solution.machine.limits[ARM_SAFETY]
-        arm, bar = _arm_of(solution.numbers), bar_of(solution.numbers)
+        arm, bar = _arm_of(solution.numbers), machine.arm_bar
         missing = _lacking(arm, notch)
         if arm.material is not None:
             missing += lacking_of_card(arm.material, "fatigue_bending", "tensile_strength")
@@ -226,7 +227,7 @@ def _yield_allowed(numbers: Numbers) -> Allowed:
 
 def _with_section(demand: Demand, solution: Solution) -> Demand:
     """Demand with the section that governs, its loads, N and N m, and its moduli."""
-    bar = bar_of(solution.numbers)
+    bar = solution.machine.arm_bar
     if demand.at is None or bar is None:
         return demand
     cycle, k = row_of(solution.cycles, demand.at)

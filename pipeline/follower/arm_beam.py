@@ -140,12 +140,14 @@ class ArmSection(NamedTuple):
 class ArmForces(NamedTuple):
     """Forces on the arm (...), N, reduced to its end at the length of the arm.
 
-    across: of the contact along the arc; along: the same along the arm, > 0 in tension; normal:
-    of the contact; closing: of spring, weight and machine; inertia: of the mass; couple: of the
-    contact about the middle of the roller in the plane of its normal and the cam axis, N m, >= 0.
+    across: of the contact along the arc, by its moment; pressed: the same where it acts; along: of
+    the contact along the arm, > 0 in tension; normal: of the contact; closing: of spring, weight
+    and machine; inertia: of the mass; couple: of the contact about the middle of the roller in the
+    plane of its normal and the cam axis, N m, >= 0.
     """
 
     across: Array
+    pressed: Array
     along: Array
     normal: Array
     closing: Array
@@ -218,8 +220,6 @@ class ArmBar:
     def roller(self) -> tuple[ArmSection, ...]:
         """Sections at the roller: the eye of the pin, where the pin is described, and the cheeks or
         the arm where they leave the eye.
-
-        The eye is judged where the pin is described.
         """
         notch, (reach, width, depth, cheeks) = self.arm.roller_notch or np.nan, self._end
         left = (width, depth) if cheeks else (self.width, self.depth)
@@ -265,7 +265,8 @@ class ArmBar:
         bar = 1.0 - 1.5 * share + 0.5 * share**3
         swung = self.end_share * (1.0 - share) + (1.0 - self.end_share) * bar
         pressed = max(1.0 - distance / self.held, 0.0) if self.held else 0.0
-        moment = forces.across * (1.0 - share) - forces.closing * pressed - forces.inertia * swung
+        moment = forces.across - forces.pressed * share - forces.inertia * swung
+        moment = moment - forces.closing * pressed
         return np.asarray(self.length * moment)
 
     def loads(self, section: ArmSection, forces: ArmForces) -> SectionLoads:
@@ -286,8 +287,7 @@ class ArmBar:
         if section.cheeks > 1:
             return SectionLoads(bent * uneven, forces.along * uneven, none, none)
         offset = away + self._offset(section)
-        sideways = magnitude(forces.along) * offset
-        return SectionLoads(bent, forces.along, sideways, forces.across * offset)
+        return SectionLoads(bent, forces.along, forces.along * offset, forces.pressed * offset)
 
     def _offset(self, section: ArmSection) -> float:
         """Distance of the middle of a section from that of the roller, m."""
