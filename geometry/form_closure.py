@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -75,10 +74,6 @@ class Groove(Displayed):
 
     def section(self) -> tuple[float, Array]:
         """Area of the groove, m2, and its first moment about the cam axis (2,), m3."""
-        return self._section
-
-    @cached_property
-    def _section(self) -> tuple[float, Array]:
         theta = uniform_turn(self.pitch.lift.search_count)
         speed, curvature = self.pitch.speed_and_curvature(theta)
         # a strip across the groove is as long as the path at its distance n: 1 + n kappa

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,9 +29,11 @@ from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.cycle.cam_balance import groove_of
 from camwright.pipeline.cycle.crossover_history import WallImpact
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.follower.crossover import Landing
 
 PLATE_MOMENT = 0.509
 """Greatest moment per length at the root of a long cantilever plate over a load at its edge."""
@@ -174,32 +177,38 @@ def groove_radius(cam: LoadedCam) -> Array:
     return np.asarray(cam.numbers["cam.groove.outer_radius"])
 
 
-def _worst_impact(solution: Solution, measure: Callable[[WallImpact], float]) -> Extreme | None:
+class _Worst(NamedTuple):
+    """Greatest figure of the landings, the cycle in which it occurs, and the flight before it."""
+
+    value: float
+    cycle: Cycle
+    flight: Landing
+
+    @property
+    def at(self) -> Extreme:
+        """Load case, and cam angle of the landing, or of the take-off where none follows."""
+        lost = np.isnan(self.flight.landing)
+        angle = self.flight.take_off if lost else self.flight.landing
+        return Extreme(self.value, self.cycle.load_case, angle)
+
+    @property
+    def words(self) -> str:
+        """Number of landings in a turn of the load case, and the flight."""
+        one = self.flight
+        if np.isnan(one.landing):
+            return f"the flight from {shown(one.take_off, 'deg')} does not end within a turn"
+        walls = {1.0: "inner", -1.0: "outer"}
+        return (
+            f"{len(self.cycle.impacts)} landings a turn; from the {walls[one.start]} wall at"
+            f" {shown(one.take_off, 'deg')} to the {walls[one.wall]}, {shown(one.time, 'ms')}"
+        )
+
+
+def _worst_impact(solution: Solution, measure: Callable[[WallImpact], float]) -> _Worst | None:
     """Greatest figure of the landings of all load cases; None without a landing."""
-    found = [(measure(one), cycle.load_case, one) for cycle in solution.cycles
+    every = [_Worst(measure(one), cycle, one.flight) for cycle in solution.cycles
              for one in cycle.impacts]  # fmt: skip
-    if not found:
-        return None
-    value, load_case, one = found[first_greatest([each[0] for each in found])]
-    lost = np.isnan(one.flight.landing)
-    return Extreme(value, load_case, one.flight.take_off if lost else one.flight.landing)
-
-
-def _landing_words(solution: Solution, worst: Extreme) -> str:
-    """Number of landings in a turn of the load case, and the flight before the worst."""
-    cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
-    one = next(
-        each.flight
-        for each in cycle.impacts
-        if worst.cam_angle in (each.flight.landing, each.flight.take_off)
-    )
-    if np.isnan(one.landing):
-        return f"the flight from {shown(one.take_off, 'deg')} does not end within a turn"
-    walls = {1.0: "inner", -1.0: "outer"}
-    return (
-        f"{len(cycle.impacts)} landings a turn; from the {walls[one.start]} wall at"
-        f" {shown(one.take_off, 'deg')} to the {walls[one.wall]}, {shown(one.time, 'ms')}"
-    )
+    return every[first_greatest([each.value for each in every])] if every else None
 
 
 _FLIGHT = (
@@ -232,8 +241,7 @@ def landing_speed(solution: Solution) -> Demand:
     worst = _worst_impact(solution, lambda one: one.flight.speed)
     if worst is None:
         return Demand(0.0, limit, note="one wall carries all over the turn", stated={"v": 0.0})
-    note = _landing_words(solution, worst)
-    return Demand(worst.value, limit, worst, note=note, stated={"v": worst.value})
+    return Demand(worst.value, limit, worst.at, note=worst.words, stated={"v": worst.value})
 
 
 @check(
@@ -267,7 +275,7 @@ def landing_pressure(solution: Solution) -> Demand | None:
     worst = _worst_impact(solution, lambda one: one.pressure)
     if worst is None:
         return None
-    note, stated = _landing_words(solution, worst), {"p": worst.value}
+    stated = {"p": worst.value}
     allowed = None if limit.value is None else float(limit.value)
     if limit.if_exceeded and not (allowed is not None and worst.value > allowed):
         allowed = None
@@ -279,9 +287,9 @@ def landing_pressure(solution: Solution) -> Demand | None:
     return Demand(
         None if np.isnan(worst.value) else worst.value,
         allowed,
-        worst,
+        worst.at,
         missing,
-        note=note,
+        note=worst.words,
         stated=stated,
     )
 
@@ -308,6 +316,6 @@ def crossover_slip(solution: Solution) -> Demand:
     worst = _worst_impact(solution, lambda one: one.slip)
     if worst is None:
         return Demand(0.0, limit, note="one wall carries all over the turn")
-    speed = next(each.cam_speed for each in solution.cycles if each.load_case == worst.load_case)
+    speed = worst.cycle.cam_speed
     stated = {"w": speed, "v": 0.5 * worst.value / speed}
-    return Demand(worst.value, limit, worst, note=_landing_words(solution, worst), stated=stated)
+    return Demand(worst.value, limit, worst.at, note=worst.words, stated=stated)

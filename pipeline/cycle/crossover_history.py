@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +42,7 @@ def impacts(machine: Machine, contour: Contour) -> tuple[WallImpact, ...]:
     if groove is None or not machine.speed > 0.0:
         return ()
     theta, pitch = uniform_turn(FINE), contour.pitch
-    rigid = replace(machine.system, friction_a=0.0, friction_b=0.0)
+    rigid = machine.system.with_friction(0.0, 0.0)
     loads = follower_loads(pitch, rigid, machine.cam_speed, theta)
     found = landings(
         loads.required_force,

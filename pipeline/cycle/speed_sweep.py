@@ -388,7 +388,10 @@ class _Follower:
         push += surge
         push = self._pivoted(push, speed, surge)
         normal = push * self.gain
-        torque = np.maximum(push, 0.0, out=push)
+        if self.machine.system.held:  # a groove has a wall for either sign
+            normal, torque = np.abs(normal), push
+        else:
+            torque = np.maximum(push, 0.0, out=push)
         torque *= self.arm
         elastic = self.elastic(speed, moving)
         lowest, soft = first_greatest_of_rows(-normal), first_greatest_of_rows(-elastic)

@@ -133,7 +133,7 @@ class _Turn(NamedTuple):
             return None
         pressed = np.flatnonzero(away[: beyond[0]] <= 0.0)
         if not pressed.size:  # from the index itself, where it has just landed
-            return max(index, float(floor(index)))
+            return index
         k = int(pressed[-1])
         share = -away[k] / (away[k + 1] - away[k])
         return max(index, floor(index) + 1 + k + float(share))

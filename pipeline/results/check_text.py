@@ -51,6 +51,9 @@ _LOAD_END = {
 _NEEDS = {"arm": "an arm", "round": "a roller or curved face", "swung_face": "a face on an arm"}
 """Words of what a check needs."""
 
+_CLOSED = {"": "", "form": "; in a groove only", "force": "; not in a groove"}
+"""Words by what keeps the follower on the cam, see `Declaration.closed_by`."""
+
 
 def check_text(one: Declaration) -> CheckText:
     """Sentences on a check from its declaration."""
@@ -65,7 +68,7 @@ def check_text(one: Declaration) -> CheckText:
         decides += "; evidence, which never governs"
     return CheckText(
         title=one.title.format(follower="follower"),
-        formula=f"{sentence(one.formula)} Unit: {one.unit}{needs}{part}.",
+        formula=f"{sentence(one.formula)} Unit: {one.unit}{needs}{_CLOSED[one.closed_by]}{part}.",
         calculation=f"{one.method.rstrip('.')}.",
         limit=f"{_limit(one)}.",
         load_cases=f"{one.load_cases}.",

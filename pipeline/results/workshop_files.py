@@ -150,6 +150,7 @@ def swing_record(case: Case, contour: Contour) -> dict[str, Json] | None:
         "length_mm": in_unit(arm.length, "mm"),
         "swing": arm.swing,
         "reference": case.facing.reference,
+        "notes": list(case.facing.notes),
         "by_cam_angle": {
             f"{at:.0f}": [in_unit(float(r), "mm"), in_unit(float(psi), "deg")]
             for at, r, psi in zip(degrees, radius, angle, strict=True)

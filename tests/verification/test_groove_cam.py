@@ -17,6 +17,7 @@ from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.checks.form_closure import PLATE_MOMENT
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.crossover_history import impacts
+from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
 from camwright.pipeline.follower.friction_coupling import guided_loads
 from camwright.pipeline.preview import preview_case
@@ -208,6 +209,17 @@ def test_landings_by_an_adaptive_integrator():
     assert worst.pressure == pytest.approx(float(pressure), rel=1e-3)
     greatest = max(each.pressure for each in cycle.impacts)
     assert demand("landing_pressure").demand == pytest.approx(greatest)
+
+
+def test_the_sweep_over_the_speeds_has_the_forces_of_both_walls():
+    """At the speed of a load case it is the cycle: no force below zero, torque of both walls."""
+    cycle, machine = running()
+    sweep = speed_sweep(machine, cycle.contour, cycle.loads.rubbing, [machine.crank_speed])
+    assert sweep.contact_force_min.min() >= 0.0
+    most = cycle.loads.normal_force.max()
+    assert sweep.contact_force_max[-1] == pytest.approx(most, rel=2e-3)
+    for swept, own in ((sweep.torque_min, min), (sweep.torque_max, max)):
+        assert swept[-1] == pytest.approx(own(cycle.loads.cam_torque), rel=2e-3)
 
 
 def test_the_rim_is_a_cantilever_plate():
