@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -48,13 +49,18 @@ class ArmCam(RollerCam):
     def parts(self, prime_radius: float, offset: float) -> LiftParts:  # noqa: ARG002
         return self.lift
 
-    def reach(self, offset: float) -> tuple[float, float]:
-        """Prime radii between which the arm swings within its half turn, m."""
-        arm = self._arm(offset)
+    @cached_property
+    def _swing(self) -> tuple[float, float]:
+        """Least and greatest swing from zero lift, rad; refused beyond a half turn."""
         low = self.lift.least(lambda s, *_: s).value / self.length
         high = self.lift.greatest(lambda s, *_: s).value / self.length
         if not high - low < np.pi - 2.0 * _SWING_MARGIN:
             raise InputError("follower.arm.length", self.length, "> the lift over pi")
+        return low, high
+
+    def reach(self, offset: float) -> tuple[float, float]:
+        """Prime radii between which the arm swings within its half turn, m."""
+        arm, (low, high) = self._arm(offset), self._swing
         ends = max(-low, 0.0) + _SWING_MARGIN, np.pi - high - _SWING_MARGIN
         return float(arm.radius(ends[0])), float(arm.radius(ends[1]))
 

@@ -44,23 +44,20 @@ class SwungBar(NamedTuple):
         )
         return nearest
 
-    def from_contour(self, contour: Contour, start: float) -> Extremum:
+    def from_contour(self, contour: Contour) -> Extremum:
         """Least distance of a contour from the piece over the turn, m, and its cam angle.
 
         Zero where the contour crosses it.
-
-        Parameters
-        ----------
-        start : float   arm angle at zero lift, rad
         """
-        places = uniform_turn(_BAR_SAMPLES)
+        lift, places = contour.lift, uniform_turn(_BAR_SAMPLES)
+        lowest = lift.lowest.value
         polygon = contour.points(places)
 
         def apart(points: Array, theta: Array) -> Array:
             """Distances of contour points from the bar at cam angles, m."""
             cos, sin = np.cos(theta), np.sin(theta)
             along, across = points[0] * cos + points[1] * sin, points[1] * cos - points[0] * sin
-            angle = start + contour.lift(theta) / self.arm.length
+            angle = self.low + (lift(theta) - lowest) / self.arm.length
             return np.asarray(self._at(angle, *self._from_pivot(along, across)))
 
         def least(theta: Array) -> Array:

@@ -289,7 +289,7 @@ def _pressure_angle(turn: SheetTurn) -> Figure | None:
     """Figure of the pressure angle over the turn with its limits on both sides, deg; None of a flat
     face, where it is zero.
     """
-    if not turn.rolls:  # zero at every angle
+    if not turn.rolls and turn.length("follower", "face", "radius") is None:
         return None
     both = (*both_ways(turn.limit("limit", "deg", "pressure_angle")),
             LimitLine(HARD_STOP_DEG, "hard stop"))  # fmt: skip

@@ -324,7 +324,7 @@ def _content(material: ReportMaterial, record: Record) -> ShopDrawing:
     notes.append(_mating(record["tracks"]))
     swing = _swing(record.get("arm"))
     if swing:
-        notes.append(_pivot(record["arm"]))
+        notes += _pivot(record["arm"]), *(f"Follower: {each}." for each in record["arm"]["notes"])
     return ShopDrawing(
         f"Drawing of the cam, {shortened(title, 100)}", views(part), radii, extremes,
         swing, list(_drops(record["tracks"])), notes, title_block(case), facts,

@@ -250,7 +250,7 @@ def _guides(turn: SheetTurn) -> Figure | None:
 
 def _jamming(turn: SheetTurn) -> Figure | None:
     """Figure of the jam index, guide friction over axial force, over the turn; None of an arm."""
-    if turn.on_arm:  # whose pivot has no friction
+    if turn.on_arm:  # it has no guides
         return None
     limits = turn.limit("limit", "", "jam_index")
     indices = (

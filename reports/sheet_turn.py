@@ -122,7 +122,7 @@ class SheetTurn:
 
     @property
     def rolls(self) -> bool:
-        """Whether the follower is a roller; otherwise a flat face."""
+        """Whether the follower is a roller; otherwise a flat or curved face."""
         return "face_contact_offset_mm" not in self.columns
 
     @property

@@ -29,7 +29,10 @@ def with_rocker(tables: Tables) -> Tables:
     table = {key: value for key, value in stated.items() if key not in carried}
     rocker = read_part(Rocker, table, Rocker.table)
     arm = follower.get("arm")
-    length = units.parse(arm.get("length"), "m", "") if isinstance(arm, dict) else None
+    if isinstance(arm, dict) and "length" not in arm:
+        return tables  # refused when the arm is read
+    name = "follower.arm.length"
+    length = units.parse(arm["length"], "m", name) if isinstance(arm, dict) else None
     ratio = float(rocker.linkage(length).ratio(0.0))
     reduced = dict(follower)
     if _MASS in stated and "mass" in follower:

@@ -215,7 +215,7 @@ def arm_cam_gap(solution: Solution) -> Demand | None:
     for name in ("arm", FORK):
         if name in bodies:
             body = bodies[name]
-            nearest = body.bar.from_contour(solution.contour, float(body.bar.low))
+            nearest = body.bar.from_contour(solution.contour)
             beside = body.beyond((0.0, half)) if name == "arm" else cheek_to_cam(numbers)
             pairs[name] = _Pair(nearest.value - body.half, (body.half, 0.0), beside)
             angles[name] = float(np.mod(nearest.theta, FULL_TURN))

@@ -19,8 +19,8 @@ from camwright.pipeline.follower.camshaft_loads import (
     ShaftLoads,
     Unbalance,
     counter_hole,
-    disc_unbalance,
     greatest_hole,
+    less_bore,
     rotating_force,
     shaft_loads,
     unbalance,
@@ -104,10 +104,8 @@ def undrilled(cam: CamBody, contour: Contour) -> Unbalance:
     walls = groove_of(cam, contour)
     area, moment = walls.section()
     share = cam.groove.depth / cam.width
-    disc = disc_unbalance(cam.groove.outer_radius, cam.bore_radius, cam.keyway, cam.width, density)
-    left = disc.area - share * area, disc.moment - share * moment
-    mass = density * cam.width
-    return Unbalance(*left, mass * left[0], mass * float(np.hypot(*left[1])))
+    left = np.pi * cam.groove.outer_radius**2 - share * area
+    return less_bore(left, -share * moment, cam.bore_radius, cam.keyway, cam.width, density)
 
 
 def groove_of(cam: CamBody, contour: Contour) -> Groove:

@@ -445,7 +445,8 @@ class LoadedCam:
 
     @property
     def direction(self) -> Array:
-        """Direction of the friction of the guides: 1 where the cam drives the follower, else -1.
+        """Direction of the friction of the guides: 1 where the cam drives the follower, 0 at
+        rest, else -1.
 
         Of a cam that does not pull 1 on the rise, -1 on the return.
         """

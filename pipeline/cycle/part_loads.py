@@ -310,10 +310,8 @@ def _ring(
     ring = machine.follower.ring(contact_width, machine.spring.preload)
     if ring is None:
         return None, None, None
-    force, curvature = loads.normal_force, contour.curvature(loads.theta)
-    radius = 1.0 / (1.0 / machine.roller.radius + curvature)
-    if loads.held:
-        radius = contour.require_roller().relative_radius(loads.theta, loads.wall)
+    force, track = loads.normal_force, contour.require_roller()
+    radius = track.relative_radius(loads.theta, loads.wall)
     bending = ring.bending
     return (
         bending.stress_amplitude * force,

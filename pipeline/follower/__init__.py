@@ -29,8 +29,6 @@ In the order of the calculation:
 | `flat_face_motion`      | sliding and entrainment speed of a face    | m/s; pv, Pa m/s       |
 | `arm`                   | arm of an oscillating follower             | c, l, m; psi, rad     |
 | `pivot`                 | bush or needle bearing of an arm's pivot   | kg; m; N m            |
-
-
 | `rocker`                | second arm for a valve, with lash          | r, -; lash, m         |
 | `follower_kind`         | protocol of the kinds of follower          |                       |
 | `roller`                | roller: geometry, contact body, rolling    | r, m                  |

@@ -89,8 +89,6 @@ class RingElements:
 def _nodes(basis: Basis, radius: float, sections: int) -> tuple[NDArray[np.intp], Array]:
     """Degrees of freedom of the nodes of each section, (sections, 2, nodes), x and y, the nodes
     from inside outwards, and heights of the nodes over the mean radius (sections, nodes), m.
-
-    Heights (sections, nodes) are those of the nodes over the mean radius.
     """
     angle = np.arctan2(*basis.doflocs[::-1]) / FULL_TURN * sections
     height = np.hypot(*basis.doflocs) - radius

@@ -639,17 +639,10 @@ def unbalance(
             raise InputError(name, value, "> 0")
     area = contour.area()
     moment = area * np.asarray(contour.centroid())
-    return _less_bore(area, moment, bore_radius, keyway, width, density)
+    return less_bore(area, moment, bore_radius, keyway, width, density)
 
 
-def disc_unbalance(
-    radius: float, bore_radius: float, keyway: KeywayLike | None, width: float, density: float
-) -> Unbalance:
-    """Mass and unbalance of a round disc with bore and keyway; arguments as of `unbalance`."""
-    return _less_bore(np.pi * radius**2, np.zeros(2), bore_radius, keyway, width, density)
-
-
-def _less_bore(
+def less_bore(
     area: float,
     moment: Array,
     bore_radius: float,
@@ -657,7 +650,7 @@ def _less_bore(
     width: float,
     density: float,
 ) -> Unbalance:
-    """Mass and unbalance of an area and its first moment, less bore and keyway."""
+    """Mass and unbalance of an area, m2, and its first moment (2,), m3, less bore and keyway."""
     area -= np.pi * bore_radius**2
     if keyway is not None:
         cut = keyway_cut(bore_radius, keyway.width, keyway.depth)

@@ -258,16 +258,8 @@ class Loads(Displayed):
 
         That axis is the one of a stem, or runs from the cam axis to the pivot of an arm.
         """
-        return self._at_rest(self.axial_force * self.pressing, self.tangential_force)
-
-    @property
-    def pivot_reaction(self) -> Array:
-        """Force of the pivot on the arm (2, n), N, in the axes of `on_shaft`; 0 of a stem."""
-        return -self._at_rest(*self.pivot_load)
-
-    def _at_rest(self, along: Array, across: Array) -> Array:
-        """Force (2, n) in axes at rest, from that along and across the travel."""
         cos, sin = np.cos(self.travel), np.sin(self.travel)
+        along, across = self.axial_force * self.pressing, self.tangential_force
         return np.stack([along * cos + across * sin, across * cos - along * sin])
 
     @property
@@ -570,8 +562,6 @@ def torque_on_cam(
 ) -> Callable[[Array, Array], Array]:
     """Function of cam speed (n,), rad/s, and acceleration (n,), rad/s2, for the torque of spring,
     weight, external force and friction on the cam (n,), N m.
-
-    By its speed and acceleration (n,).
 
     That of the inertia of the follower is left out; friction depends on the contact force and thus
     on the motion. As by `follower_loads`, without what does not change at the same cam angles.

@@ -77,8 +77,7 @@ def shaft_compliance(shaft: Camshaft) -> float | None:
     """Bending and shear compliance of the camshaft at the cam, m/N; None without diameter or
     material.
 
-    A plain bar on two hinged bearings, the cam between or beyond them; None without diameter or
-    material.
+    A plain bar on two hinged bearings, the cam between or beyond them.
 
     References
     ----------

@@ -319,7 +319,7 @@ def _linear_step(
     """Bore forces (k, n), N, and end motions (2, n) in equilibrium with loads (2, n), with the
     knots that now touch bound to the bore and the others free; number of knots in contact (n,).
 
-    Also the number of knots in contact (n,). Positions with the same knots in contact share one
+    Positions with the same knots in contact share one
     factorisation. The unknown is the change of the end motion: small loads would be lost in the
     round-off of the clearance.
     """

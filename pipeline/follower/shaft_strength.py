@@ -104,8 +104,6 @@ def judged_sections(
 def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: ArrayLike) -> Array:
     """Bending moment (..., 2, n), N m, at positions (...), m from the first bearing, by the
     components of the forces over the turn (n,).
-
-    By force component.
     """
     reach = np.asarray(place, dtype=float)[..., None, None]
     acting = [

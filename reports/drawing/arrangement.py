@@ -37,8 +37,8 @@ from camwright.reports.drawing.spring_shapes import Coil, DrawnSpring
 _EDGE, _THIN = 0.45, 0.22  # mm, of lines on a mechanism `_WHOLE` high
 _WHOLE = 260.0
 _FORCE_SHARE = 0.85
-_FACE_POINTS = 25  # of a curved face
 """Length of the greatest force over the least radius of the cam."""
+_FACE_POINTS = 25  # of a curved face
 FORCES = {"contact": "Contact force", "spring": "Spring force",
           "guide-a": "Guide A", "guide-b": "Guide B"}  # fmt: skip
 COLOURS = {"contact": "vermillion", "spring": "green", "guide-a": "blue", "guide-b": "blue"}

@@ -160,6 +160,15 @@ def test_refused_rockers(old, new, message):
     assert str(error.value).startswith(message)
 
 
+def test_a_rocker_with_a_mass_on_an_arm_without_a_length_names_the_arm():
+    whole = rocked().replace('lash = "0.15 mm"', 'mass = "200 g"', 1)
+    start = whole.index("[follower.arm]")
+    arm = whole[start:].split("\n\n", 1)[0]
+    short = "\n".join(line for line in arm.splitlines() if not line.startswith("length"))
+    with pytest.raises(InputError, match=r"follower\.arm\.length = missing"):
+        parse_case(whole.replace(arm, short, 1))
+
+
 def test_a_stem_needs_the_length_of_the_arm_that_it_moves():
     whole = text(follower=STEM).replace("[lubricant]", ROCKER, 1)
     with pytest.raises(InputError, match=r"rocker\.input_length = missing"):

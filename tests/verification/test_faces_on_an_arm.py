@@ -329,7 +329,7 @@ def test_a_face_and_the_pivot_rub_together(kind, sense):
     push = loads.normal_force * (normal - 0.12 * turned(normal))
     spring = -(150.0 + 20e3 * jet.lift) * travel
     reaction = np.hypot(*(push + spring))
-    np.testing.assert_allclose(np.hypot(*loads.pivot_reaction), reaction, rtol=1e-10)
+    np.testing.assert_allclose(np.hypot(*loads.pivot_load), reaction, rtol=1e-10)
     lever = cam.points(theta) - arm.centre_distance * u
     moment = -sense * (cross(lever, push) + arm.length * cross(along, spring))
     resisted = 0.4 * speed**2 * jet.lift_d2 * arm.length
