@@ -57,12 +57,24 @@ class Facets:
 
 
 def facets(piece: OutlinePiece, size: SizeField) -> Facets:
-    """Element edges along `piece`, of the local element size.
+    """Element edges along a piece of an outline: equal in its contact zone, graded to the local
+    element size outside it.
+
+    A closed piece starts at the zone; on an open one the zone ends at the ends of the piece.
+
+    Parameters
+    ----------
+    piece : OutlinePiece   curve by its arc length, m
+    size : SizeField       element size, m, by place
+
+    Returns
+    -------
+    Facets   end points (2, n + 1) and midpoints (2, n) of the edges, m
 
     Raises
     ------
     MeshError
-        If the contact zone is longer than the piece.
+        If the contact zone is longer than 0.9 of the piece.
     """
     at, zone, length = piece.at, piece.zone, piece.length
     if zone is None:

@@ -342,8 +342,15 @@ def _stem_end(
     guides: tuple[DrawnBush, DrawnBush],
     spring: DrawnSpring,
 ) -> float:
-    """Height of the upper end of the stem at zero lift, mm: by the stated length, else just above
-    guide B, and never below the seat of the spring.
+    """Height of the upper end of the stem above the cam axis at zero lift, mm.
+
+    By the length of the stem in the case, else 0.4 of its diameter above guide B; never below the
+    spring seat on the stem.
+
+    Parameters
+    ----------
+    stem : float     diameter of the stem, mm
+    lowest : float   height of the roller centre or face above the cam axis at zero lift, mm
     """
     stated = turn.length("follower", "stem_length")
     if stated is not None:

@@ -404,7 +404,9 @@ def _finite(digits: str) -> float:
 
 
 def npz_bytes(arrays: Mapping[str, ArrayLike], *, compressed: bool = True) -> bytes:
-    """Numpy archive of arrays by name; equal arrays give equal bytes."""
+    """Numpy archive (.npz) of arrays by name; the same names, types and values in the same order
+    give the same bytes.
+    """
     buffer = io.BytesIO()
     named = {name: np.asarray(values) for name, values in arrays.items()}
     (np.savez_compressed if compressed else np.savez)(buffer, allow_pickle=False, **named)

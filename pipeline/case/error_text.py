@@ -111,9 +111,14 @@ def grouped(texts: Mapping[str, str]) -> str:
 
 
 def refusal_of(error: ValidationError, section: str = "") -> InputError:
-    """Exception with all errors of a section, one for each key; missing keys count as one.
+    """Exception with the errors of a section of a case file, the first of each key.
 
-    An unknown key comes before a missing one, often its misspelling.
+    Unknown keys stand first and missing keys last, in one message: an unknown key is often the
+    misspelling of a missing one.
+
+    Parameters
+    ----------
+    section : str   dotted name before the keys of the messages; "" at the top of the file
     """
     entries = error.errors(include_url=False)
     within = {entry["loc"][:k] for entry in entries for k in range(len(entry["loc"]))}

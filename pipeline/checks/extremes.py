@@ -165,14 +165,14 @@ def over_duty(
     if not running:
         return NOWHERE
     parts = duty_parts(running, measure, life=life)
-    value = _mean(parts, life)
+    value = _in_all(parts, life)
     most = list(parts)[first_greatest(list(parts.values()))]
     error = 0.0
     if all(cycle.error_bars for cycle in running):
         steps = set.intersection(*(set(cycle.thinned) for cycle in running))
         for step in steps:
             coarse = duty_parts([cycle.thinned[step] for cycle in running], measure, life=life)
-            error = max(error, _convergence_index(value, _mean(coarse, life), step))
+            error = max(error, _convergence_index(value, _in_all(coarse, life), step))
     return Extreme(value, most, None, error)
 
 
@@ -192,8 +192,12 @@ def duty_parts(
     return parts
 
 
-def _mean(parts: Mapping[str, float], life: bool) -> float:
-    """Wear rate, the sum of the contributions, or life, its inverse; infinite without damage."""
+def _in_all(parts: Mapping[str, float], life: bool) -> float:
+    """Rate or life of all load cases from their contributions by name, as of `duty_parts`.
+
+    The rate is their sum, in the unit of the contributions; the life, with `life`, is the inverse
+    of the summed damage per time, s, infinite where there is none.
+    """
     total = sum(parts.values())
     if not life:
         return total

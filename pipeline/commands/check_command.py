@@ -393,8 +393,22 @@ def _recorded(target: Path, keys: Mapping[str, TrustedKey] | None) -> _Record:
 
 
 def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
-    """Whether a recomputation of the run gives what its folder holds; prints seed, drawn angles and
-    each difference.
+    """Solve a run anew and compare it with its folder; True where nothing that was compared
+    differs beyond round-off.
+
+    At cam angles drawn at random both bodies are also solved in full. Seed, angles, differences and
+    what is not compared are printed; a folder that cannot be recomputed is named, and gives False.
+
+    Parameters
+    ----------
+    target : Path   run folder
+    angles : int    number of cam angles to draw; None: that of `recomputation`
+    seed : int      of the random numbers; None: a new one
+
+    Raises
+    ------
+    InputError
+        If `target` is no folder.
     """
     import secrets
 

@@ -176,7 +176,7 @@ def edges_from_csv(
         As `read_trace` and `counted`; if one of several levels is to be named.
     """
     text = trace_text(Path(path), "time_s", one_column=True)
-    levels = _levels(text, column)
+    levels = _level_columns(text, column)
     runs = _changes(text, levels) if levels else _times(text, column)
     both = both_edges or bool(levels)
     edges = []
@@ -220,9 +220,17 @@ def _times(text: TraceText, column: str) -> dict[str, Array]:
     return {text.header[at]: factor * table[:, k] for k, (at, factor) in enumerate(wanted.items())}
 
 
-def _levels(text: TraceText, column: str) -> list[int]:
-    """Numbers of the columns that hold logic levels and are to be read; empty for a
-    file of times.
+def _level_columns(text: TraceText, column: str) -> list[int]:
+    """Indices, from 0, of the columns of a trace to be read as logic levels (0 or 1) of the tooth
+    sensor; empty for a file of edge times.
+
+    Those that `column`, the value of `engine.column`, names; where it is "", the only one, or of
+    several the one whose header is `PRIMARY`.
+
+    Raises
+    ------
+    InputError
+        If there are several and none is to be preferred.
     """
     header = text.header
     bare = [at for at, head in enumerate(header) if not has_unit(head)]

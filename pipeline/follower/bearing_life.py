@@ -165,21 +165,22 @@ def grease_life(
 ) -> Array:
     """Estimated mean life (...) of grease in a sealed ball bearing with rotating outer ring, s.
 
-    NaN outside the range of the estimate: n D above 500 000 mm/min, P above 0.2 C, above 120 degC.
-    Below 125 000 mm/min, 0.05 C and 50 degC it is constant. The speed factor has the outer diameter
-    in place of the mean diameter because the outer ring turns.
+    NaN where n D > 500 000 mm/min, P > 0.2 C or T > 120 degC, outside the range of the estimate.
+    Values of n D below 125 000 mm/min, of P below 0.05 C and of T below 50 degC count as these
+    bounds. n D has the outer diameter in place of the mean one because the outer ring turns.
 
     Parameters
     ----------
     speed : array (...)            n, rpm
     outer_diameter : array (...)   D, m
-    load_share : array (...)       P/C
+    load_share : array (...)       P/C, equivalent load over dynamic load rating
     temperature : float            of the bearing, K
 
     References
     ----------
     JTEKT, Ball and Roller Bearings, sec. 12: log10 L = 6.10 - 4.40e-6 d n - 2.50 (P/C - 0.05)
-    - (0.021 - 1.80e-8 d n) T; SKF for the outer ring: n D. Both recalled: verify.
+    - (0.021 - 1.80e-8 d n) T, L in h, d in mm, n in rpm, T in degC; SKF for the outer ring: n D.
+    Both cited from memory, not compared with the print.
     """
     share = np.where(load_share <= HEAVY_GREASE, np.maximum(load_share, _LIGHT_LOAD), np.nan)
     light = _light_grease(speed, outer_diameter, temperature)

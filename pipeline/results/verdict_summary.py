@@ -292,8 +292,11 @@ def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
 
 
 def headline_line(document: Mapping[str, Any]) -> list[str]:
-    """Line on ripple without and with the cam, greatest contact pressure and body stresses; empty
-    where none is known.
+    """A list of one line for the terminal, empty where no figure is known: standard deviation of
+    the crankshaft's torque without and with the cam, N m, maximum contact pressure, and von Mises
+    stresses of cam and roller, MPa.
+
+    document : mapping   as of `camwright check --json`
     """
     figures = document.get("headline") or {}
     before, after = (figures.get(f"torque_std_{when}_Nm") for when in ("before", "after"))

@@ -14,6 +14,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError, GeometryError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.store import JSON, Store, key_of
+from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Corner, machines
 from camwright.pipeline.checks.check import Check, Declaration
@@ -37,7 +38,7 @@ from camwright.pipeline.records.judgement_record import (
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.search.change import Applicable, Change
 from camwright.pipeline.smoothing.required_lift import cam_lift
-from camwright.pipeline.solver import checked, judged_at_corners
+from camwright.pipeline.solver import certify_trial, checked, judged_at_corners, solve
 from camwright.pipeline.torque.torque import Torque
 
 STORED = "solved"
@@ -263,6 +264,34 @@ class Judge:
             As by `judged`.
         """
         return self._synthesised(self.case(change), corners=True)
+
+    def run(self, change: Applicable, tier: Tier, *, corners: bool) -> Judgement:
+        """Judgement of the changed case as a run solves it at a depth: with the cam of the judge's
+        lift or, if it has none, of the case's synthesis or smoothing feedback.
+
+        Nothing is read from the disk cache. Without a lift, finite elements are judged at the
+        tolerance corners whatever `corners`.
+
+        Raises
+        ------
+        CamError
+            As by `judged`.
+        """
+        from camwright.pipeline.iteration import trials_of
+        from camwright.pipeline.preview import preview_case
+
+        case = self.case(change)
+        if self.lift is not None:
+            contour = case.contour(self.lift)
+            drawn = solve(case, contour, tier=tier, torques=self.torques, corners=corners)
+        elif tier <= Tier.PREVIEW:
+            drawn = preview_case(case, corners=corners, torques=self.torques)
+        else:
+            drawn = trials_of(case, self.torques, tier=tier).final
+            if tier is Tier.CERTIFIED:
+                with crew(1) as workers:
+                    drawn = certify_trial(drawn, workers)
+        return Judgement(drawn.solution, drawn=drawn)
 
     def _synthesised(self, case: Case, *, corners: bool) -> Judgement:
         from camwright.pipeline.preview import preview_case

@@ -158,7 +158,12 @@ def _reached(attempts: Sequence[Attempt]) -> str:
 
 
 def _why(latest: Attempt, candidate: Smoother) -> str:
-    """Reason for the next smoother in words."""
+    """Sentence on why the lift is smoothed anew: the check that failed with the width of the
+    latest smoother, and the width of the next.
+
+    That check is the torque reduction or, where it is kept, the worst that a gentler lift can cure;
+    one of the two has failed.
+    """
     change = f"{latest.smoother.width_in_words}; next: {candidate.width_in_words}"
     if not keeps_torque(latest.checks):
         return f"{TORQUE_REDUCTION.id} is lost at {change}"

@@ -310,11 +310,13 @@ def _finite_body(pair: TwoCylinders) -> dict[str, float]:
 
 
 def _conforming(contact: ConformingContact, pair: TwoCylinders) -> Document:
-    """Document of the pin in a hole: by Persson's closed form (None for unlike materials) and
-    numerically.
+    """Document of a solved pin in a hole: half contact angle and maximum pressure by Persson's
+    closed form, None for materials of different elastic constants, and of the numerical solution,
+    with the residual of its equilibrium.
     """
 
     def record(angle: float, p0: float) -> dict[str, float]:
+        """Half contact angle, rad, and maximum pressure, Pa, in the units of the document."""
         return {"p0_MPa": in_unit(p0, "MPa"), "half_angle_deg": in_unit(angle, "deg")}
 
     persson = None

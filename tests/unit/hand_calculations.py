@@ -209,7 +209,7 @@ def arm_stresses(section: str) -> tuple[np.ndarray, np.ndarray]:
     moment = force * (length - at) - lifted * swung
     moment = moment - SPRING * length / 40.0 * max(40.0 - at, 0.0)
     tangent = 0.5 * made.STROKE * np.sin(made.THETA) / (made.BASE + S)
-    along, twist, aside = -force * tangent, 1000.0 + 0.0 * force, 1000.0 * np.abs(tangent)
+    along, twist, aside = -force * tangent, 1000.0 + 0.0 * force, -1000.0 * tangent
     if section in ("cheeks", "eye"):  # the greater part of two, which carry the couple over 16 mm
         loaded = 2.0 * (0.5 * force + 1000.0 / 16.0) / force
         moment, along, twist, aside = moment * loaded, along * loaded, 0.0 * twist, 0.0 * aside

@@ -35,7 +35,11 @@ from camwright.pipeline.search.machine import (
     part_exchange,
     synthesised_points,
 )
-from camwright.pipeline.search.machine.candidate_search import Candidate, candidates, spring_wire
+from camwright.pipeline.search.machine.candidate_search import (
+    Candidate,
+    candidates,
+    reference_spring,
+)
 from camwright.pipeline.search.machine.design_case import Machinery, case_text, oils_of
 from camwright.pipeline.search.machine.design_study import _copied, designed
 from camwright.pipeline.search.machine.machine_frame import frame_of
@@ -147,7 +151,7 @@ def test_a_table_without_units_is_refused(tmp_path: Path) -> None:
 def test_wound_springs_meet_their_demand(tmp_path: Path) -> None:
     """Each spring keeps its limits in the usual tolerances, rounded as it is wound."""
     task = task_in(tmp_path)
-    wire = spring_wire(task, None)
+    wire = reference_spring(task, None)
     travel = np.geomspace(4e-3, 20e-3, 5)
     greatest = 2.0 * 20.0 / travel / 1.3
     points = wound(wire, 0.7 * greatest / travel, 0.3 * greatest, travel, task.cam_speed)
@@ -179,7 +183,7 @@ def test_the_case_states_given_and_assumed(tmp_path: Path) -> None:
     frame = frame_of("track_roller_35x16", card, 12.0, 3e3, task.ratio, seats())
     assert frame is not None
     point = wound(
-        spring_wire(task, None), np.array([150e3]), np.array([900.0]), np.array([9e-3]), 30.0
+        reference_spring(task, None), np.array([150e3]), np.array([900.0]), np.array([9e-3]), 30.0
     )[0]
     design = Machinery(task, frame, point, 0.046, 9e-3, 0.035, oils=oils_of(None))
     case = parse_case(case_text(design, "sine", "torque.csv"), tmp_path)
@@ -545,7 +549,7 @@ def machinery_in(folder: Path) -> Machinery:
     frame = frame_of("track_roller_40x16", card, 40.0, 3e3, task.ratio, seats())
     assert frame is not None
     spring = wound(
-        spring_wire(task, None), np.array([150e3]), np.array([900.0]), np.array([9e-3]), 30.0
+        reference_spring(task, None), np.array([150e3]), np.array([900.0]), np.array([9e-3]), 30.0
     )[0]
     prime = 1e-4 * np.ceil(1e4 * frame.least_radius)
     return Machinery(task, frame, spring, prime, 9e-3, 0.04, oils=oils_of(None))

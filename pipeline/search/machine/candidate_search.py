@@ -92,9 +92,14 @@ class Candidate:
         return replace(self, design=replace(design, offset=offset))
 
 
-def spring_wire(task: DesignTask, folder: Path | None) -> HelicalSpring:
-    """Spring of nominal size with the wire, treatment, relaxation and temperature of those to be
-    wound.
+def reference_spring(task: DesignTask, folder: Path | None) -> HelicalSpring:
+    """Spring of arbitrary size that has wire, treatment, relaxation and working temperature of all
+    springs of the search, whose sizes are arrays.
+
+    Parameters
+    ----------
+    task : DesignTask   with the temperature of the surroundings, K
+    folder : Path       of the user's wire cards; None: shipped cards only
     """
     card = wire_values(without_provenance(known_cards(folder)["wires"][WIRE]))
     size: Tables = {"wire_diameter": "5 mm", "mean_diameter": "30 mm", "coils": 5.0,
@@ -127,7 +132,7 @@ def candidates(
         The first refusal, if the cases of all rollers are refused.
     """
     parts = catalogue_of(folder)
-    wire, oils, sizes = spring_wire(task, folder), oils_of(folder), seats()
+    wire, oils, sizes = reference_spring(task, folder), oils_of(folder), seats()
     rollers = undominated(parts.rollers, better_roller)
     order = sorted(
         (name for name in rollers if names is None or name in names),

@@ -6,7 +6,7 @@ import math
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,12 +17,13 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import files_in, json_text, read_json, write_atomic
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import governing_id, screen
-from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.search.change import Change
+from camwright.pipeline.search.judge import Judge
 from camwright.pipeline.studies.batch.case_template import Template, UnpackedTemplates
 from camwright.pipeline.studies.batch.dataset import (
     GOVERNING,
@@ -142,12 +143,15 @@ class DesignSolver:
         if task.tier is Tier.SCREENING:
             columns = self.screened(task.alone(row))
             return {name: _cell(values[0]) for name, values in columns.items()}
-        case, lift = self.design(task, row)
-        return row_of(trial_at(case, task.tier, lift, corners=self.settings.corners))
+        return row_of(self._trial(self.design(task, row), task.tier))
 
-    def design(self, task: Task, row: int) -> tuple[Case, Lift | None]:
-        """Case of the design in a row of a task, and the lift of the base case, if all designs have
-        its cam; else None.
+    def _trial(self, judge: Judge, tier: Tier) -> Trial:
+        """Trial of the design of a judge at a depth."""
+        return judge.run(Change(), tier, corners=self.settings.corners).trial
+
+    def design(self, task: Task, row: int) -> Judge:
+        """Judge of the design in a row of a task, with the lift of the base case, if all designs
+        have its cam.
 
         Raises
         ------
@@ -164,7 +168,7 @@ class DesignSolver:
         if case.smoothing.kind != "constrained":  # else a wider smoother would be another design
             solver = case.solver.model_copy(update={"max_trials": 1})
             case = case.model_copy(update={"solver": solver})
-        return case, lift
+        return Judge(case, engine_torques(case), lift=lift)
 
     def _base(self, name: str) -> tuple[Case, Lift]:
         """Base case with the spring and prime radius of its synthesis, and its lift."""
@@ -242,13 +246,13 @@ class DesignSolver:
         """
         from camwright.pipeline.run import CaseRun
 
-        case, _ = self.design(task, row)
+        judge = replace(self.design(task, row), lift=None)
         solved: Trial | None = None
         if task.tier is Tier.PREVIEW:  # as its row, so that it is solved once
-            solved = trial_at(case, task.tier, None, corners=self.settings.corners)
+            solved = self._trial(judge, task.tier)
         with (
             tempfile.TemporaryDirectory(prefix="camwright-run-") as name,
-            CaseRun(case, Path(name) / "run", depth=task.tier, jobs=1) as run,
+            CaseRun(judge.base, Path(name) / "run", depth=task.tier, jobs=1) as run,
         ):
             trial = run.solve(solved)
             if task.tier is Tier.CERTIFIED:
@@ -277,29 +281,6 @@ def _without_clock(folder: Path) -> bytes:
     clock, summary["timings_s"], summary["started"] = summary["timings_s"], {}, None
     write_atomic(folder / "run.json", json_text(summary) + "\n")
     return f"{json_text(clock)}\n".encode()
-
-
-def trial_at(case: Case, tier: Tier, lift: Lift | None, *, corners: bool) -> Trial:
-    """Trial of a case at a depth, with its own cam or a given lift.
-
-    Raises
-    ------
-    CamError
-        If the case has no such cam, or it cannot be solved.
-    """
-    from camwright.pipeline.iteration import trials_of
-    from camwright.pipeline.preview import preview_case
-    from camwright.pipeline.solver import certify_trial, solve
-
-    if lift is not None:
-        return solve(case, case.contour(lift), tier=tier, corners=corners)
-    if tier <= Tier.PREVIEW:
-        return preview_case(case, corners=corners)
-    trial = trials_of(case, engine_torques(case), tier=tier).final
-    if tier < Tier.CERTIFIED:
-        return trial
-    with crew(1) as workers:
-        return certify_trial(trial, workers)
 
 
 def _cell(value: Any) -> Cell:
