@@ -115,14 +115,14 @@ def _completing(rows: Sequence[tuple[str, Key]]) -> str:
 
 def _rows(paths: Iterable[str]) -> list[tuple[str, Key]]:
     """Dotted paths with their keys in the order of a case file; a table is replaced by the keys
-    that it requires.
+    that it requires, or by its card and those that the card leaves.
     """
     rows: dict[str, Key] = {}
     for path in paths:
         for key in keys_at(path)[:1]:
             listed = [each for each in keys_in(key.path) if each.needed]
             if key.is_table and not key.example:
-                rows |= {f"{path}.{each.name}": each for each in listed}
+                rows |= dict(_with_card(path, listed))
             else:
                 rows[path] = key
     order = {key.path: place for place, key in enumerate(case_keys())}
@@ -218,18 +218,25 @@ def _within(path: str) -> Iterator[tuple[str, Key]]:
         row: TomlValue = [{key.name: key.example for key in required}]
         yield path, replace(keys[0], instead=row)
         return
-    spared: Tables = {}
-    for card in keys_at(f"{path}.card")[:1]:
-        filled = _filled(path, card)
-        if sum(key.name in filled for key in required) >= _KEYS_SPARED:
-            yield f"{path}.card", card
-            spared = filled
-    yield from ((f"{path}.{key.name}", key) for key in required if key.name not in spared)
+    yield from _with_card(path, required)
     for name, field in _section(path).model_fields.items():
         if field.is_required():
             for key in keys_at(f"{path}.{field.alias or name}")[:1]:
                 if key.is_table:
                     yield from _within(key.path)
+
+
+def _with_card(path: str, listed: Sequence[Key]) -> Iterator[tuple[str, Key]]:
+    """Keys of a table by their paths; its card in place of those that it fills, if it spares
+    enough.
+    """
+    spared: Tables = {}
+    for card in keys_at(f"{path}.card")[:1]:
+        filled = _filled(path, card)
+        if sum(key.name in filled for key in listed) >= _KEYS_SPARED:
+            yield f"{path}.card", card
+            spared = filled
+    yield from ((f"{path}.{key.name}", key) for key in listed if key.name not in spared)
 
 
 def _filled(path: str, card: Key) -> Tables:

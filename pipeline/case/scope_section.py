@@ -128,11 +128,11 @@ class Scope(Section):
 
     def leaves_out(self, key: str) -> bool:
         """Whether a key belongs to an excluded part and need not be stated."""
-        return any(
-            fnmatchcase(key, pattern) or fnmatchcase(key, f"{pattern}.*")
-            for part in (*self.not_covered, *self.without)
-            for pattern in _KEYS.get(part, ())
-        )
+        return self.lacks(key) or _is_of(key, self.not_covered)
+
+    def lacks(self, key: str) -> bool:
+        """Whether a key belongs to a part that the follower does not have."""
+        return _is_of(key, self.without)
 
     @model_validator(mode="after")
     def _says_why(self) -> Self:
@@ -140,6 +140,15 @@ class Scope(Section):
         if self.not_covered and not self.reason.strip():
             raise InputError("scope.reason", "missing", "given with scope.not_covered")
         return self
+
+
+def _is_of(key: str, parts: tuple[ScopeName, ...]) -> bool:
+    """Whether a key is one of `_KEYS` of any of the parts, or of a table of theirs."""
+    return any(
+        fnmatchcase(key, pattern) or fnmatchcase(key, f"{pattern}.*")
+        for part in parts
+        for pattern in _KEYS.get(part, ())
+    )
 
 
 _STAND_IN = "assumed, as the scope leaves out the {}"

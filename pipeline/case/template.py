@@ -420,16 +420,35 @@ wear_rate = "3e-8 mm^3/N/m"
 _ARM = """\
 [follower]
 kind = "oscillating"
-mass = "1.1 kg"                      # inertia about the pivot over the square of the arm's length
+mass = "650 g"                       # inertia about the pivot over the square of the arm's length
 
 [follower.arm]
 centre_distance = "110 mm"           # pivot to cam axis
 length = "100 mm"                    # pivot to the centre of the roller, or of a [follower.face]
 swing = "with"                       # outwards, the arm turns as the cam does; or "against"
+width = "28 mm"                      # along the cam axis, over the cheeks of the fork
+depth = "24 mm"
+bore = "23 mm"                       # seat of the bush
+hub = "38 mm"
+material = "c45"
+pivot_notch = 2.0                    # fatigue notch factors: bore in a bar that bends,
+roller_notch = 2.2                   # eye filled by its pin
 
-[scope]
-not_covered = ["arm"]
-reason = "Who signs off the arm and its pivot?"
+[follower.pivot]
+pin_material = "c45"
+ambient_temperature = "60 degC"
+swinging_mass = "900 g"
+mass_distance = "60 mm"              # pivot to the centre of this mass
+gravity_angle = "90 deg"             # the pivot beside the cam; left out: no weight
+
+[follower.pivot.bush]                # or [follower.pivot.needle_bearing]
+card = "ptfe_lined"                  # bush; also bronze, sintered_bronze, pom and others
+length = "25 mm"
+diameter = "20 mm"
+wall = "1.5 mm"
+clearance = "0.03 mm"
+housing_resistance = "1 K/W"
+wear_rate = "3e-8 mm^3/N/m"
 """
 
 _SURROUNDINGS = """\

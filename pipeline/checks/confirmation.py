@@ -32,7 +32,8 @@ def with_values_to_confirm(
     Limits of a check that are weaker than their defaults are named with it, evaluated or not.
     The source that a check declares for its limit counts as a value, ``checks.ID``, where it is
     not confirmed. A check judged at the tolerance corners rests on every tolerance that is tighter
-    than its default, whatever its source. A check without data rests on none.
+    than its default, whatever its source. A check without data rests on none, and none rests on
+    the stand-ins for a part that the follower does not have, such as the guides of an arm.
 
     Parameters
     ----------
@@ -58,7 +59,8 @@ def with_values_to_confirm(
         return tuple(
             value
             for value in values_at(tables, path)
-            if value in unusual or not source_of(tables, value).confirmed
+            if value in unusual
+            or not (case.scope.lacks(value) or source_of(tables, value).confirmed)
         )
 
     return tuple(

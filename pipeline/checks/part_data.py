@@ -138,7 +138,9 @@ data_arm = _data(
     "arm",
     lambda case: {"follower.arm": case.follower.arm},
     "arm",
-    described_by=("follower.arm.width", "follower.arm.depth"),
+    described_by=tuple(
+        f"follower.arm.{key}" for key in ("width", "depth", "material", "pivot_notch")
+    ),
     page="Follower",
 )
 data_spring = _data(
@@ -160,7 +162,13 @@ data_shaped_springs = tuple(
 )
 """Of the springs that are not linear, by their kinds."""
 data_guides = _data("guides", _guides, page="Guides")
-data_pivot = _data("pivot", _pivot, "arm", described_by=("follower.pivot",), page="Pivot")
+data_pivot = _data(
+    "pivot",
+    _pivot,
+    "arm",
+    described_by=("follower.pivot", "follower.pivot.bush"),
+    page="Pivot",
+)
 data_camshaft = _data(
     "camshaft",
     lambda case: {"camshaft": case.camshaft},

@@ -27,8 +27,7 @@ SIZES: dict[str, float | str] = {
 
 @cache
 def plain() -> Case:
-    text = first_case("swing", "arm").text
-    return parse_case(text.replace('not_covered = ["arm"]', 'not_covered = ["pivot"]'))
+    return parse_case(first_case("swing", "arm").text)
 
 
 def sized(**values: str) -> Case:

@@ -55,7 +55,9 @@ def test_the_cam_of_the_cylinder_model(balancing):
 
 @pytest.mark.parametrize("kind", ["lift", "eccentric", "arm"])
 def test_a_cam_without_engine(tmp_path, kind):
-    trial = preview_case(written(tmp_path, kind))
+    case = written(tmp_path, kind)
+    assert not case.scope.not_covered
+    trial = preview_case(case)
     holds(trial)
     assert "torque_reduction" not in {each.id for each in trial.checks}
 

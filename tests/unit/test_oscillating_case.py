@@ -1,6 +1,7 @@
 """Cases with an oscillating follower: their keys, what they refuse, and their preview."""
 
 import re
+import tomllib
 from functools import cache
 
 import numpy as np
@@ -11,11 +12,14 @@ from camwright.geometry.arrays import rotation
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.envelope import MechanismSizes
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.added_tables import NOTHING, added_text
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.template import first_case
+from camwright.pipeline.case.value_sources import values_in
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import drawn_angles, lift_columns
+from camwright.pipeline.results.verdict_summary import missing_keys
 from camwright.pipeline.results.workshop_files import dimensions_record, notes_of
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.screening.screened_checks import SCREENED
@@ -259,6 +263,43 @@ def test_a_first_case_on_an_arm_passes_its_preview(swing):
     assert {each.id for each in judged if each.status == "fail"} == set()
     made = {each.id for each in trial.checks}
     assert not {name for name in made if name.startswith(("guide_", "jam_", "mesh_reaction"))}
+
+
+def without_table(whole, first, last):
+    """Text of a case without the lines from `first` up to `last`."""
+    return whole[: whole.index(first)] + whole[whole.index(last) :]
+
+
+@pytest.mark.parametrize(("first", "last", "named"), [
+    ("[follower.pivot]", "[lubricant]", {
+        "follower.pivot.pin_material", "follower.pivot.bush.card", "follower.pivot.bush.length",
+        "follower.pivot.bush.wear_rate", "materials.case_hardened.expansion"}),
+    ('width = "28 mm"', "[follower.pivot]", {
+        "follower.arm.width", "follower.arm.depth", "follower.arm.material",
+        "follower.arm.pivot_notch", "follower.arm.roller_notch"}),
+])  # fmt: skip
+def test_missing_data_of_pivot_and_arm_are_completed_by_their_examples(first, last, named):
+    """As `check --missing` prints them, pasted until nothing is missing."""
+    whole, stated = without_table(first_case("swing", "arm").text, first, last), set()
+    for _ in range(3):
+        case = parse_case(whole).with_positions(36)
+        records = [each.as_record() for each in preview_case(case, corners=False).checks]
+        text = added_text(missing_keys(records, must_have=True), (), case.materials)
+        if text == NOTHING:
+            break
+        stated |= set(values_in(tomllib.loads(text)["added"][0]))
+        whole += "\n" + text
+    else:
+        pytest.fail(f"still missing: {text}")
+    assert named <= stated
+
+
+def test_no_value_of_a_guide_is_to_be_confirmed_of_an_arm():
+    """Its guides stand in for none."""
+    checks = preview_case(parse_case(text()).with_positions(36), corners=False).checks
+    values = {value for each in checks for value in each.unconfirmed}
+    assert "follower.mass" in values
+    assert not {value for value in values if value.startswith("guides.")}
 
 
 def test_a_long_arm_has_the_demands_of_a_stem():
