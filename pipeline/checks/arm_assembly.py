@@ -65,7 +65,7 @@ class _Pair(NamedTuple):
 
 def _discs(tip: Value, numbers: Numbers) -> dict[str, _Disc]:
     """Parts about the camshaft, and the pinion of its gear, by name; the cam has its maximum radius
-    `tip`, m.
+    `tip`, m; the radius of bearings is NaN without a diameter of the camshaft.
     """
     case, centre = numbers.known_case, (0.0, 0.0)
     discs = {
@@ -75,11 +75,11 @@ def _discs(tip: Value, numbers: Numbers) -> dict[str, _Disc]:
     shaft = case.camshaft
     if shaft is None:
         return discs
-    wide = shaft.bearing_width if shaft.bearing_width is not None else shaft.widest
+    bore = np.nan if shaft.widest is None else shaft.widest
+    wide = bore if shaft.bearing_width is None else shaft.bearing_width
     for number, at in enumerate((0.0, shaft.bearing_spacing), 1):
-        if shaft.widest is not None and wide is not None:
-            ends = at - shaft.cam_position, 0.5 * wide
-            discs[f"bearing {number}"] = _Disc(centre, 0.5 * _OUTER_OF_BEARING * shaft.widest, ends)
+        ends = at - shaft.cam_position, 0.5 * wide
+        discs[f"bearing {number}"] = _Disc(centre, 0.5 * _OUTER_OF_BEARING * bore, ends)
     if shaft.gear is not None and case.scope.covers("gear"):
         gear = gear_of(shaft)
         module = 2.0 * shaft.gear_radius / gear.teeth
@@ -135,8 +135,10 @@ def _in_words(demand: Demand, solution: Solution) -> Demand:
     if demand.missing:
         return replace(demand, at=None)
     if demand.value is None or np.isnan(demand.value):
-        lacks = (ARM_WIDTH,) if numbers.get(ARM_WIDTH) is None else ()
-        return replace(demand, at=None, missing=lacks)
+        shaft = numbers.known_case.camshaft
+        lacks = [ARM_WIDTH] if numbers.get(ARM_WIDTH) is None else []
+        lacks += ["camshaft.diameter"] if shaft is not None and shaft.diameter is None else []
+        return replace(demand, at=None, missing=tuple(lacks))
     tip, limit = solution.contour.radius_max().value, numbers.limit(ASSEMBLY_GAP)
     pairs = dict(_pairs(tip, numbers))
     name = min(pairs, key=lambda each: one(pairs[each].gap(limit)))

@@ -30,7 +30,7 @@ def plain() -> Case:
     return parse_case(first_case("swing", "arm").text)
 
 
-def sized(**values: str) -> Case:
+def sized(**values: str | None) -> Case:
     changed = {key.replace("__", "."): value for key, value in values.items()}
     return with_values(plain(), SIZES | changed)
 
@@ -133,3 +133,14 @@ def test_gaps_of_an_arm_by_polygons_over_the_turn(
     assert judged("counterweight_gap", of).demand == pytest.approx(
         min(least["weight"], 27e-3 - 9.5e-3), abs=1e-6
     )
+
+
+def test_bearings_of_an_unknown_bore_leave_the_gap_unknown() -> None:
+    """Wide cheeks reach over the bearings; on a shaft without a diameter their size is unknown."""
+    narrow, wide = (
+        judged("arm_gap", solved(sized(camshaft__diameter=None, follower__arm__width=width)))
+        for width in ("18 mm", "70 mm")
+    )
+    assert narrow.status == "pass"
+    assert wide.status == "not_evaluated"
+    assert wide.missing == ("camshaft.diameter",)
