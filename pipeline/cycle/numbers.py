@@ -132,7 +132,13 @@ class Numbers:
 
 def _greatest_friction(guide: str, numbers: Numbers) -> Value:
     """Maximum friction coefficient of a guide."""
-    nominal, stated = numbers[f"{guide}.friction"], numbers.get(f"{guide}.friction_max")
+    return _friction_max(
+        numbers[f"{guide}.friction"], numbers.get(f"{guide}.friction_max"), numbers
+    )
+
+
+def _friction_max(nominal: Value, stated: Value | None, numbers: Numbers) -> Value:
+    """Maximum friction coefficient: as stated, else the nominal one with the tolerance."""
     return friction_limits(nominal, None, stated, numbers["tolerances.friction"])[1]
 
 
@@ -144,10 +150,10 @@ def _of_pivot(name: str, numbers: Numbers) -> Value | None:
 
 def _pivot_friction(numbers: Numbers) -> Value | None:
     """Maximum friction coefficient of a pivot."""
-    nominal, stated = numbers.get(FRICTION), _of_pivot("friction_max", numbers)
+    nominal = numbers.get(FRICTION)
     if nominal is None:
         return None
-    return friction_limits(nominal, None, stated, numbers["tolerances.friction"])[1]
+    return _friction_max(nominal, _of_pivot("friction_max", numbers), numbers)
 
 
 def _area(guide: str, numbers: Numbers) -> Value:

@@ -54,6 +54,11 @@ class Rise(NamedTuple):
     slope: Array
     travel_d2: Array
 
+    @classmethod
+    def linear(cls, lift: Array) -> Rise:
+        """Of a force that is linear in the lift (...), m."""
+        return cls(0.5 * lift**2, lift, 1.0 + 0.0 * lift, 0.0 * lift)
+
 
 SpringKind = Literal["gas", "torsion", "torsion_pivot"]
 """Kinds of spring that are no coils, by `spring.kind` and the table of their name."""
@@ -533,7 +538,7 @@ class PivotSpring(TorsionWire):
 
     def within(self, lift: Array) -> Rise:
         """Rise of a force that is linear in the lift."""
-        return Rise(0.5 * lift**2, lift, 1.0 + 0.0 * lift, 0.0 * lift)
+        return Rise.linear(lift)
 
     def moment_at(self, force: ArrayLike, lift: ArrayLike) -> Array:  # noqa: ARG002
         return np.asarray(force) * self.length

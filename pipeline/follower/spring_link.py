@@ -302,7 +302,7 @@ class LinkedSpring(SpringShape):
     def _risen(self, travel: Array) -> Rise:
         if self.spring is not None:
             return rise(self.spring, travel)
-        return Rise(0.5 * travel**2, travel, 1.0 + 0.0 * travel, 0.0 * travel)
+        return Rise.linear(travel)
 
     def within(self, lift: Array) -> Rise:
         """Rise of the force on the arc over its slope at zero lift."""
