@@ -30,6 +30,7 @@ pdf                    documents as PDF/A, by typst
 documents              ``8_signoff.pdf``, ``8_report.pdf``, shop drawing, spreadsheets
 motion_svg             ``motion.svg``: the mechanism over one turn, animated
 scene_solids           rings, boxes and rods as triangles
+scene_arm              solids of second arm, output and spring of an arm, with their poses
 scene_page             ``scene.html``: interactive 3-D view over the turn
 sections               parts of a report by name; `report` writes them
 ====================== ===========================================================================

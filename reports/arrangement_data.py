@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arm_path import Arm
 from camwright.geometry.arrays import median
+from camwright.geometry.rocker_lift import RockerArm, RockerLinkage
 from camwright.pipeline.base.counterweight_body import CounterweightBody
 from camwright.pipeline.base.envelope import Disc, MechanismSizes, Sleeve
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout
 from camwright.reports.drawing import arrangement
+from camwright.reports.drawing.arm_parts import ArmSpring, LinkCoil, LinkGas, SecondArm, polar
 from camwright.reports.drawing.arrangement import (
     FORCES,
     DrawnArm,
@@ -32,6 +35,9 @@ _COIL, _WIRE, _GUIDE, _OVERHANG_STEMS, _SPACING = 2.6, 0.42, 2.0, 3.0, 7.0
 _PIN_SHARE = 0.5  # of the roller
 _TURNS = 7.0
 _BEARING = 0.1  # radius about the pivot of an arm, over its length
+_OUTPUT = 6.0  # length of the output of a second arm that is drawn, over half of the arm's depth
+_THROUGH = 1.5  # length of an output over that of the spring around it
+_COIL_SHARE, _BODY_SHARE = 0.25, 0.6  # of the length of a spring: diameter of coils, gas cylinder
 _STEEL_DENSITY = 7850.0  # kg/m3
 _OUTLINE_POINTS = 360
 """Most cam angles at which a page draws the arrangement."""
@@ -112,7 +118,72 @@ def _arm(turn: SheetTurn) -> DrawnArm | None:
     offset, radius = (turn.length("follower", "face", key) for key in ("offset", "radius"))
     start, depth = float(linkage.start_angle(prime, offset)), offset or radius or 0.0
     half = None if deep is None else 0.5 * deep
-    return DrawnArm(distance, length, sense, start, bearing, depth, radius, half)
+    second = _second_arm(turn, length, 0.6 * bearing if half is None else half)
+    spring = _arm_spring(turn, second)
+    return DrawnArm(distance, length, sense, start, bearing, depth, radius, half, second, spring)
+
+
+def _second_arm(turn: SheetTurn, arm_length: float, half: float) -> SecondArm | None:
+    """Second arm of a rocker on the pivot of the arm, mm; None without one. Of a constant ratio its
+    end travels on an arc, drawn with the output along its tangent at zero lift.
+    """
+    rocker = turn.case.get("rocker")
+    if not isinstance(rocker, dict):
+        return None
+    ratio, stated = rocker.get("ratio"), turn.length("rocker", "length")
+    raised = turn.length("rocker", "angle", unit="rad") or 0.0
+    if isinstance(ratio, (int, float)):
+        stated, second = ratio * arm_length, RockerArm(ratio * arm_length)
+    elif stated is not None:
+        second = RockerArm(stated, raised)
+    else:
+        return None
+    linkage = RockerLinkage(RockerArm(arm_length), second, turn.length("rocker", "lash") or 0.0)
+    side = 1.0 if rocker.get("side") == "same" else -1.0
+    rod = _OUTPUT * half
+    if isinstance(turn.case.get("spring", {}).get("rocker"), dict):
+        rod = _THROUGH * (_installed(turn) or rod)
+    return SecondArm(stated, side, raised, half, rod, linkage)
+
+
+def _arm_spring(turn: SheetTurn, second: SecondArm | None) -> ArmSpring | None:
+    """Spring between an arm, or the output of its second arm, and a fixed end; None of any other.
+    Sizes that the case does not state are scaled from its length.
+    """
+    spring = turn.case.get("spring", {})
+    link = spring.get("link")
+    if isinstance(link, dict):
+        radii = [turn.length("spring", "link", key) for key in ("arm_radius", "fixed_radius")]
+        turned = [
+            turn.length("spring", "link", key, unit="rad") or 0.0
+            for key in ("arm_angle", "fixed_angle")
+        ]
+        if radii[0] is None or radii[1] is None:
+            return None
+        ends = (radii[0], turned[0]), (radii[1], turned[1])
+        length = float(np.hypot(*(polar(*ends[0]) - polar(*ends[1]))))
+        pulls = link.get("action") == "pull"
+        return ArmSpring(_between(turn, length, "eyes" if pulls else "pins"), *ends)
+    if not isinstance(spring.get("rocker"), dict) or second is None:
+        return None
+    length = second.rod / _THROUGH
+    return ArmSpring(_between(turn, length, "seats"), None, distance=length)
+
+
+def _between(
+    turn: SheetTurn, length: float, ends: Literal["eyes", "pins", "seats"]
+) -> LinkCoil | LinkGas:
+    """Gas or coil spring of a length between its ends at zero lift, mm."""
+    spring = turn.case.get("spring", {})
+    if isinstance(spring.get("gas"), dict):
+        area = turn.length("spring", "gas", "area", unit="mm^2") or (_COIL_SHARE * length) ** 2
+        bore = float(np.sqrt(4.0 * area / np.pi))
+        return LinkGas(bore, _BODY_SHARE * length, (1.06 - _BODY_SHARE) * length)
+    diameter = turn.length("spring", "design", "mean_diameter") or _COIL_SHARE * length
+    active = spring.get("design", {}).get("coils")
+    turns = float(active) + 2.0 if isinstance(active, (int, float)) else _TURNS
+    wire = turn.length("spring", "design", "wire_diameter")
+    return LinkCoil(wire or 0.5 * length / turns * _WIRE, diameter, turns, ends)
 
 
 def _counterweight(turn: SheetTurn) -> DrawnSector | None:

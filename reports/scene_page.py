@@ -15,7 +15,7 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.envelope import Sleeve
 from camwright.pipeline.base.files import Json, read_npz, write_atomic
 from camwright.pipeline.results.field_file import EndField, read_end_field
-from camwright.reports import stress_map
+from camwright.reports import scene_arm, stress_map
 from camwright.reports.arrangement_data import mechanism_of
 from camwright.reports.drawing.arrangement import DrawnArm, DrawnMechanism
 from camwright.reports.interactive import script_safe_json, scripts
@@ -165,6 +165,7 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
             lean, follower = view.to_lab + view.turn - np.pi, _face_on_arm(view, width, arm)
     bodies["follower"] = follower.as_record(_DIGITS)
     bodies["guide"] = _frame(mechanism).as_record(_DIGITS)
+    lifts = rows["lift_mm"][view.position]
     envelope = mechanism.envelope
     spin = view.arc() / float(np.hypot(*view.follower).max()) if view.is_roller else 0.0
     return {
@@ -175,6 +176,7 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
         "origin": [_rounded(part) for part in lab],
         "facing": _rounded(view.to_lab + view.turn + spin),
         "lean": None if lean is None else _rounded(lean),
+        "moving": scene_arm.moving(mechanism, lifts, width, _DIGITS),
         "contact": [_rounded(part) for part in _contacts(view, lab, arm)],
         "half": width / 2,
         "readout": [
@@ -185,7 +187,8 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
         "shaft": turn.words.shaft,
         "ratio": float(rows["crank_angle_deg"][1] / rows["cam_angle_deg"][1]),
         "reach": {
-            "side": float(np.abs([*envelope.across, envelope.along[0]]).max()),
+            "side": float(np.abs(envelope.across).max()),
+            "low": -float(envelope.along[0]),
             "top": float(envelope.along[1]),
             "deep": float(np.abs(envelope.depth).max()),
         },

@@ -12,6 +12,7 @@ from camwright.geometry.arrays import Array
 from camwright.pipeline.base.files import Json
 
 _ROUND = 48
+_STEPS_OF_TURN, _WIRE_POINTS = 24, 8  # of a wound wire
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +146,23 @@ def pin(radius: float, half: float) -> Solid:
     outline = radius * unit_circle()
     ends = [tube(outline, 0.0 * outline, side * half) for side in (-1, 1)]
     return joined([ring(outline, 2 * half), *ends])
+
+
+def helix(diameter: float, wire: float, turns: float, length: float) -> Solid:
+    """Round wire wound about y from zero to a length, mm; diameter: of the coil's middle."""
+    winding = 2.0 * np.pi * np.linspace(0.0, turns, max(int(turns * _STEPS_OF_TURN), 8))
+    out = np.stack([np.cos(winding), 0.0 * winding, np.sin(winding)])
+    up = np.array([[0.0], [1.0], [0.0]])
+    middle = 0.5 * diameter * out + up * np.linspace(0.0, length, winding.size)
+    section = 0.5 * wire * unit_circle()[:, :: _ROUND // _WIRE_POINTS]
+    wall = np.stack([middle + out * x + up * y for x, y in section.T], axis=1)
+    rows, points = np.arange(winding.size - 1)[:, None], section.shape[1]
+    here = rows * points + np.arange(points)
+    beside = rows * points + (np.arange(points) + 1) % points
+    order = wall.transpose(0, 2, 1).reshape(3, -1)
+    first = np.stack([here, beside, beside + points]).reshape(3, -1)
+    second = np.stack([here, beside + points, here + points]).reshape(3, -1)
+    return Solid(order, np.hstack([first, second]))
 
 
 def unit_circle() -> Array:

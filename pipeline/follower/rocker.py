@@ -126,6 +126,19 @@ class Rocker(Part):
         )
         return RockerLinkage(first, RockerArm(self.length, self.angle), self.lash)
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes on the drawing of the cam, of the second arm that it moves."""
+        if self.length is None:
+            arm = f"constant ratio {self.ratio:g}"
+        else:
+            raised = shown(self.angle, "deg", 4)
+            arm = f"second arm {shown(self.length, 'mm')}, at zero lift {raised} from square to the"
+            arm += " line of its output"
+        side = "beyond the pivot" if self.side == "opposite" else "on the side of the arm"
+        lash = f", lash {shown(self.lash, 'mm')}" if self.lash else ""
+        return (f"rocker of {arm}, {side}{lash}",)
+
     def push_on_arm(self, force: Array, lift: Array, arm_length: float) -> Array:
         """Force of the output on the rocker (2, ...), N, along the arm from the pivot and outwards.
 

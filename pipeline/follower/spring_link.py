@@ -75,6 +75,21 @@ class SpringLink(Part):
             raise InputError(f"{self.table}.fixed_angle", shown(self.fixed_angle, "deg"), limit)
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """Note on the drawing of the cam, of the ends of the spring."""
+        arm, fixed = (
+            f"{shown(radius, 'mm')} from the pivot at {shown(angle, 'deg', 4)}"
+            for radius, angle in (
+                (self.arm_radius, self.arm_angle), (self.fixed_radius, self.fixed_angle)
+            )
+        )  # fmt: skip
+        acts = "pulls" if self.action == "pull" else "pushes"
+        return (
+            f"spring that {acts} between the arm, {arm}, and a fixed end, {fixed} from the"
+            " arm at zero lift, both angles positive outwards",
+        )
+
+    @property
     def sense(self) -> float:
         """Change of the distance of the ends per travel: -1 where the spring pushes."""
         return 1.0 if self.action == "pull" else -1.0

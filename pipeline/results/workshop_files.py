@@ -150,12 +150,19 @@ def swing_record(case: Case, contour: Contour) -> dict[str, Json] | None:
         "length_mm": in_unit(arm.length, "mm"),
         "swing": arm.swing,
         "reference": case.facing.reference,
-        "notes": list(case.facing.notes),
+        "notes": list(_follower_notes(case)),
         "by_cam_angle": {
             f"{at:.0f}": [in_unit(float(r), "mm"), in_unit(float(psi), "deg")]
             for at, r, psi in zip(degrees, radius, angle, strict=True)
         },
     }
+
+
+def _follower_notes(case: Case) -> Iterator[str]:
+    """Notes on face, rocker and linked spring of the follower."""
+    for part in (case.facing, case.rocker, case.spring.link):
+        if part is not None:
+            yield from part.notes
 
 
 def track_record(case: Case, word: str) -> dict[str, Json]:
@@ -213,7 +220,7 @@ def notes_of(case: Case) -> Iterator[str]:
         swing = f"arm at {shown(float(start), 'deg', 6)} to the cam axis at zero lift"
         ways = f"swings outwards {arm.swing} the rotation of the cam"
         yield f"{lengths} to the {case.facing.reference}; {swing}, {ways}"
-    yield from case.facing.notes
+    yield from _follower_notes(case)
     yield ", ".join(filter(None, (f"material {stated.material or size.material}", size.hardness)))
     yield "cam angles grow counter-clockwise from the marked line; the cam turns clockwise"
 

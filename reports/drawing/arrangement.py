@@ -14,9 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, rotation
 from camwright.pipeline.base.envelope import Box, MechanismSizes, around
 from camwright.pipeline.base.files import Json
+from camwright.reports.drawing.arm_parts import ArmSpring, SecondArm, ground, polar
 from camwright.reports.drawing.drawing_shapes import (
     Arrow,
     Drawing,
@@ -79,7 +80,8 @@ class DrawnArm:
     sense: of the outward swing, 1 clockwise as the cam turns, -1 against it; start: angle from the
     line to the cam axis at zero lift; bearing: radius drawn about the pivot; depth: of the middle
     of a face below the line from the pivot to the end, towards the cam: its offset or, of a curved
-    face, its radius; bar: half of the depth of the arm, None where it is not stated
+    face, its radius; bar: half of the depth of the arm, None where it is not stated; second: of a
+    rocker; spring: between the arm or its output and a fixed end
     """
 
     pivot: float
@@ -90,6 +92,8 @@ class DrawnArm:
     depth: float = 0.0
     radius: float | None = None
     bar: float | None = None
+    second: SecondArm | None = None
+    spring: ArmSpring | None = None
 
     @property
     def half(self) -> float:
@@ -108,6 +112,49 @@ class DrawnArm:
         """Roller centre (2, ...), mm."""
         turn = self.turn(lift)
         return np.stack([self.length * np.sin(turn), self.pivot - self.length * np.cos(turn)])
+
+    def hung(self, point: Array) -> Array:
+        """Points (2, ...) along the arm and outwards, mm, in the frame of the drawn arm: it hangs
+        down from its pivot at the origin.
+        """
+        along, outwards = point
+        return np.stack([-self.sense * outwards, -along])
+
+    def placed(self, point: Array, lift: float = 0.0) -> Array:
+        """Point (2,) along the arm and outwards, mm, in the drawing at a lift, mm."""
+        turned = rotation(float(self.turn(lift))) @ self.hung(point)
+        return np.asarray(turned + np.array([0.0, self.pivot]))
+
+    def spring_ends(self, lift: float) -> tuple[Array, Array] | None:
+        """Moving and fixed end (2,) of the spring in the drawing, mm; None without one."""
+        if self.spring is None:
+            return None
+        if self.spring.arm_end is not None:
+            moving, fixed = polar(*self.spring.arm_end), polar(*self.spring.fixed)
+            return self.placed(moving, lift), self.placed(fixed)
+        if self.second is None:
+            return None
+        head = self.second.head * self.second.line
+        fixed = self.second.flat(0.0) + head + self.spring.distance * self.second.line
+        return self.placed(self.second.flat(lift) + head), self.placed(fixed)
+
+    def beside(self, lift: float) -> list[tuple[Array, float]]:
+        """Points (2,) of second arm, output and spring in the drawing at a lift, and what reaches
+        around each, mm.
+        """
+        reached = []
+        if self.second is not None:
+            far = self.second.flat(lift) + self.second.rod * self.second.line
+            pad = self.second.pad
+            reached += [
+                (self.placed(self.second.end, lift), pad),
+                (self.placed(self.second.flat(lift)), 1.5 * pad),
+                (self.placed(far), pad),
+            ]
+        ends = self.spring_ends(lift)
+        if ends is not None and self.spring is not None:
+            reached += [(end, 1.2 * self.spring.shape.half) for end in ends]
+        return reached
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +210,12 @@ class DrawnMechanism:
             (self.arm.pivot - round_pivot, self.arm.pivot + round_pivot),
             (-deep, deep),
         )
-        return around((*self.sizes.on_shaft, Box(across, along, (-deep, deep)), pivot))
+        beside = [
+            Box((x - size, x + size), (y - size, y + size), (-deep, deep))
+            for lift in (0.0, 0.5 * self.stroke, self.stroke)
+            for (x, y), size in self.arm.beside(lift)
+        ]
+        return around((*self.sizes.on_shaft, Box(across, along, (-deep, deep)), pivot, *beside))
 
     @property
     def shown_forces(self) -> tuple[str, ...]:
@@ -254,7 +306,7 @@ def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing
         ShapeGroup("axes", (*_axes(m), *_gear(m))),
         ShapeGroup("cam", tuple(_cam(m)), Pose(cam_turn(theta))),
         ShapeGroup("turning", tuple(_turning(m))),
-        *(_stem_groups(m, lift) if m.arm is None else _arm_groups(m, m.arm, lift)),
+        *(_stem_groups(m, lift) if m.arm is None else arm_groups(m, m.arm, lift)),
         ShapeGroup("forces", tuple(arrows(m, motion, row))),
         ShapeGroup("values", tuple(_values(m, motion, row))),
     )
@@ -275,7 +327,7 @@ def _stem_groups(m: DrawnMechanism, lift: float) -> tuple[ShapeGroup, ...]:
     return (*behind, follower, *before, ShapeGroup("guides", tuple(_guides(m))))
 
 
-def _arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
+def arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
     """Groups of a follower on an arm, from back to front: arm with its roller, turned to the lift,
     mm, and the fixed pivot.
     """
@@ -302,10 +354,57 @@ def _arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGro
             (circle(0.5 * arm.bearing, (0.0, arm.pivot)),), Pen("ink", edge.width, "card")
         ),
     )
+    pose = Pose(float(arm.turn(lift)), (0.0, arm.pivot))
+    second, spring = _second_groups(m, arm, lift), _spring_groups(m, arm, lift)
     return (
-        ShapeGroup("follower", swung, Pose(float(arm.turn(lift)), (0.0, arm.pivot))),
+        *second,
+        ShapeGroup("follower", (*_lug(arm, edge), *swung), pose),
         ShapeGroup("pivot", fixed),
+        *spring,
     )
+
+
+def _second_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
+    """Output and second arm of a rocker, behind the first arm; none without one; lift in mm."""
+    second, edge = arm.second, Pen("ink", _EDGE * m.scale, "steel")
+    if second is None:
+        return ()
+    end = arm.hung(second.end)
+    bar = rectangle(-0.8 * arm.half, min(0.0, end[1]), 0.8 * arm.half, max(0.0, end[1]))
+    pad = circle(second.pad, (float(end[0]), float(end[1])))
+    swung = DrawnOutline((bar,), edge), DrawnOutline((pad,), edge)
+    start, ahead = (arm.placed(second.flat(lift) + far * second.line) for far in (0.0, 1.0))
+    x, y = ahead - start
+    output = Pose(float(np.arctan2(-x, y)), (float(start[0]), float(start[1])))
+    return (
+        ShapeGroup("output", second.output(), output),
+        ShapeGroup("second-arm", swung, Pose(float(arm.turn(lift)), (0.0, arm.pivot))),
+    )
+
+
+def _spring_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
+    """Spring of an arm between its ends, and the ground of the fixed one; none without one."""
+    ends = arm.spring_ends(lift)
+    if arm.spring is None or ends is None:
+        return ()
+    held = arm.spring.shape.groups(*ends)
+    anchor = next(each.pose for each in held if each.name == "link-anchor")
+    wide = 1.1 * arm.spring.shape.half
+    return (ShapeGroup("link-ground", ground(wide, 3.2 * m.scale, _EDGE * m.scale), anchor), *held)
+
+
+def _lug(arm: DrawnArm, edge: Pen) -> tuple[DrawnOutline, ...]:
+    """Bar from the pivot to the end of a spring that does not lie on the arm, which hangs down from
+    its pivot at the origin; none of one that does.
+    """
+    if arm.spring is None or arm.spring.arm_end is None:
+        return ()
+    along, outwards = end = polar(*arm.spring.arm_end)
+    if abs(outwards) < arm.half and 0.0 < along < arm.length:
+        return ()
+    x, y = tip = arm.hung(end)
+    aside = 0.7 * arm.half * np.array([-y, x]) / np.hypot(x, y)
+    return (DrawnOutline((np.stack([aside, tip + aside, tip - aside, -aside], axis=1),), edge),)
 
 
 def _face_of(arm: DrawnArm, face: tuple[float, float]) -> Array:
@@ -334,6 +433,10 @@ def alt(m: DrawnMechanism, motion: DrawnMotion, row: int) -> str:
     )
     carried = "face" if m.roller is None else "roller"
     parts = "follower, guides and spring" if m.arm is None else f"{carried} and arm on its pivot"
+    if m.arm is not None and m.arm.second is not None:
+        parts += ", second arm with its output"
+    if m.arm is not None and m.arm.spring is not None:
+        parts += ", spring"
     return (
         f"Cam, {parts} in the plane of the cam at "
         f"{_angle_words(motion, row)}, load case {motion.load_case}. Lift "

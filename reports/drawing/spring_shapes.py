@@ -47,6 +47,32 @@ class SpringPlaces(NamedTuple):
     stem: float
 
 
+def coil_strands(diameter: float, turns: float) -> tuple[list[Array], list[Array]]:
+    """Half coils as straight segments (2, 2) on the far side and on the near side; x in mm, y from
+    0 to 1. diameter: of the coils, mm; turns: all coils
+    """
+    count = max(round(turns), 2)
+    half = 0.5 * diameter
+    steps = np.linspace(0.0, 1.0, 2 * count + 1)
+    strands = [
+        segment((side * half, low), (-side * half, high))
+        for side, (low, high) in zip(cycle((-1.0, 1.0)), pairwise(steps), strict=False)
+    ]
+    return strands[1::2], strands[::2]
+
+
+def drawn_wire(strands: list[Array], wire: float, fill: str) -> tuple[DrawnOutline, ...]:
+    """Outlines of a wire, mm, along given strands: a dark line and a narrower one of colour `fill`
+    on it.
+    """
+    widths = (("ink", wire), (fill, (1.0 - 2.0 * _WIRE_EDGE) * wire))
+    return tuple(
+        DrawnOutline((strand,), Pen(stroke, width), closed=False)
+        for strand in strands
+        for stroke, width in widths
+    )
+
+
 @dataclass(frozen=True)
 class Coil:
     """Helical spring between the seat on the follower and the fixed seat above; mm.
@@ -78,40 +104,16 @@ class Coil:
         mm.
         """
         pose = self.pose(axis, lift)
-        behind, before = self._strands()
+        behind, before = coil_strands(self.diameter, self.turns)
         return (
-            (ShapeGroup("spring-behind", self._drawn(behind, "muted"), pose),),
-            (ShapeGroup("spring-before", self._drawn(before, "steel"), pose),),
+            (ShapeGroup("spring-behind", drawn_wire(behind, self.wire, "muted"), pose),),
+            (ShapeGroup("spring-before", drawn_wire(before, self.wire, "steel"), pose),),
         )
 
     def pose(self, axis: float, lift: float) -> Pose:
         """Place of the coils, which reach from 0 to 1 along y."""
         inside = max(self.length - lift - self.wire, 0.0)
         return Pose(shift=(axis, self.seat + lift + 0.5 * self.wire), stretch=inside)
-
-    def _strands(self) -> tuple[list[Array], list[Array]]:
-        """Half coils as straight segments (2, 2) on the far side and on the near side; x in mm, y
-        from 0 to 1.
-        """
-        count = max(round(self.turns), 2)
-        half = 0.5 * self.diameter
-        steps = np.linspace(0.0, 1.0, 2 * count + 1)
-        strands = [
-            segment((side * half, low), (-side * half, high))
-            for side, (low, high) in zip(cycle((-1.0, 1.0)), pairwise(steps), strict=False)
-        ]
-        return strands[1::2], strands[::2]
-
-    def _drawn(self, strands: list[Array], fill: str) -> tuple[DrawnOutline, ...]:
-        """Outlines of the wire along given strands: a dark line and a narrower one of colour `fill`
-        on it.
-        """
-        widths = (("ink", self.wire), (fill, (1.0 - 2.0 * _WIRE_EDGE) * self.wire))
-        return tuple(
-            DrawnOutline((strand,), Pen(stroke, width), closed=False)
-            for strand in strands
-            for stroke, width in widths
-        )
 
 
 @dataclass(frozen=True)

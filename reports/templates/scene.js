@@ -86,6 +86,7 @@
       hoverinfo: "skip", line: { width: 2, color: "#59616b" } });
     made.push(solid(data.bodies.bore, { color: "#7d8894", lighting: PLAIN }));
     if (data.roller) made.push(solid(follower, { color: DARK }));
+    for (const part of data.moving) made.push(solid(part.body, { color: DARK }));
     if (guide) made.push(solid(guide, { color: "#6c7783", opacity: 0.35 }));
     return made;
   }
@@ -113,6 +114,10 @@
     for (const line of [rim, hole]) pairs.push(turned(line, turn));
     pairs.push(around(data.bodies.bore.x, data.bodies.bore.y, turn));
     if (data.roller) pairs.push(at(follower, lean));
+    for (const { body, turn: turns, x, y, stretch } of data.moving) {
+      const [xs, ys] = around(body.x, body.y.map((v) => stretch[n] * v), turns[n]);
+      pairs.push([xs.map((v) => v + x[n]), ys.map((v) => v + y[n])]);
+    }
     return { pairs, zs };
   }
 
@@ -123,14 +128,15 @@
     return pairs.map((_, t) => t);
   }
 
-  const { side, top } = data.reach, deep = Math.max(0.3 * (side + top), data.reach.deep), unit = (side + top) / 1.22;
+  const { side, low, top } = data.reach, high = low + top;
+  const deep = Math.max(0.3 * high, data.reach.deep), unit = Math.max(2 * side, high) / 1.22;
   const axis = (range) => ({ range, visible: false, autorange: false });
   const layout = () => ({
     margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false, uirevision: "fixed",
     paper_bgcolor: "rgba(0,0,0,0)", font: { color: colour("ink"), family: "system-ui, sans-serif" },
-    scene: { domain: arranged().domain, xaxis: axis([-side, side]), yaxis: axis([-side, top]), zaxis: axis([-deep, deep]),
+    scene: { domain: arranged().domain, xaxis: axis([-side, side]), yaxis: axis([-low, top]), zaxis: axis([-deep, deep]),
       aspectmode: "manual",
-      aspectratio: { x: (2 * side) / unit, y: (side + top) / unit, z: (2 * deep) / unit }, dragmode: "orbit", uirevision: "fixed",
+      aspectratio: { x: (2 * side) / unit, y: high / unit, z: (2 * deep) / unit }, dragmode: "orbit", uirevision: "fixed",
       camera: camera("oblique") },
   });
 
