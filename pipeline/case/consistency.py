@@ -322,7 +322,9 @@ def _period(case: Case) -> Iterator[Rule]:
 
 
 def _no_tighter() -> Iterator[Rule]:
-    """Rules that tolerances are not tighter than their defaults."""
+    """Rules that tolerances are not tighter than their defaults, and that the stated limits of a
+    guide's friction enclose the nominal one with the default tolerance.
+    """
     usual = Tolerances()
     least = {
         "tolerances.friction": usual.friction,

@@ -176,9 +176,13 @@ def _temperature(side: Place, power: Value, numbers: Numbers) -> Value:
 
 
 def power_at(side: Place, temperature: float | None, numbers: Numbers) -> float | None:
-    """Mean friction power of a bush, W, at which its steady temperature is `temperature`, K.
+    """Mean friction power of a bush, W, at which it reaches a steady temperature, K; None where
+    temperature or heat path is not known, or the temperature is not above the ambient one.
 
-    None where it is not known, and below the ambient temperature: no lift has it.
+    Parameters
+    ----------
+    side : Place        guide A or B, or the pivot of an arm
+    numbers : Numbers   of the case, with thermal resistance, K/W, and ambient temperature, K
     """
     resistance, ambient = _heat_path(side, numbers)
     if temperature is None or resistance is None or ambient is None or temperature <= ambient:

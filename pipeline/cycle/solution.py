@@ -173,9 +173,11 @@ class Solution(Displayed):
 
     @cached_property
     def least_damped(self) -> Solution | None:
-        """The solution at the least damping of the surge; None if the case states the damping.
+        """The solution with the least damping ratio that a spring may have, for its surge; None if
+        the case states the damping ratio or no design of a coil spring.
 
-        None in a coarse solution, too, and without error bars.
+        The machines alone are replaced, no cycle is solved again. None in a coarse solution, too,
+        and where the cycles have no error bars.
         """
         design, barred = self.machine.spring.design, self.cycles[0].error_bars
         if self.coarse or not barred or design is None or design.damping_ratio is not None:

@@ -104,8 +104,10 @@ def shared_edges(start: Array, end: Array) -> Array:
 
 
 def points(angle: Array, last: int, derivative: bool = False) -> Array:
-    """Fourier basis of the cycle at crank angles (n,), rad: 1, cosines and then sines of harmonics
-    1 to `last`, (n, 2 last + 1); with `derivative` its slope, 1/rad.
+    """Fourier basis of the engine cycle at crank angles (n,), rad: 1, cosines and then sines of
+    harmonics 1 to `last`, (n, 2 last + 1); with `derivative` its slope, 1/rad.
+
+    Harmonic k has k periods in a cycle, `CYCLE_ANGLE`.
     """
     order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
     phase = np.outer(angle, order)

@@ -138,11 +138,16 @@ class ScreenedCam(LoadedCam):
         return most.a * rubbing.a + most.b * rubbing.b
 
     def _settled(self, friction: OfGuides) -> OfGuides:
-        """Normal loads of guides A and B over the axial force (m, n), at equilibrium with this
-        friction.
+        """Summed normal loads of guides A and B over the axial force, of m designs at n cam angles
+        (m, n), with the friction of the guides.
 
-        Fixed point of the axial force, whose friction depends on the guides' loads; the change of
-        their ratios with the force is small.
+        The axial force is that without friction over the share that the friction leaves of it, and
+        the load ratios are those of the table at that force: repeated until the force settles. They
+        change little with the force, so that a few rounds do.
+
+        Parameters
+        ----------
+        friction : OfGuides   friction coefficients of guides A and B, each broadcast to (m, n)
         """
         supports, shape = self.block.supports, self._free.shape
         load = np.broadcast_to(supports.load, shape).ravel()

@@ -205,18 +205,23 @@ def _places(count: int) -> NDArray[np.intp]:
 
 
 class _Pairs:
-    """Pairs of cells along one axis in rising order, the second mirrored by its sign and shifted.
+    """Pairs of cells along one axis, p of them: the first at x, the second at sign x + shift.
 
-    Two cells that change places have the same distance, so that half of the pairs is enough; those
-    of equal cells, or on both sides of the middle, have distances in common.
+    Two cells that change places have the same distance, so that the pairs whose first is not behind
+    the second are enough.
 
-    Attributes: distances of the edges (e,), each once, of the centres (p,), m; squares (p,), m2,
-    the second moments of both cells over their lengths; areas (p,), m2, products of the lengths.
+    Attributes: edges (e,), m, distances of the edges of both cells, each once; centres (p,), m,
+    those of the middles, signed; squares (p,), m2, sum of h^2/12 of both cells of length h; areas
+    (p,), m2, products of the lengths.
     """
 
     def __init__(self, edges: Array, sign: float, shift: float = 0.0) -> None:
-        """From the edges of the cells, m, the sign, 1 or -1, and the shift, m, of the second cell
-        of a pair.
+        """From the edges of the cells, rising, (cells + 1,), m.
+
+        Parameters
+        ----------
+        sign : float    1: the second cell is where it is; -1: it is a mirror image
+        shift : float   of an image, m: twice the coordinate of its mirror
         """
         first, second = _rising(edges.size)
         apart = np.abs(edges[first] - sign * edges[second] - shift)

@@ -170,7 +170,9 @@ class CrownDesign(Displayed):
 
     @cached_property
     def centres(self) -> tuple[float, float]:
-        """Factor at the centre without and with the crown, aligned at the greatest p0."""
+        """Pressure at mid-length over that of plane strain, without and with the crown, both bodies
+        aligned, at the load of the greatest p0.
+        """
         worst = self.chosen.problem.states.worst
         straight, crowned = (
             self.line(crown, worst, tilted=False).centre
