@@ -331,8 +331,16 @@ class ArmFaceContour(PlaneContour):
         return np.asarray(motion.curvature_slope * motion.contour_speed)
 
     def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
-        """Heights of the follower at rest on a polygon (2, n), m, at cam angles (m,), rad: arc of
-        the end of the arm from the line of centres (m,), m.
+        """Positions (m,) of the follower where its face touches given points of a cam, m: arm angle,
+        between the arm and the line from pivot to cam axis, times the length of the arm.
+
+        The greatest angle at which the face, of any length, touches a point; a point nearer to the
+        pivot than the face is none.
+
+        Parameters
+        ----------
+        polygon : array (2, n)   points of the cam surface in its own axes, m
+        theta : array (m,)       cam angles, rad
         """
         arm, offset = self.pitch.arm, self.pitch.offset
 

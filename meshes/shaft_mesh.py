@@ -34,11 +34,12 @@ def cam_on_shaft(
     sizing: ElementSize,
     refinement: float = 1.0,
 ) -> CamOnShaft:
-    """Meshes of a cam and of the solid round shaft in its bore, which has no keyway.
+    """Plane meshes of a cam and of the solid shaft in its bore, for their press fit: each node
+    of the bore has one of the shaft at its place. The shaft itself has no keyway.
 
     Parameters
     ----------
-    contour : ContourLike
+    contour : ContourLike           of the cam, m, in its own axes
     bore_radius : float             m, bore centred on the origin
     keyway : KeywayLike or None     with its fillets
     sizing : ElementSize

@@ -365,8 +365,8 @@ def _outline(figure: OutlineFigure | ContoursFigure) -> Spec:
 
 
 def _outline_curve(curve: OutlineCurve) -> Spec:
-    """Plotly trace of a curve of an outline, mm, with the cam angle at the pointer where it is
-    known.
+    """Plotly trace of a curve of an outline, points (2, n), mm, whose hover text has the cam angle,
+    deg, where it is known.
     """
     x, y = curve.points
     hover: Spec = {"hoverinfo": "skip"}

@@ -160,8 +160,10 @@ def _closest(stated: str) -> str:
 
 
 def _spelled(stated: str, unit: str) -> str:
-    """The spelling of a stated unit that `_unit` reads: ``Nm`` as ``N m``; where a speed is wanted,
-    turns such as ``1/min`` as ``rpm``.
+    """Spelling that `_unit` reads of a unit as written in an input, without its number.
+
+    ``Nm`` becomes ``N m``, with more behind it, too; where `unit`, the wanted one, is a speed of
+    rotation, ``1/min`` becomes ``rpm``.
     """
     if same_dimension(unit, "rpm"):
         return _SPEEDS.get(stated, stated)

@@ -55,14 +55,16 @@ class Usual:
 
 
 def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...]:
-    """Findings on the values of a case outside their usual ranges.
+    """Findings on values of a case that are outside their usual ranges or contradict one another.
 
-    Besides the values of single keys: the peak-to-peak torque, the speed at which a motor carries
-    it, and the spring against the energy swing of the torque of the design load case.
+    Single keys; a lift table and the curve through it; the peak-to-peak torque; friction and dead
+    centre of a measured cylinder pressure; the speed at which a motor carries the mean torque; oil,
+    temperatures and bushes; and, where torque and spring are usual so far, the spring against the
+    energy swing of the torque of the design load case.
 
     Parameters
     ----------
-    torques : mapping   engine torque by load case
+    torques : mapping   torque over the crank angle, N m, by the name of the load case
     """
     judged: list[Implied | None] = [*beyond_ranges(case), _lift_finding(case)]
     judged += _torque_findings(case, torques)

@@ -220,7 +220,9 @@ def show_all(document: dict[str, Any], places: Places) -> None:
 
 
 def _changes(document: dict[str, Any]) -> list[str]:
-    """Lines on the changes against a baseline run; none without one."""
+    """Lines on what changed against a baseline run, from the document of a run; empty where the run
+    was compared with none.
+    """
     if "changes" not in document:
         return []
     from camwright.pipeline.results.baseline_comparison import lines

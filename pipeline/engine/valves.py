@@ -22,9 +22,10 @@ _NOT_CHOKED = 0.607
 
 @dataclass(frozen=True)
 class Valve:
-    """A poppet valve: timing (crank angle, rad), lift and diameter (m).
+    """A poppet valve: timing (crank angle of a cycle, rad), lift and diameter of the head (m).
 
-    The lift is (1 - cos)/2 between opening and closing, or a monotone curve through a table.
+    Between opening and closing the lift is `lift_max` times (1 - cos)/2, or a monotone curve
+    through a table.
     """
 
     opens: float
@@ -51,7 +52,9 @@ class Valve:
         return np.where(is_open, pi * self.lift_max / duration * np.sin(phase), 0.0)
 
     def flow_area(self, theta: ArrayLike) -> Array:
-        """Effective flow area, m2: curtain, at most port area, times discharge coefficient."""
+        """Effective flow area (...), m2, at crank angles (...), rad: the curtain below the head, at
+        most a port of 0.85 of its diameter, times the discharge coefficient.
+        """
         curtain = pi * self.diameter * self.lift(theta)
         port = 0.25 * pi * (0.85 * self.diameter) ** 2
         return np.asarray(self.discharge_coefficient * np.minimum(curtain, port))

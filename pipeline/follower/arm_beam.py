@@ -138,12 +138,12 @@ class ArmSection(NamedTuple):
 
 
 class ArmForces(NamedTuple):
-    """Forces on the arm (...), N, reduced to its end at the length of the arm.
+    """Forces on the arm (...), N.
 
-    across: of the contact along the arc, by its moment; pressed: the same where it acts; along: of
-    the contact along the arm, > 0 in tension; normal: of the contact; closing: of spring, weight
-    and machine; inertia: of the mass; couple: of the contact about the middle of the roller in the
-    plane of its normal and the cam axis, N m, >= 0.
+    across, closing, inertia: moments about the pivot over the length of the arm, of the contact, of
+    spring, weight and machine, and of the mass; pressed, along: of the contact across and along the
+    arm where it acts, along > 0 in tension; normal: of the contact; couple: of the contact about
+    the middle of the roller in the plane of its normal and the cam axis, N m, >= 0.
     """
 
     across: Array
@@ -163,8 +163,8 @@ class ArmBar:
     ----------
     arm : FollowerArm    with its width, depth, material and notch factors
     held : float         distance from the pivot at which the spring acts, m
-    end_share : float    of the mass of roller, pin and fork in that at the end; the rest is a
-                         uniform bar
+    end_share : float    of roller, pin and fork in the moment of inertia about the pivot; the rest
+                         is that of a uniform bar
     pin, fork : or None  of the roller; None: not described, or a face
     holds_pin : bool     of a roller
     """
@@ -255,18 +255,23 @@ class ArmBar:
         return (*self.pivot, *(self.roller if self.holds_pin else ()))
 
     def bending(self, distance: float, forces: ArmForces) -> Array:
-        """Bending moment (...), N m, in the plane of the cam at a distance from the pivot, m, under
-        forces (...).
+        """Bending moment (...), N m, of a section, in the plane of the cam, > 0 as the contact
+        bends the arm.
 
-        Of the contact at the end, of the spring where it acts, and of the inertia of roller, pin
-        and fork at the end and of a uniform bar.
+        Of the contact, of the spring between the pivot and where it acts, and of the inertia of
+        roller, pin and fork at the end and of a uniform bar.
+
+        Parameters
+        ----------
+        distance : float     of the section from the pivot, m
+        forces : ArmForces   (...), N
         """
         share = distance / self.length
         bar = 1.0 - 1.5 * share + 0.5 * share**3
         swung = self.end_share * (1.0 - share) + (1.0 - self.end_share) * bar
-        pressed = max(1.0 - distance / self.held, 0.0) if self.held else 0.0
+        sprung = max(1.0 - distance / self.held, 0.0) if self.held else 0.0
         moment = forces.across - forces.pressed * share - forces.inertia * swung
-        moment = moment - forces.closing * pressed
+        moment = moment - forces.closing * sprung
         return np.asarray(self.length * moment)
 
     def loads(self, section: ArmSection, forces: ArmForces) -> SectionLoads:

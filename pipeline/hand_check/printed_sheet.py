@@ -76,7 +76,10 @@ def printed(sheet: Sheet, *, governing: bool) -> PrintedSheet:
 
 
 def _step(sheet: Sheet, k: int) -> Math:
-    """Step number k of a sheet, typeset: name = symbols = numbers = result."""
+    """Step k, counted from 0, of a sheet, typeset: name = symbols = numbers = result with its unit.
+
+    Without the name of a step that has none, and without the result where the numbers are it.
+    """
     step = sheet.steps[k]
     symbols, numbers = (formula.written(step.expression, PRINT, of) for of in (None, sheet.known))
     begins = (*PRINT.name(step.name), *_EQUAL) if step.name else ()

@@ -328,10 +328,12 @@ def unit_factor(header: str, units: Mapping[str, float]) -> float | None:
 
 
 def has_unit(header: str) -> bool:
-    """Whether a header is a name with a unit; a single letter such as `n` is a name."""
+    """Whether the header of a column names a unit beside its quantity, as ``torque_Nm`` or ``angle
+    [deg]``; a header of one word, such as ``n`` or ``deg``, is a name alone.
+    """
     known = ANGLE_UNITS, *QUANTITY_UNITS.values()
-    name = re.search(r"[\s_/:\[({]", header)
-    return name is not None and any(unit_factor(header, units) is not None for units in known)
+    separator = re.search(r"[\s_/:\[({]", header)
+    return separator is not None and any(unit_factor(header, units) is not None for units in known)
 
 
 def columns_of(header: Sequence[str], quantity: str, column: str = "") -> dict[int, float]:

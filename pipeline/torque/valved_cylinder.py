@@ -111,8 +111,8 @@ class CompressorCylinder(_ValvedCylinder):
 
 @dataclass(frozen=True, kw_only=True)
 class PumpCylinder(_ValvedCylinder):
-    """Cylinder of a piston pump; with a bulk modulus K the pressure rises by K ln(V0 / V) over that of
-    suction, V0: volume at the bottom dead centre.
+    """Cylinder of a piston pump; with a bulk modulus K its pressure rises by K ln(V0 / V) over that
+    of suction, V0: volume at the bottom dead centre.
 
     Without one the pressure changes at the dead centres at once.
 

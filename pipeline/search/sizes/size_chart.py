@@ -26,8 +26,15 @@ _CHART_POINTS, _BEST_POINTS = 73, 19
 
 
 def size_figure(case: Case, shapes: Shapes, shape: Shape) -> Figure:
-    """Figure of pressure angle, deg, and radius of curvature, mm, or of curvature and undercut
-    factor of a flat face, over base radii around a sized shape.
+    """Figure over base radii, mm, about that of a sized cam, which is marked.
+
+    Of a roller pressure angle, deg, and radius of curvature, mm; of a face radius of curvature and
+    undercut factor.
+
+    Parameters
+    ----------
+    shapes : Shapes   maker of the cams of the case at other base radii
+    shape : Shape     the sized cam
     """
     panels = (
         _face_panels(case, shapes, shape)

@@ -52,7 +52,13 @@ _SCREENED_AT_ONCE = 125  # screened designs: their arrays bound the memory of a 
 
 
 def row_of(trial: Trial) -> Row:
-    """Values of a solved design by name of the dataset column, in the units of the records."""
+    """Row of the dataset for a solved design: text or number by column name; None where unknown.
+
+    Screen (whether a must-have check fails), verdict, id of the governing check, headline figures,
+    mesh quality, and of each check demand, limit, utilisation, status and error of the demand.
+    Units are those of the column names and, of demand, limit and error, of the check; the demand
+    of a check of which only a bound is known is None.
+    """
     from camwright.pipeline.results.run_records import headline
 
     row: Row = {
