@@ -331,7 +331,7 @@ class ArmFaceContour(PlaneContour):
         return np.asarray(motion.curvature_slope * motion.contour_speed)
 
     def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
-        """Positions (m,) of the follower where its face touches given points of a cam, m: arm angle,
+        """Positions (m,) of the follower touching points of a cam, m: arm angle,
         between the arm and the line from pivot to cam axis, times the length of the arm.
 
         The greatest angle at which the face, of any length, touches a point; a point nearer to the
