@@ -12,7 +12,7 @@ figure_layout          vertical axis of a panel, places of the labels of its lim
 outline_figures        outlines of a cam in the direction of its shaft
 sheet_turn             one load case over a cam turn (`Turn`); curves from its columns
 arrangement_data       sizes and motion of the mechanism, its drawing at a cam angle
-part_figures           figures of forces, guides, roller, oil film, spring, pin, ring, key, shaft
+part_figures           figures of forces, guides, pivot, roller, film, spring, pin, ring, key, shaft
 analysis_sheet         figures of torque, shape, limits and contact; all groups in order
 report_data            a run folder, read once (`Material`)
 figure_svg             figures as SVG and PNG by matplotlib
@@ -20,7 +20,7 @@ interactive            figures as data for Plotly in the page
 field_raster           axes, colour bar and contact pressure around a picture of a field
 field_picture          von Mises stress below the contact and in both bodies, by VTK off screen
 stress_map             maximum stress of the turn below the contour, unrolled and in place
-pressure_figures       pressure in both guides and along the line of contact
+pressure_figures       pressure in guides or pivot and along the line of contact
 picture_list           pictures of a report with title and caption
 utilisation_chart      chart of the greatest utilisations by part
 report_content         sections, blocks, text and tables of a report (`Report`)

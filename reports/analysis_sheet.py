@@ -38,7 +38,7 @@ GROUPS = (
     ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
     ("Limits", ("limits",)),
     ("Contact", ("pressure", "half-width", "stress")),
-    ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
+    ("Forces and guides", ("normal-force", "forces", "guides", "pivot", "jamming", "speed")),
     ("Energy, speed and load cases", ("energy", "load-cases", "speed-sweep")),
     (
         "Parts",

@@ -248,6 +248,35 @@ def _guides(turn: SheetTurn) -> Figure | None:
     )  # fmt: skip
 
 
+def _pivot(turn: SheetTurn) -> Figure | None:
+    """Figure of the load of the pivot, N, its mean and greatest pressure in a bush, MPa, and its
+    friction, N, with limits; None of a follower without a described pivot.
+    """
+    load = turn.columns.get("pivot_load_N")
+    if load is None:
+        return None
+    sizes = [turn.length("follower", "pivot", "bush", key) for key in ("length", "diameter")]
+    pressures = [*curves_of(turn, ("pivot_edge_pressure_MPa", "greatest, at the edge"))]
+    if sizes[0] and sizes[1]:
+        mean = load / (sizes[0] * sizes[1])
+        pressures.append(Curve(turn.crank, mean, "mean over the projected area", "green"))
+    rating = turn.static_rating(
+        "static rating", "pivot_static", "follower", "pivot", "needle_bearing", "C0"
+    )
+    limits = turn.limit("edge limit", "MPa", "pivot_edge_pressure") + turn.limit(
+        "limit of the mean", "MPa", "pivot_pressure"
+    )
+    return angle_figure(
+        turn, "pivot", "Load, pressure and friction of the pivot",
+        "Reaction of the pivot to contact, spring, inertia and all that acts on the arm; pressure "
+        "of its pin in the bush, at the edge with the couple of the contact; its friction as a "
+        "force on the arc of the reference point.",
+        Panel("load", "N", curves_of(turn, ("pivot_load_N", "")), rating),
+        Panel("pressure", "MPa", tuple(pressures), limits, height=0.9),
+        Panel("friction", "N", curves_of(turn, ("pivot_friction_N", "")), height=0.6),
+    )  # fmt: skip
+
+
 def _jamming(turn: SheetTurn) -> Figure | None:
     """Figure of the jam index, guide friction over axial force, over the turn; None of an arm."""
     if turn.on_arm:  # it has no guides
@@ -437,7 +466,7 @@ def _goodman(turn: SheetTurn, part: str) -> Figure | None:
 
 
 PART_FIGURES: tuple[Callable[[SheetTurn], Figure | None], ...] = (
-    _forces, _spring_force, _energy, _load_cases, _speed_sweep, _normal_force, _guides, _jamming,
-    _speed, partial(_goodman, part="spring"), partial(_goodman, part="camshaft"), _edge_pressure,
-    _elastic, _roller, _film, _parts,
+    _forces, _spring_force, _energy, _load_cases, _speed_sweep, _normal_force, _guides, _pivot,
+    _jamming, _speed, partial(_goodman, part="spring"), partial(_goodman, part="camshaft"),
+    _edge_pressure, _elastic, _roller, _film, _parts,
 )  # fmt: skip

@@ -154,7 +154,7 @@ def guide_pictures(material: ReportMaterial) -> Sequence[Picture]:
     except ResultError as error:
         return (Picture(title, note=f"The guide pressure is not available: {error}."),)
     peaks = ", ".join(
-        f"guide {guide.name} {report_tables.quantity(guide.peak, 'MPa')} at cam angle "
+        f"{guide.name} {report_tables.quantity(guide.peak, 'MPa')} at cam angle "
         f"{report_tables.quantity(guide.worst_angle, 'deg')}" for guide in guides
     )  # fmt: skip
     return (
@@ -169,6 +169,39 @@ def guide_pictures(material: ReportMaterial) -> Sequence[Picture]:
             f"Maps of the pressure in both guides; maximum {peaks}.",
             "guide-pressure",
             pressure_figures.drawn(guides),
+        ),
+    )
+
+
+@lru_cache(maxsize=1)
+@shipped()
+def pivot_pictures(material: ReportMaterial) -> Sequence[Picture]:
+    """Picture of the pressure in the bush of a pivot; () without one, and an entry with the reason
+    where it is unreadable.
+    """
+    file = material.run.final.path / pressure_figures.PIVOT
+    if not file.exists():
+        return ()
+    title = "Pressure in the bush of the pivot"
+    try:
+        bush = pressure_figures.read_pivot(file, material.turn.load_case)
+    except ResultError as error:
+        return (Picture(title, note=f"The pressure of the pivot is not available: {error}."),)
+    peak = (
+        f"{report_tables.quantity(bush.peak, 'MPa')} at cam angle "
+        f"{report_tables.quantity(bush.worst_angle, 'deg')} of load case {bush.worst_case}"
+    )
+    return (
+        Picture(
+            title,
+            "Left: line load on the pin over the turn. Middle: pressure around the bore at the cam "
+            "angle of its maximum (dashed on the left), 0 deg where the pin presses; upwards the "
+            "end that the couple of the contact presses. Right: slice of maximum pressure, drawn "
+            f"outwards from the bore. Maximum: {peak}. The pin is rigid along its axis, each slice "
+            "of the bush an independent pin in a hole.",
+            f"Maps of the pressure in the bush of the pivot; maximum {peak}.",
+            "pivot-pressure",
+            pressure_figures.drawn([bush]),
         ),
     )
 
@@ -227,6 +260,7 @@ PICTURES: tuple[Callable[[ReportMaterial], Sequence[Picture]], ...] = (
     axial_pictures,
     envelope_pictures,
     guide_pictures,
+    pivot_pictures,
 )
 """Pictures of the report, in this order."""
 

@@ -1,8 +1,8 @@
-"""Figures of the pressure in both guides and along the line of contact."""
+"""Figures of the pressure in guides or pivot and along the line of contact."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
 
-FILE, AXIAL = "5_guides.npz", "5_length.npz"
+FILE, PIVOT, AXIAL = "5_guides.npz", "5_pivot.npz", "5_length.npz"
 COLOUR_MAP = "viridis"
 _FIELDS = (
     "position_mm", "line_load_N_per_mm", "worst_row", "slice_position_mm", "bore_angle_deg",
@@ -35,10 +35,12 @@ _LOBE = 0.75  # of the bore's radius, in the cross-section
 
 
 @dataclass(frozen=True, eq=False)
-class GuidePressure:
-    """Line load of one guide over the turn, and bore pressure at its worst angle.
+class BushPressure:
+    """Line load of one guide, or in the bush of a pivot, over the turn, and bore pressure at its
+    worst angle.
 
-    along (k,) position from the middle of the guide, mm, away from the roller; angle (n,) deg and
+    name: the part in words; along (k,) position from the middle, mm, in a guide away from the
+    roller, in a pivot towards the end that is pressed; angle (n,) deg and
     line (n, k) line load on the stem, N/mm, over the turn of a load case; round (m,) deg from the
     line of action and pressure (s, m) in the bore, MPa, at slices (s,), mm, at `worst_angle`, deg,
     of load case `worst_case`.
@@ -65,7 +67,7 @@ class GuidePressure:
         return int(np.argmax(np.nan_to_num(self.pressure).max(axis=1)))
 
 
-def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressure]:
+def read_guides(path: Path, load_case: str) -> tuple[BushPressure, BushPressure]:
     """Guides A and B: line load over the turn of one load case, bore pressure at the worst angle of
     all load cases.
 
@@ -83,28 +85,56 @@ def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressur
     rows = cases == load_case
     if not rows.any():
         raise ResultError(f"{path}: load case {load_case} is missing")
-    a, b = (
-        GuidePressure(
-            side, one["position_mm"], angle[rows], one["line_load_N_per_mm"][rows],
-            one["slice_position_mm"], one["bore_angle_deg"], one["bore_pressure_MPa"],
-            float(angle[int(one["worst_row"])]), str(cases[int(one["worst_row"])]),
-        ) for side, one in guides.items()
-    )  # fmt: skip
+    a, b = (_bush(f"guide {side}", one, rows, angle, cases) for side, one in guides.items())
     return a, b
 
 
-def drawn(guides: tuple[GuidePressure, GuidePressure]) -> bytes:
-    """PNG of the pressure in both guides, a row each: line load over the turn, bore unrolled, worst
-    slice.
+def read_pivot(path: Path, load_case: str) -> BushPressure:
+    """Bush of a pivot: line load over the turn of one load case, pressure around it at the worst
+    angle of all load cases.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be read or lacks the load case.
+    """
+    entry = read_npz(path)
+    try:
+        cases, angle = entry["load_case"], entry["cam_angle_deg"]
+        entry = {"slice_position_mm": entry["position_mm"], **entry}
+        one = {name: entry[name] for name in _FIELDS}
+    except KeyError as error:
+        raise ResultError(f"{path}: {error}") from None
+    rows = cases == load_case
+    if not rows.any():
+        raise ResultError(f"{path}: load case {load_case} is missing")
+    return _bush("pivot bush", one, rows, angle, cases)
+
+
+def _bush(
+    name: str, fields: Mapping[str, Array], rows: Array, angle: Array, cases: Array
+) -> BushPressure:
+    """From the fields of a file, its rows of a load case, and angle, deg, and case of each row."""
+    worst = int(fields["worst_row"])
+    return BushPressure(
+        name, fields["position_mm"], angle[rows], fields["line_load_N_per_mm"][rows],
+        fields["slice_position_mm"], fields["bore_angle_deg"], fields["bore_pressure_MPa"],
+        float(angle[worst]), str(cases[worst]),
+    )  # fmt: skip
+
+
+def drawn(bushes: Sequence[BushPressure]) -> bytes:
+    """PNG of the pressure in guides or the bush of a pivot, a row each: line load over the turn,
+    bore unrolled, worst slice.
     """
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
 
     with style("guide-pressure"):
-        canvas = Figure(figsize=(7.6, 5.4), layout="constrained")
-        grid = canvas.add_gridspec(2, 3, width_ratios=(1.25, 1.25, 0.8))
-        for number, guide in enumerate(guides):
+        canvas = Figure(figsize=(7.6, 2.7 * len(bushes)), layout="constrained")
+        grid = canvas.add_gridspec(len(bushes), 3, width_ratios=(1.25, 1.25, 0.8))
+        for number, guide in enumerate(bushes):
             _over_the_turn(canvas, canvas.add_subplot(grid[number, 0]), guide)
             norm = Normalize(0.0, guide.peak if guide.peak > 0 else 1.0)
             _unrolled(canvas, canvas.add_subplot(grid[number, 1]), guide, norm)
@@ -114,7 +144,7 @@ def drawn(guides: tuple[GuidePressure, GuidePressure]) -> bytes:
         return png(canvas)
 
 
-def _over_the_turn(canvas: Figure, ax: Axes, guide: GuidePressure) -> None:
+def _over_the_turn(canvas: Figure, ax: Axes, guide: BushPressure) -> None:
     """Map of the magnitude of the line load, N/mm, logarithmic, over cam angle and position along
     the guide, with the worst angle.
     """
@@ -129,15 +159,15 @@ def _over_the_turn(canvas: Figure, ax: Axes, guide: GuidePressure) -> None:
         shading="nearest", norm=LogNorm(top * 10**-_DECADES, top), rasterized=True,
     )  # fmt: skip
     ax.axvline(guide.worst_angle, color="white", linewidth=0.9, dashes=(3, 3))
-    ax.set(xlabel="cam angle, deg", ylabel="along the guide, mm", xlim=(0, 360),
+    ax.set(xlabel="cam angle, deg", ylabel=f"along the {guide.name}, mm", xlim=(0, 360),
            xticks=np.arange(0, 361, 90))  # fmt: skip
-    ax.set_title(f"guide {guide.name}: line load over the turn", fontsize=8.5, loc="left")
+    ax.set_title(f"{guide.name}: line load over the turn", fontsize=8.5, loc="left")
     bar = canvas.colorbar(shown, ax=ax, label="N/mm (logarithmic)", pad=0.01)
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar.ax.yaxis.set_minor_locator(NullLocator())
 
 
-def _unrolled(canvas: Figure, ax: Axes, guide: GuidePressure, norm: Normalize) -> None:
+def _unrolled(canvas: Figure, ax: Axes, guide: BushPressure, norm: Normalize) -> None:
     """Map of the bore pressure over angle and position along the guide, cut open on the unloaded
     side and limited to the loaded area.
     """
@@ -173,7 +203,7 @@ def _pressed(places: Array, pressure: Array) -> tuple[float, float]:
     return max(float(on[0]) - more, float(places[0])), min(float(on[-1]) + more, float(places[-1]))
 
 
-def _across(polar: PolarAxes, guide: GuidePressure, norm: Normalize) -> None:
+def _across(polar: PolarAxes, guide: BushPressure, norm: Normalize) -> None:
     """Polar plot of the pressure in the slice of maximum pressure, drawn outwards from the bore."""
     from matplotlib import colormaps
     from matplotlib.collections import PolyCollection

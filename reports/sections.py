@@ -67,6 +67,11 @@ PARTS = (
         partial(picture_list.write_pictures, picture_list.guide_pictures),
     ),
     _pictures(
+        "pivot",
+        "picture of the pressure in the bush of the pivot",
+        partial(picture_list.write_pictures, picture_list.pivot_pictures),
+    ),
+    _pictures(
         "envelope",
         "maps of the maximum stress below the contour",
         partial(picture_list.write_pictures, picture_list.envelope_pictures),

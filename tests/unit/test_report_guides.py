@@ -34,13 +34,27 @@ def path(tmp_path):
 
 def test_reads_both_guides_and_their_worst_place(path):
     a, b = pressure_figures.read_guides(path, "idle")
-    assert (a.name, a.peak, a.slice, a.worst_angle) == ("A", 40.0, 0, 315.0)
+    assert (a.name, a.peak, a.slice, a.worst_angle) == ("guide A", 40.0, 0, 315.0)
     assert b.line.shape == (ROWS, KNOTS)
 
 
 def test_draws_a_picture_of_either_side_of_the_bore(path):
     png = pressure_figures.drawn(pressure_figures.read_guides(path, "idle"))
     assert png.startswith(b"\x89PNG") and len(png) > 10_000
+
+
+def test_the_bush_of_a_pivot_is_read_and_drawn_as_one_guide(path, tmp_path):
+    one = {k.removeprefix("guide_A_"): v for k, v in np.load(path).items() if "guide_B" not in k}
+    del one["slice_position_mm"]
+    np.savez(tmp_path / pressure_figures.PIVOT, **one)
+    bush = pressure_figures.read_pivot(tmp_path / pressure_figures.PIVOT, "idle")
+    assert (bush.name, bush.peak, bush.worst_angle, bush.worst_case) == (
+        "pivot bush", 40.0, 315.0, "idle",
+    )  # fmt: skip
+    np.testing.assert_array_equal(bush.slices, bush.along)
+    assert pressure_figures.drawn([bush]).startswith(b"\x89PNG")
+    with pytest.raises(ResultError, match="rated"):
+        pressure_figures.read_pivot(tmp_path / pressure_figures.PIVOT, "rated")
 
 
 def test_what_is_pressed_is_shown_with_a_margin():

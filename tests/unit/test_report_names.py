@@ -16,9 +16,10 @@ from every_option import full_case
 
 from camwright import reports
 from camwright.pipeline.base.tables import Table, table
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.renamed_keys import renamed_names
+from camwright.pipeline.case.template import first_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results import run_records
 from camwright.pipeline.results.record_schemas import record_schema
@@ -92,17 +93,25 @@ def slides() -> Trial:
 
 
 @pytest.fixture(scope="module")
+def swings() -> Trial:
+    case = parse_case(first_case("swing", "arm").text)
+    return previewed(case, case.contour(cam_lift(case, {})))
+
+
+@pytest.fixture(scope="module")
 def speed(rolls: Trial) -> tuple[dict[str, Any], Any]:
     return run_records.crank_speed_record(rolls, None)
 
 
 @pytest.fixture(scope="module")
-def columns(rolls: Trial, slides: Trial, speed: tuple[dict[str, Any], Any]) -> set[str]:
+def columns(
+    rolls: Trial, slides: Trial, swings: Trial, speed: tuple[dict[str, Any], Any]
+) -> set[str]:
     """Headers of all columns of a run, with the error bar of a measured torque."""
     torque = engine_torques(rolls.case)["idle"]
     barred = replace(torque, error_bar=torque.total)
     tables = [*run_records.torque_columns(barred), *speed[1]]
-    for trial in (rolls, slides):
+    for trial in (rolls, slides, swings):
         tables += [c for columns in run_records.column_table(trial).values() for c in columns]
     return {column.header for column in tables}
 
@@ -152,9 +161,13 @@ def looked_up(trial: Trial, speed: Any) -> set[str]:
 
 
 def test_columns_of_the_figures_are_those_of_the_run(
-    rolls: Trial, slides: Trial, speed: tuple[dict[str, Any], Any], columns: set[str]
+    rolls: Trial,
+    slides: Trial,
+    swings: Trial,
+    speed: tuple[dict[str, Any], Any],
+    columns: set[str],
 ) -> None:
-    names = looked_up(rolls, speed[1]) | looked_up(slides, None)
+    names = looked_up(rolls, speed[1]) | looked_up(slides, None) | looked_up(swings, None)
     assert len(names) > 60
     assert names - columns == set()
 

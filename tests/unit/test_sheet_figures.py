@@ -56,6 +56,21 @@ def test_a_pure_harmonic_is_one_bar_of_its_amplitude(turn):
     assert np.delete(amplitude, order) == pytest.approx(0.0, abs=1e-12)
 
 
+def test_the_pivot_of_an_arm_has_load_pressure_and_friction(turn):
+    """Mean pressure by hand: 600 N over 20 mm by 25 mm is 1.2 MPa; no figure without a pivot."""
+    assert not [each for _, made in groups(turn) for each in made if each.id == "pivot"]
+    load = 600.0 + 0.0 * turn.columns["cam_angle_deg"]
+    bush = {"bush": {"diameter": "20 mm", "length": "25 mm"}}
+    follower = turn.case["follower"] | {"arm": {}, "pivot": bush}
+    turned = replace(turn, case=turn.case | {"follower": follower})
+    columns = {"pivot_load_N": load, "pivot_edge_pressure_MPa": 0.05 * load,
+               "pivot_friction_N": 0.01 * load}  # fmt: skip
+    made = figure_of(with_columns(turned, **columns), "pivot")
+    assert [panel.quantity for panel in made.panels] == ["load", "pressure", "friction"]
+    edge, mean = made.panels[1].curves
+    assert edge.y == pytest.approx(30.0) and mean.y == pytest.approx(1.2)
+
+
 def test_the_energy_of_a_linear_spring_is_that_of_its_formula(turn):
     """The integral of the force over the lift against P s + k s^2/2."""
     lift = 4.0 - 3.0 * np.cos(np.radians(turn.columns["cam_angle_deg"]))  # mm
