@@ -55,6 +55,28 @@ def roller_height(
     return _highest(polygon, support, theta)
 
 
+def pulled_height(
+    polygon: ArrayLike, roller_radius: float, offset: float, theta: ArrayLike
+) -> Array:
+    """Height d of the centre of a roller pulled from within against a closed wall, (m,), m.
+
+    The least of p.u - sqrt(r^2 - (p.v - e)^2) over the points p of the wall beyond the cam axis;
+    parameters and errors as for `roller_height`.
+    """
+
+    def support(x: Array, y: Array, angle: Array) -> Array:
+        """Negative height of the roller centre, m, with a point (x, y), m, of the wall on it;
+        -infinity where the point is out of its reach.
+        """
+        along = x * np.cos(angle) + y * np.sin(angle)
+        across = y * np.cos(angle) - x * np.sin(angle) - offset
+        square = roller_radius**2 - across**2
+        reached = (square >= 0) & (along > 0)
+        return np.where(reached, np.sqrt(np.maximum(square, 0.0)) - along, -np.inf)
+
+    return -_highest(polygon, support, theta)
+
+
 def face_height(polygon: ArrayLike, theta: ArrayLike) -> Array:
     """Height of a flat face resting on a contour, (m,), m: its support function.
 

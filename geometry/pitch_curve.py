@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, Value, Values
+from camwright.geometry.errors import GeometryError
+from camwright.geometry.follower_height import pulled_height
 from camwright.geometry.follower_path import (
     FollowerPath,
     Reaction,
@@ -31,6 +33,17 @@ class CentrePath(FollowerPath):
     @abstractmethod
     def centre_motion(self, jet: Jet, radius: Value) -> RoundMotion:
         """Motion at the angles of a jet with a roller of a radius, m."""
+
+    def pulled(self, polygon: ArrayLike, radius: float, theta: ArrayLike) -> Array:  # noqa: ARG002
+        """Height (m,), m, of a roller of a radius, m, that is pulled against a closed wall around
+        it, (2, n), m.
+
+        Raises
+        ------
+        GeometryError
+            If the path is not that of a stem.
+        """
+        raise GeometryError(f"path = {type(self).__name__}, must be that of a stem")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -100,6 +113,9 @@ class PitchCurve(CentrePath):
         """Zero: the contact force passes through the roller centre, on the stem's axis."""
         return np.zeros(np.shape(theta))
 
+    def pulled(self, polygon: ArrayLike, radius: float, theta: ArrayLike) -> Array:
+        return pulled_height(polygon, radius, self.offset, theta)
+
     def centre_motion(self, jet: Jet, radius: Value) -> RollerMotion:
         return RollerMotion(jet, self.height_base, self.offset, radius)
 
@@ -142,6 +158,20 @@ class RoundMotion(ABC):
     @abstractmethod
     def travel_offset(self) -> Value:
         """Offset of the line of travel from the cam axis, m."""
+
+    @property
+    @abstractmethod
+    def travel(self) -> Value:
+        """Direction of travel from the follower axis, counter-clockwise, rad; 0 of a stem."""
+
+    @property
+    @abstractmethod
+    def sliding(self) -> Value:
+        """Torque of the sliding friction on the cam over the axial force, m."""
+
+    @abstractmethod
+    def radius_at(self, lift: Value) -> Array:
+        """Radius of the contour in a dwell at a lift, m."""
 
     @property
     @abstractmethod

@@ -17,11 +17,13 @@ from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError, MeshError
 from camwright.meshes.cam_outline import (
+    Backwards,
     ContourLike,
     cam_size,
     contour_piece,
     hole_pieces,
     hole_size,
+    rim_size,
     trace,
 )
 from camwright.meshes.element_size import EDGES_PER_TURN, ElementSize, SizeField
@@ -437,6 +439,40 @@ def cam_mesh(
         x, y = counter_hole.centre.tolist()
         turn = 2 * np.pi
         loops.append([arc("counter_hole", counter_hole.radius, turn, 0.0, (x, y))])
+    size = size.refined(refinement)
+    return _body(triangulate(_discretised(loops, size), size))
+
+
+def rim_mesh(
+    wall: ContourLike, outer_radius: float, sizing: ElementSize, refinement: float = 1.0
+) -> BodyMesh:
+    """Mesh of the rim of a disc between the outer wall of its groove and its outer circle.
+
+    Parameters
+    ----------
+    wall : ContourLike      outer wall: its normals point inwards, into the groove
+    outer_radius : float    of the disc, m
+    sizing : ElementSize    refined at a contact point on the wall
+    refinement : float      divides the element size everywhere outside the contact zone
+
+    Returns
+    -------
+    BodyMesh
+        With boundaries "contour", the wall, whose nodes lie on it, and "outer", the outer circle.
+
+    Raises
+    ------
+    InputError
+        If the contact point is not on the wall.
+    GeometryError
+        If the wall is undercut or crosses itself, or reaches the outer circle.
+    MeshError
+        If the region cannot be meshed.
+    """
+    path = trace(Backwards(wall))
+    size = rim_size(path, outer_radius, sizing)
+    turn = 2 * np.pi
+    loops = [[arc("outer", outer_radius, 0.0, turn)], [contour_piece(path, sizing)]]
     size = size.refined(refinement)
     return _body(triangulate(_discretised(loops, size), size))
 

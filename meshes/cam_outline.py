@@ -30,6 +30,22 @@ class ContourLike(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
+class Backwards:
+    """Contour run through against the cam angle, as one with its material outside is meshed."""
+
+    contour: ContourLike
+
+    def points(self, theta: Array) -> Array:
+        return self.contour.points(-theta)
+
+    def normal(self, theta: Array) -> Array:
+        return self.contour.normal(-theta)
+
+    def curvature(self, theta: Array) -> Array:
+        return self.contour.curvature(-theta)
+
+
+@dataclass(frozen=True, eq=False)
 class SampledContour:
     """Contour sampled over one turn: cam angle, rad; points and arc length, m."""
 
@@ -142,6 +158,28 @@ def cam_size(
     across = wall_at(path.points, bore_radius, keyway) / sizing.wall_edges
     limits = np.minimum(limits, across)
     return size.below(path.points, limits)
+
+
+def rim_size(path: SampledContour, outer_radius: float, sizing: ElementSize) -> SizeField:
+    """Element size in the rim around a groove: the sizing, limited by circle, rim and curvature.
+
+    Raises
+    ------
+    GeometryError
+        If the outer wall reaches the outer circle.
+    """
+    thick = outer_radius - np.hypot(*path.points)
+    if not (least := float(thick.min())) > _WALL_MIN * outer_radius:
+        raise GeometryError(
+            f"minimum rim between outer wall and outer circle = {least * 1e3:.4g} mm "
+            f"(cam.groove.outer_radius = {outer_radius * 1e3:.4g} mm), "
+            f"must be > {_WALL_MIN * outer_radius * 1e3:.4g} mm"
+        )
+    size = sizing.field().capped(FULL_TURN * outer_radius / EDGES_PER_TURN)
+    floor = sizing.contact_size or sizing.far_size / 200.0
+    kappa = np.maximum(np.abs(path.contour.curvature(path.theta)), 1e-12)
+    limits = np.maximum(FULL_TURN / EDGES_PER_TURN / kappa, floor)
+    return size.below(path.points, np.minimum(limits, thick / sizing.wall_edges))
 
 
 def hole_size(size: SizeField, path: SampledContour, hole: HoleLike) -> SizeField:

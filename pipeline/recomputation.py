@@ -398,9 +398,8 @@ def _drawn_angles(
     order = np.random.default_rng(seed).permutation(len(loaded))[:count]
     chosen = [loaded[k] for k in sorted(order)]
     progress.stage("drawn angles")
-    pair = trial.cycles[0].pair
     with crew(jobs) as workers:
-        points = begun(pair, trial.cycles, chosen, workers, worst).points(progress.advance)
+        points = begun(trial.cycles, chosen, workers, worst).points(progress.advance)
     return tuple(
         _angle(run, trial, number, k, point)
         for (number, k), point in zip(chosen, points, strict=True)

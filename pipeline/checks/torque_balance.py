@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value
+from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_least
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.cooling import housing_area
@@ -298,10 +299,11 @@ def pressure_torque(cycle: Cycle) -> Array:
     The normal of the contour is that of its points. The pressure of a position acts along one
     normal: its change over the contact is of the order of half-width over radius.
     """
-    contact, contour, theta = cycle.contact, cycle.contour, cycle.theta
-    x, y = contour.points(theta)
-    ahead = contour.points(theta + _CHORD) - contour.points(theta - _CHORD)
-    tx, ty = ahead / np.hypot(*ahead)
+    contact, theta = cycle.contact, cycle.theta
+    (x, y), (tx, ty) = np.empty((2, 2, theta.size))
+    for pair, at in cycle.pair.on_walls(theta):
+        x[at], y[at] = pair.contour.points(theta[at])
+        tx[at], ty[at] = _tangent_of_points(pair.contour, theta[at])
     xi, width = contact.pressure_xi, cycle.pair.width
     force = width * _integral(contact.pressure, xi)
     # xi runs clockwise, against the tangent of the contour
@@ -309,6 +311,13 @@ def pressure_torque(cycle: Cycle) -> Array:
     # outward normal (t_y, -t_x); the follower travels counter-clockwise about the cam
     normal = (x * tx + y * ty) * force - couple
     return np.asarray(normal + cycle.machine.follower.side_friction * (x * ty - y * tx) * force)
+
+
+def _tangent_of_points(contour: Contour, theta: Array) -> Array:
+    """Unit tangents (2, n) by differences of points; with the material on their left."""
+    ahead = contour.points(theta + _CHORD) - contour.points(theta - _CHORD)
+    along = np.sign(np.sum(ahead * contour.tangent(theta), axis=0))
+    return np.asarray(along * ahead / np.hypot(*ahead))
 
 
 def _force_moment(cycle: Cycle) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
-from camwright.meshes.body_mesh import BodyMesh, cam_mesh
+from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
@@ -66,9 +66,8 @@ def contact_meshes(
         )
 
     far = float(pair.contour.perimeter()) / _FAR_ON_OUTLINE
-    cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing(far), pair.counter_hole)
     other = pair.follower
-    return cam, other.mesh_at(pair.contour, theta, sizing(other.far_size))
+    return pair.cam_mesh(sizing(far)), other.mesh_at(pair.contour, theta, sizing(other.far_size))
 
 
 def solve_pair(
@@ -81,7 +80,7 @@ def solve_pair(
     ContactError
         If the load is not positive, or the solution fails.
     """
-    load = normal_force / pair.width
+    pair, load = pair.carrying(theta), normal_force / pair.width
     if not load > 0:
         raise ContactError(f"no load at {shown(theta, 'deg', 6)}: no contact to certify")
     half_width, _ = hertz.line_contact(load, pair.relative_radius(theta), pair.contact_modulus)
@@ -90,7 +89,7 @@ def solve_pair(
     springs = other.springs(facing, pair.contour, theta)
     frame = ContactFrame(pair.contour.points(theta), pair.contour.normal(theta))
     sides = (
-        ContactSide(elastic_body(cam, pair.cam, "bore"), "contour"),
+        ContactSide(elastic_body(cam, pair.cam, pair.held), "contour"),
         ContactSide(elastic_body(facing, other.material, other.held, springs), other.surface),
     )
 

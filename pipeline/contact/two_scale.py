@@ -8,7 +8,6 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
-from camwright.meshes.body_mesh import cam_mesh
 from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
@@ -32,10 +31,14 @@ _GRID_OF_CYCLE_MESH = 120
 
 @dataclass(frozen=True, eq=False)
 class CycleBodies:
-    """Cam and follower on coarse meshes, factorised once for all cam angles."""
+    """Cam and follower on coarse meshes, factorised once for all cam angles.
+
+    pulling : those of the pair by which a cam pulls, such as the rim around a groove; or None
+    """
 
     cam: LoadedBody
     follower: LoadedBody
+    pulling: CycleBodies | None = None
 
     @classmethod
     def meshed(cls, pair: ContactPair) -> CycleBodies:
@@ -46,12 +49,19 @@ class CycleBodies:
         return cls(
             loaded_cam(pair),
             LoadedBody(facing, other.surface, other.free),
+            None if pair.pulling is None else cls.meshed(pair.pulling),
         )
+
+    def of(self, pair: ContactPair) -> CycleBodies:
+        """Bodies of a pair by whose surface the cam pushes or pulls; see `ContactPair.on_walls`."""
+        return self if self.pulling is None or pair.pulling is not None else self.pulling
 
 
 def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
     """Cam on the coarse mesh of a cycle, factorised; its element sizes divided by `refinement`."""
     outline = float(pair.contour.perimeter())
+    if pair.rim_radius is not None:
+        return _loaded_rim(pair, pair.rim_radius, outline / _GRID_OF_CYCLE_MESH, refinement)
     depth = 0.0 if pair.keyway is None else pair.keyway.depth
     least = pair.contour.radius_min()
     wall = float(least.value) - pair.bore_radius - depth
@@ -66,14 +76,40 @@ def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
     sizing = ElementSize(far_size=min(edge, wall / EDGES_ACROSS_WALL))
     if wall < edge:  # fine everywhere it would be a million triangles: fine where the wall is thin
         sizing = ElementSize(far_size=edge, wall_edges=EDGES_ACROSS_WALL)
-    cam = cam_mesh(
-        pair.contour, pair.bore_radius, pair.keyway, sizing, pair.counter_hole, refinement
-    )
+    cam = pair.cam_mesh(sizing, refinement)
     cut = tuple(name for name in ("keyway", "counter_hole") if name in cam.boundaries)
-    return LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", cut)
+    return LoadedBody(elastic_body(cam, pair.cam, pair.held), "contour", cut)
+
+
+def _loaded_rim(pair: ContactPair, radius: float, edge: float, refinement: float) -> LoadedBody:
+    """Rim of a radius, m, around a groove; `edge`: element size along its wall, m."""
+    thick = radius - float(pair.contour.radius_max().value)
+    sizing = ElementSize(far_size=edge, wall_edges=EDGES_ACROSS_WALL)
+    if thick > edge:
+        sizing = ElementSize(far_size=min(edge, thick / EDGES_ACROSS_WALL))
+    rim = pair.cam_mesh(sizing, refinement)
+    return LoadedBody(elastic_body(rim, pair.cam, pair.held), "contour")
 
 
 def two_scale_history(
+    pair: ContactPair, bodies: CycleBodies, theta: Array, normal_force: Array
+) -> ContactHistory:
+    """Two-scale contact at cam angles (n,) rad under normal forces (n,) N, on the surface that
+    carries at each; see `_one_surface`.
+    """
+    parts = pair.on_walls(theta)
+    if len(parts) == 1:
+        ((each, _),) = parts
+        return _one_surface(each, bodies.of(each), theta, normal_force)
+    arrays: dict[str, Array] = {}
+    for each, at in parts:
+        solved = _one_surface(each, bodies.of(each), theta[at], normal_force[at]).arrays
+        for name, values in solved.items():
+            arrays.setdefault(name, np.empty((theta.size, *values.shape[1:])))[at] = values
+    return ContactHistory(**arrays, tier=Tier.CYCLE)
+
+
+def _one_surface(
     pair: ContactPair, bodies: CycleBodies, theta: Array, normal_force: Array
 ) -> ContactHistory:
     """Two-scale contact at cam angles (n,) rad under normal forces (n,) N.

@@ -47,10 +47,11 @@ def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int
     wanted: list[tuple[int, int]] = []
 
     def take(case: int, index: int) -> None:
-        """Add a position of a load case, unless it is unloaded, near one that is chosen, or beyond
-        the count.
+        """Add a position of a load case, unless it is unloaded or loaded within round-off, near one
+        that is chosen, or beyond the count.
         """
-        loaded = cycles[case].contact.p0[index] > 0
+        contact = cycles[case].contact
+        loaded = contact.p0[index] > 0 and not contact.below_round_off[index]
         near = any(c == case and abs(i - index) < 4 for c, i in wanted)
         if loaded and not near and len(wanted) < count:
             wanted.append((case, index))
@@ -72,7 +73,10 @@ def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[Leng
     (rad) under load. Each at the worst moment of its range; empty without ends. A load case in
     which the follower leaves the cam or locks counts only where every one does.
     """
-    pressures = [np.nan_to_num(cycle.signed_pressure) for cycle in cycles]
+    pressures = [
+        np.where(cycle.contact.below_round_off, 0.0, np.nan_to_num(cycle.signed_pressure))
+        for cycle in cycles
+    ]
     sound = [cycle.loads.end is None for cycle in cycles]
     worst = [
         (case, first_greatest(pressure))
@@ -217,7 +221,6 @@ class BegunCertificate:
 
 
 def begun(
-    pair: ContactPair,
     cycles: Sequence[Cycle],
     chosen: Sequence[tuple[int, int]],
     workers: Crew,
@@ -237,9 +240,10 @@ def begun(
         store.
         """
         cycle, index = cycles[at[0]], at[1]
-        force = float(cycle.contact.line_load[index]) * pair.width
         theta = float(cycle.theta[index])
-        return workers.submit(_figures, store, number, pair, theta, force, edges)
+        loaded = cycle.pair.carrying(theta)
+        force = float(cycle.contact.line_load[index]) * loaded.width
+        return workers.submit(_figures, store, number, loaded, theta, force, edges)
 
     finest = () if observed else finest_positions(cycles, chosen)
     tasks: dict[tuple[tuple[int, int], float], PendingCall] = {}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour
+from camwright.geometry.form_closure import groove_wall
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
@@ -16,9 +17,14 @@ from camwright.pipeline.follower.follower_forces import Loads, wall_of
 
 
 def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
-    """Contour, bodies and materials of the contact, the same in every load case."""
+    """Contour, bodies and materials of the contact, the same in every load case.
+
+    In a groove the inner wall is on the disc within, held at its bore. The outer wall is on the rim
+    around it. The web under the groove carries the rim; in the plane the rim is held at its outer
+    circle instead, many half-widths behind the contact.
+    """
     cam, width = machine.cam, machine.contact_width
-    return ContactPair(
+    pair = ContactPair(
         contour=contour,
         width=width,
         bore_radius=cam.bore_radius,
@@ -27,16 +33,32 @@ def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
         follower=machine.follower.body(width, machine.stem, machine.spring.preload),
         counter_hole=drilled_hole(cam, contour),
     )
+    if cam.groove is None:
+        return pair
+    track = contour.require_roller()
+    wall = groove_wall(track, "outer", track.roller_radius)
+    return replace(pair, pulling=replace(pair, contour=wall, rim_radius=cam.groove.outer_radius))
 
 
 def under_load(pair: ContactPair, loads: Loads) -> ContactPair:
     """Contact pair of one load case: in a groove on the wall that carries at each cam angle."""
     if not loads.held:
         return pair
-    required = loads.required_force
+    return replace(pair, wall=CarryingWall(loads.theta, loads.required_force))
 
-    def wall(theta: Array) -> Array:
-        between = np.interp(theta, loads.theta, required, period=FULL_TURN)
+
+@dataclass(frozen=True, eq=False)
+class CarryingWall:
+    """Surface by which a cam that pulls carries: 1 where it pushes, -1 where it pulls.
+
+    theta : array (n,)      cam angles, rad
+    required : array (n,)   axial force on the follower, N
+    """
+
+    theta: Array
+    required: Array
+
+    def __call__(self, theta: Array) -> Array:
+        """Sign of the force between the angles."""
+        between = np.interp(theta, self.theta, self.required, period=FULL_TURN)
         return wall_of(np.asarray(between), held=True)
-
-    return replace(pair, wall=wall)

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, uniform_turn
 from camwright.pipeline.base.store import PACKED, Arrays, Store
 from camwright.pipeline.contact.contact_pair import ContactPair
 
@@ -16,6 +16,8 @@ ContactStore: TypeAlias = Store[Arrays]
 """Pieces of a contact solution; workers write to it, too."""
 
 NOT_STORED: ContactStore = Store(None, PACKED)
+
+_WALL_ANGLES = 720  # at which the wall that carries enters the key of a piece
 
 
 def kept_piece(
@@ -50,4 +52,9 @@ def piece_key(pair: ContactPair, normal_force: Array, *inputs: float) -> str:
     digest.update(repr((*size, pair.cam, pair.follower, *inputs)).encode())
     if pair.counter_hole is not None:
         digest.update(np.array([*pair.counter_hole.centre, pair.counter_hole.radius]).tobytes())
+    if pair.pulling is not None and pair.wall is not None:
+        digest.update(pair.wall(uniform_turn(_WALL_ANGLES)).tobytes())
+        digest.update(piece_key(pair.pulling, normal_force, *inputs).encode())
+    if pair.rim_radius is not None:
+        digest.update(np.array(pair.rim_radius).tobytes())
     return digest.hexdigest()

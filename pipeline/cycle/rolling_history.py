@@ -253,9 +253,16 @@ def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load
 
     Interpolated between every few angles: the effect of a wall is smooth.
     """
+    unit = np.empty(theta.size)
+    for each, at in pair.on_walls(theta):
+        unit[at] = _unit_stress(each, bodies.of(each), theta)[at]
+    return line_load * unit
+
+
+def _unit_stress(pair: ContactPair, bodies: CycleBodies, theta: Array) -> Array:
+    """Stress (n,), Pa per N/m, that the body of one surface adds along it."""
     along = bodies.cam.correction(pair.contour.points(theta), pair.contour.normal(theta)).along
-    unit = along[::_THINNED]
-    return line_load * np.interp(theta, theta[::_THINNED], unit, period=FULL_TURN)
+    return np.interp(theta, theta[::_THINNED], along[::_THINNED], period=FULL_TURN)
 
 
 def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:

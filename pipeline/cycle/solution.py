@@ -11,7 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
-from camwright.geometry.errors import CamError, InputError
+from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import TIE, first_greatest
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
@@ -284,7 +284,6 @@ def solved_turns(
     error_bars : bool         compute the errors by sampling and by every second crank angle
     """
     states = tuple(each.machine for each in turns)
-    _require_depth(states[0], tier)
     pair = contact_pair(states[0], contour)
     mesh = bodies = None
     if body is None:
@@ -319,18 +318,6 @@ def solved_turns(
     return replace(solved, crank_speed_halved=SpeedRipple(halved, pitch, rubbing))
 
 
-def _require_depth(machine: Machine, tier: Tier) -> None:
-    """Refuse the contact by finite elements of a groove, whose walls are not meshed.
-
-    Raises
-    ------
-    InputError
-    """
-    if machine.cam.pulls and tier >= Tier.CYCLE:
-        limit = '"spring" for the contact by finite elements; of a groove the depth is preview'
-        raise InputError("cam.closure", machine.cam.closure, limit)
-
-
 def _halved(machine: Machine) -> Machine:
     """The machine with its torque at every second crank angle."""
     torque = machine.torque
@@ -357,7 +344,7 @@ def certified_solution(
         return final
     pair = solved.cycles[0].pair
     ends = _begun_ends(solved, workers, progress)
-    certificate = begun(pair, solved.cycles, chosen, workers, store=store)
+    certificate = begun(solved.cycles, chosen, workers, store=store)
     progress.stage(BENCHMARKS)
     differences = benchmarks(solved.case.contact_radius)
     error = bore_error(pair, solved.cycles)
@@ -461,13 +448,15 @@ def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:
     """
     worst = None
     for each in turns:
-        history = closed_form_history(pair, each.theta, each.loads.normal_force)
+        loaded = under_load(pair, each.loads)
+        history = closed_form_history(loaded, each.theta, each.loads.normal_force)
         k = first_greatest(history.p0)
         if history.p0[k] > 0 and (worst is None or history.p0[k] > worst[0] * (1.0 + TIE)):
-            worst = (history.p0[k], float(each.theta[k]), float(history.half_width[k]))
+            theta = float(each.theta[k])
+            worst = history.p0[k], theta, float(history.half_width[k]), loaded.carrying(theta)
     if worst is None:
         return None
-    _, theta, half_width = worst
+    _, theta, half_width, pair = worst
     bodies = contact_meshes(pair, theta, half_width, EDGES[1])
     contact = pair.contour.points(theta)
     gated = [gate(quality(body, contact, half_width), edges_min=EDGES[1]) for body in bodies]

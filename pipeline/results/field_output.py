@@ -161,16 +161,12 @@ def write_stress(
     which the follower rotates. Times are cam angles in degrees.
     """
     cam, _ = fields.names
-    coarse = {cam: fields.bodies.cam.body.mesh, fields.names[1]: fields.bodies.follower.body.mesh}
+    coarse = fields.coarse_points
     blocks = {
-        name: MeshBlock(triangles, coarse[name].corners if name in coarse else zone_nodes())
+        name: MeshBlock(triangles, coarse[name].shape[1] if name in coarse else zone_nodes())
         for name, triangles in fields.triangles.items()
     }
-    blocks[cam] = MeshBlock(
-        blocks[cam].triangles,
-        blocks[cam].nodes,
-        coarse[cam].points[:, : blocks[cam].nodes] / _MILLIMETRE,
-    )
+    blocks[cam] = MeshBlock(blocks[cam].triangles, blocks[cam].nodes, coarse[cam] / _MILLIMETRE)
     times = np.asarray(np.degrees(fields.cycle.theta[positions]), dtype=float).round(_ANGLE_DIGITS)
     notes = _notes(fields, positions, times)
     with field_file(path, times, blocks, FIELDS, notes) as file:
@@ -186,9 +182,10 @@ def _notes(fields: TurnFields, positions: IntArray, times: Array) -> Notes:
     """Field data of each step by name: load case, cam angle, and contact figures at these positions
     of the cycle.
     """
-    cycle, contour = fields.cycle, fields.pair.contour
+    cycle = fields.cycle
     contact, theta = cycle.contact, cycle.theta[positions]
-    point, normal = contour.points(theta) / _MILLIMETRE, contour.normal(theta)
+    point, normal = fields.pair.contacts(theta)
+    point = point / _MILLIMETRE
     return {
         "load_case": [cycle.load_case] * positions.size,
         "cam_angle_deg": times,

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +46,31 @@ class BodyField:
     stress: Array
     hidden: NDArray[np.bool_]
 
+    def nothing(self, count: int) -> BodyField:
+        """A field of zeros on its mesh at `count` angles."""
+
+        def zeros(own: NDArray[Any]) -> NDArray[Any]:
+            return np.zeros((*own.shape[:-1], count), dtype=own.dtype)
+
+        return BodyField(
+            zeros(self.points), zeros(self.displacement), zeros(self.stress), zeros(self.hidden)
+        )
+
+    def put(self, among: BodyField, here: NDArray[np.bool_]) -> BodyField:
+        """This field of some of more angles `here` (k,) put among the fields of the others."""
+
+        def whole(own: NDArray[Any], others: NDArray[Any]) -> NDArray[Any]:
+            every = others.copy()
+            every[..., here] = own
+            return every
+
+        return BodyField(
+            whole(self.points, among.points),
+            whole(self.displacement, among.displacement),
+            whole(self.stress, among.stress),
+            whole(self.hidden, among.hidden),
+        )
+
     def placed(self, places: Poses) -> BodyField:
         """Field transformed from the body's frame to the cam frame."""
         turn = places.turn
@@ -77,7 +103,8 @@ def follower_places(pair: ContactPair, theta: Array) -> Poses:
     """Poses of the follower's body in the cam frame at cam angles (k,), rad, by which its contact
     point and normal meet those of the cam.
     """
-    contacts, normals = pair.contour.points(theta), -pair.contour.normal(theta)
+    contacts, normals = pair.contacts(theta)
+    normals = -normals
     at, up = pair.follower.contacts(pair.contour, theta)
     cosine, sine = (up * normals).sum(axis=0), up[0] * normals[1] - up[1] * normals[0]
     turn = np.array([[cosine, -sine], [sine, cosine]]).transpose(2, 0, 1)
@@ -106,11 +133,33 @@ class TurnFields:
         return {first: cam, second: other, first + ZONE: cam, second + ZONE: other}
 
     @cached_property
+    def _surfaces(self) -> tuple[TurnFields, ...]:
+        """The fields of each surface of the cam by itself: the first pushes, a second one pulls."""
+        if self.pair.pulling is None:
+            return (self,)
+        pairs = replace(self.pair, pulling=None), self.pair.pulling
+        return tuple(TurnFields(each, self.bodies.of(each), self.cycle) for each in pairs)
+
+    @cached_property
+    def coarse_points(self) -> dict[str, Array]:
+        """Corners (2, n), m, of the coarse meshes by block; in that of the cam, all its bodies."""
+        meshes = [each.bodies.cam.body.mesh for each in self._surfaces]
+        other = self.bodies.follower.body.mesh
+        first, second = self.names
+        return {
+            first: np.hstack([mesh.points[:, : mesh.corners] for mesh in meshes]),
+            second: other.points[:, : other.corners],
+        }
+
+    @cached_property
     def triangles(self) -> dict[str, Index]:
         """Triangles (3, t) by block."""
         first, second = self.names
+        meshes = [each.bodies.cam.body.mesh for each in self._surfaces]
+        starts = np.cumsum([0, *(mesh.corners for mesh in meshes[:-1])])
+        parts = [mesh.triangles[:3] + start for mesh, start in zip(meshes, starts, strict=True)]
         return {
-            first: self.bodies.cam.body.mesh.triangles[:3],
+            first: np.hstack(parts),
             second: self.bodies.follower.body.mesh.triangles[:3],
             first + ZONE: zone_triangles(),
             second + ZONE: zone_triangles(),
@@ -124,8 +173,41 @@ class TurnFields:
         """Fields by block at some positions of the cycle, (k,), in the cam frame.
 
         The displacement of the follower includes its rigid motion by the approach, so that the
-        displaced surfaces touch.
+        displaced surfaces touch. A body of the cam that carries no load has no field.
         """
+        surfaces = self._surfaces
+        if len(surfaces) == 1:
+            return self._carried(part)
+        first, joined = self.names[0], dict[str, BodyField]()
+        for carrying, here in self.pair.on_walls(self.cycle.theta[part]):
+            number = int(carrying is self.pair.pulling)
+            each = surfaces[number]
+            fields = each._carried(part[here])
+            fields[first] = self._among_all(fields[first], number)
+            for name, field in fields.items():
+                joined[name] = field.put(joined.get(name, field.nothing(here.size)), here)
+        return joined
+
+    def _among_all(self, field: BodyField, number: int) -> BodyField:
+        """Field on the coarse mesh of one body of the cam as that on all of them; the others are at
+        rest.
+        """
+        points = self.coarse_points[self.names[0]]
+        triangles, count = self.triangles[self.names[0]].shape[1], field.points.shape[2]
+        meshes = [each.bodies.cam.body.mesh for each in self._surfaces]
+        node = sum(mesh.corners for mesh in meshes[:number])
+        cell = sum(mesh.triangles.shape[1] for mesh in meshes[:number])
+        nodes = slice(node, node + meshes[number].corners)
+        cells = slice(cell, cell + meshes[number].triangles.shape[1])
+        displacement, stress = (np.zeros((k, points.shape[1], count)) for k in (2, 3))
+        hidden = np.zeros((triangles, count), dtype=bool)
+        displacement[:, nodes], stress[:, nodes] = field.displacement, field.stress
+        hidden[cells] = field.hidden
+        still = np.broadcast_to(points[:, :, None], displacement.shape)
+        return BodyField(still, displacement, stress, hidden)
+
+    def _carried(self, part: IntArray) -> dict[str, BodyField]:
+        """Fields by block at positions (k,) of the cycle at which the first surface carries."""
         pair, theta, contact = self.pair, self.cycle.theta[part], self.cycle.contact
         load = contact.line_load[part], contact.half_width_hertz[part]
         contour, normals = pair.contour, pair.contour.normal(theta)

@@ -108,10 +108,10 @@ def test_an_angle_whose_coarse_mesh_is_off_has_the_finest_one_as_well(monkeypatc
         von_mises=stress,
     )  # fmt: skip
     monkeypatch.setattr(certificate_angles, "mesh_figures", figures)
-    cycles = [SimpleNamespace(theta=theta, contact=contact)]
+    cycles = [SimpleNamespace(theta=theta, contact=contact, pair=round_cam())]
     chosen = [(0, 0), (0, 3), (0, 1), (0, 2)]
     with crew(1) as workers:
-        begun = certificate_angles.begun(round_cam(), cycles, chosen, workers)
+        begun = certificate_angles.begun(cycles, chosen, workers)
         points = begun.points(lambda done, count: None)
     assert [len(each.edges) for each in points] == [3, 2, 3, 3]
     assert points[3].theta == 2.0 and points[3].order_from == ()

@@ -15,7 +15,6 @@ from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.checks.form_closure import PLATE_MOMENT
-from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.crossover_history import impacts
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
@@ -289,15 +288,12 @@ def test_refusals_of_the_case(old, new, message):
 
 
 def test_what_is_not_done_is_refused(tmp_path):
-    """Finite elements, run folders, sizes and screening, in one line each."""
+    """Run folders and screening, in one line each."""
     from camwright.pipeline.run import run_case
     from camwright.pipeline.screening.design_screening import screen_designs
-    from camwright.pipeline.solver import solve
 
     case = read_case(FILE)
     refusal = r'cam\.closure = groove, must be "spring" for '
-    with pytest.raises(InputError, match=refusal + "the contact by finite elements"):
-        solve(case, trial().contour, tier=Tier.CYCLE, torques={}, corners=False)
     with pytest.raises(InputError, match=refusal + "a run folder"):
         run_case(case, tmp_path / "run")
     with pytest.raises(InputError, match=refusal + "a screening"):
