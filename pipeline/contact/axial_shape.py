@@ -49,7 +49,12 @@ class BodyEnd(Part):
             raise InputError("end.size", self.size, "> 0 m")
 
     def drop(self, beyond: Array) -> Array:
-        """Distance (...), m, of the end from the flat at distances (...), m, beyond the flat."""
+        """Drop of the end below the flat track, (...), m, at axial distances `beyond` the end of
+        the flat, (...), m; 0 on the flat and at a sharp end.
+
+        A chamfer drops by the distance itself, a radius by that of a quarter circle, at most the
+        radius.
+        """
         reach = np.maximum(beyond, 0.0)
         if self.kind == "radius":
             inside = np.minimum(reach / self.size, 1.0)

@@ -132,7 +132,10 @@ class LoadedBody:
         return disk_cache.kept(kind, (*self._key(contacts, normals), *more), compute, modules)
 
     def _key(self, contacts: Array, normals: Array) -> tuple[Hashable, ...]:
-        """Inputs of a correction for the cache key; the mesh holds contour, bore, keyway, hub."""
+        """Inputs of a correction for the cache key: mesh with contour, bore, keyway and hub,
+        supports, springs, elastic constants, library of the solver, contacts (2, count), m, and
+        normals (2, count).
+        """
         body = self.body
         free = np.ascontiguousarray(self._free_facets, dtype="<i8")
         places = np.ascontiguousarray([contacts, normals], dtype="<f8")
@@ -167,10 +170,15 @@ class LoadedBody:
     def displacements(
         self, contacts: Array, normals: Array
     ) -> Iterator[tuple[slice[int, int, None], Array]]:
-        """Contacts in parts, and the displacement (2, m, part) of the correction, m per N/m.
+        """Contacts in parts, and the displacement (2, m, part), m per N/m, that the correction has
+        at the nodes `condensed_nodes` (m,) under a unit line load at each contact of the part.
 
-        At the nodes of `condensed_nodes` (m,). The last parts are kept in memory: corrections and
-        stress at a bore follow from the same displacement.
+        The last parts are kept in memory: corrections and stress at a bore follow from the same
+        displacement.
+
+        Parameters
+        ----------
+        contacts, normals : array (2, count)   points on the free surface, m; outward normals
         """
         few = contacts.shape[1] <= _FEW_CONTACTS
         for start in range(0, contacts.shape[1], _BATCH):
@@ -197,7 +205,9 @@ class LoadedBody:
 
     @cached_property
     def condensed_nodes(self) -> NDArray[np.int64]:
-        """Nodes loaded by the correction, and those of elements at holes and supports."""
+        """Numbers of the nodes loaded by the correction, and of those of elements at holes and
+        supports, ascending (m,).
+        """
         mesh = self.body.mesh
         at = np.zeros(mesh.points.shape[1], dtype=bool)
         at[self.body.held_nodes] = True
@@ -259,7 +269,13 @@ class LoadedBody:
         return CorrectionField(along=modulus * slope, bend=bend, along_by_depth=modulus * bend)
 
     def correction_fields(self, contacts: Array, normals: Array) -> tuple[Array, Array]:
-        """Displacement (2, nodes, count), m, and stress (3, nodes, count), Pa, per N/m."""
+        """Displacement (2, nodes, count), m, and stress xx, yy, xy (3, nodes, count), Pa, of the
+        correction in the whole body, per N/m of line load at each contact.
+
+        Parameters
+        ----------
+        contacts, normals : array (2, count)   points on the free surface, m; outward normals
+        """
         displaced = self.correction_displacement(contacts, normals)
         nodal = np.zeros((3, *displaced.shape[1:]))
         nodal[:, self._everywhere.nodes] = self._everywhere(displaced)
@@ -274,7 +290,14 @@ class LoadedBody:
         return unit / self._plane_strain_modulus
 
     def _cancelling_loads(self, contacts: Array, normals: Array) -> tuple[Array, Array]:
-        """Nodal forces and held displacements (2, nodes, count) that cancel the half-plane."""
+        """Nodal forces, -, and displacements of the held nodes, m per N/m, both (2, nodes, count),
+        that cancel the half-plane under unit line loads at contacts: its tractions on the free
+        boundary, its displacements at supports and springs.
+
+        Parameters
+        ----------
+        contacts, normals : array (2, count)   points on the free surface, m; outward normals
+        """
         points, outward, operator = self._quadrature
         arm = points[:, :, None] - contacts[:, None, :]
         depth = -np.einsum("cqk,ck->qk", arm, normals)
@@ -292,8 +315,12 @@ class LoadedBody:
         return loads, np.negative(far, out=far)
 
     def _half_plane_displacement(self, contacts: Array, normals: Array) -> Array:
-        """Displacement (2, nodes, count) of the half-plane under a unit force, m per N/m, at the
-        nodes that are held or on springs; zero elsewhere.
+        """Displacement (2, nodes, count), m per N/m, of a half-plane under a unit line force at
+        each contact, at the nodes that are held or on springs; zero elsewhere.
+
+        Parameters
+        ----------
+        contacts, normals : array (2, count)   points on the free surface, m; outward normals
         """
         mesh, body = self.body.mesh, self.body
         nodes = body.held_nodes
@@ -306,12 +333,16 @@ class LoadedBody:
         return field
 
     def _at_contacts(self, displaced: Array, contacts: Array, normals: Array) -> Array:
-        """Slope of the tangential displacement and second derivative of the outward one along the
-        surface, (2, count), at the contacts.
+        """Slope of the tangential displacement, 1 per N/m, and second derivative of the outward
+        one, 1/m per N/m, along the surface at the contacts, (2, count).
 
-        displaced (2, m, count) at the condensed nodes. A cubic is fitted to the surface nodes about
-        each contact, with weights that vanish at the outermost one: continuous when the contact
-        passes a node.
+        A cubic is fitted to the surface nodes about each contact, with weights that vanish at the
+        outermost one: continuous when the contact passes a node.
+
+        Parameters
+        ----------
+        displaced : array (2, m, count)        displacement at the condensed nodes, m per N/m
+        contacts, normals : array (2, count)   points on the free surface, m; outward normals
         """
         mesh = self.body.mesh
         surface = np.searchsorted(self.condensed_nodes, mesh.boundary_nodes(self.surface))
@@ -353,9 +384,12 @@ def hertz_stress(points: Array, contacts: Array, normals: Array, half_width: Arr
 
 
 def from_contact_axes(stress: Array, normals: Array) -> Array:
-    """Stress xx, yy, xy (3, m, k) from components along the surface, into the depth and shear.
+    """Stress xx, yy, xy (3, m, k) in the frame of the body from its components at the surface:
+    normal stress along it, normal stress into the depth, and their shear (3, m, k).
 
-    stress (3, m, k); outward normals (2, k) or (2, 1).
+    Parameters
+    ----------
+    normals : array (2, k) or (2, 1)   outward normals; the tangent is the normal turned by -90 deg
     """
     along, into, shear = stress
     n = normals[:, None, :]
@@ -372,7 +406,14 @@ def from_contact_axes(stress: Array, normals: Array) -> Array:
 def _surface_coordinates(
     points: Array, contacts: Array, normals: Array
 ) -> tuple[Array, Array, Array]:
-    """Coordinates along the surfaces and depths (m, count), m; tangents (2, count)."""
+    """Coordinates along the tangents and depths below the contacts, both (m, count), m, of points,
+    and the tangents (2, count).
+
+    Parameters
+    ----------
+    points : array (2, m) or (2, m, count)   m
+    contacts, normals : array (2, count)     m; outward normals, or one of each (2, 1)
+    """
     arm = (points if points.ndim == 3 else points[:, :, None]) - contacts[:, None, :]
     tangents = np.stack([normals[1], -normals[0]])
     x = np.einsum("cmk,ck->mk", arm, np.broadcast_to(tangents, (2, arm.shape[2])))

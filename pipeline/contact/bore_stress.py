@@ -84,11 +84,17 @@ def bore_stress(
 def _under_unit_load(
     cam: LoadedBody, contacts: Array, normals: Array, excluded: float | None
 ) -> dict[str, Array]:
-    """Fields of `BoreStress` under a unit line load at each contact, with the places (2, p), m, and
-    which of them are within a zone about an edge.
+    """Fields of `BoreStress` by name under a unit line load at each contact, 1/m, with the places
+    (2, p), m, the number of the worst place (count,), and which places are within a zone about an
+    edge (p,).
 
     Places are the nodes of bore and keyway and the rims of the excluded zones: towards an edge the
     stress rises, so that its maximum outside would follow the distance of the next node.
+
+    Parameters
+    ----------
+    contacts, normals : array (2, count)   points of the contour, m; outward normals
+    excluded : float or None               radius of the zones, m; None: by the element size
     """
     nodes, recovery = _held(cam)
     mesh = cam.body.mesh
@@ -138,11 +144,16 @@ def _held(cam: LoadedBody) -> tuple[NDArray[np.int64], StressRecovery]:
 
 
 def _zones(mesh: BodyMesh, nodes: NDArray[np.int64], excluded: float | None) -> _Zones:
-    """Zones about the edges of the keyway, of radius `excluded`, m (None: by the element size), in
-    which the stress is singular; none without a keyway. nodes (m,): of bore and keyway.
+    """Zones about the edges of the keyway, in which the stress is singular; none without a keyway.
 
     A rim lies on the boundary where its distance from the edge is the radius; the weights are those
     of the quadratic shapes of its facet.
+
+    Parameters
+    ----------
+    nodes : array (m,)         numbers of the nodes of bore and keyway
+    excluded : float or None   radius of the zones, m; None: 1.5 times the longest facet of the
+        keyway
     """
     if "keyway" not in mesh.boundaries:
         return _Zones(0.0, np.zeros(nodes.size, dtype=bool), np.zeros((0, nodes.size)))
@@ -179,7 +190,9 @@ def _edges(mesh: BodyMesh) -> NDArray[np.int64]:
 
 
 def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:
-    """Half-plane stress (3, m, k) at points (2, m) under unit line forces, in the body frame."""
+    """Stress xx, yy, xy (3, m, k), 1/m, in the body frame, at points (2, m), m, of half-planes
+    under unit line forces at contacts (2, k), m, with outward normals (2, k).
+    """
     arm = points[:, :, None] - contacts[:, None, :]
     t, n = np.stack([normals[1], -normals[0]]), normals
     x, depth = np.einsum("cmk,ck->mk", arm, t), -np.einsum("cmk,ck->mk", arm, n)

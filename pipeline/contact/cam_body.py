@@ -259,7 +259,10 @@ class CamBody(Part):
 
     @property
     def key_flanks(self) -> KeyFlanks | None:
-        """Flanks of the key; None without a key or a datum of it.
+        """Flanks of the key that transmit torque; None without a key, a keyway or a measure of the
+        key.
+
+        The bearing length is at most the width of the cam and 1.3 shaft diameters.
 
         References
         ----------

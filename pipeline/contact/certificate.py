@@ -50,8 +50,13 @@ class SolvedPair:
 def contact_meshes(
     pair: ContactPair, theta: float, half_width: float, edges: float
 ) -> tuple[BodyMesh, BodyMesh]:
-    """Meshes of cam, then follower, in the cam frame, with `edges` element edges per half-width, m,
-    at the contact.
+    """Meshes of cam, then follower, in the cam frame, refined at their contact.
+
+    Parameters
+    ----------
+    theta : float        cam angle, rad
+    half_width : float   of the Hertz contact, m
+    edges : float        element edges per half-width at the contact
     """
     contact = pair.contour.points(theta)
 
@@ -73,7 +78,12 @@ def contact_meshes(
 def solve_pair(
     pair: ContactPair, theta: float, normal_force: float, edges: float = EDGES[1]
 ) -> SolvedPair:
-    """Contact of cam and follower by finite elements at a cam angle (rad) and normal force (N).
+    """Contact of cam and follower by finite elements at a cam angle theta, rad.
+
+    Parameters
+    ----------
+    normal_force : float   N, > 0
+    edges : float          element edges per Hertz half-width at the contact
 
     Raises
     ------

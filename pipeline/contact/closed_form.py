@@ -12,7 +12,9 @@ from camwright.pipeline.contact.tiers import Tier
 
 
 def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) -> ContactHistory:
-    """Hertz contact at cam angles theta (n,) rad under normal forces (n,) N."""
+    """Hertz line contact at cam angles theta (n,), rad, under normal forces (n,), N; a negative
+    force counts as none.
+    """
     load = np.maximum(normal_force, 0.0) / pair.width
     radius = pair.relative_radius(theta)
     half_width, p0 = hertz.line_contact(load, radius, pair.contact_modulus)

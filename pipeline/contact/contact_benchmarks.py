@@ -82,12 +82,15 @@ def _solved(roller_radius: float) -> Mapping[str, Array]:
 def disc_on_block(
     radius: float, side: float, moduli: tuple[float, float], line_load: float
 ) -> tuple[float, float, float]:
-    """p0 (Pa), half-width (m) and largest residual of a disc on a block in plane strain.
+    """p0 (Pa), half-width (m) and largest relative residual of a disc on a square block in plane
+    strain.
 
     Parameters
     ----------
-    moduli : two floats    Young's modulus of block and disc, Pa
-    line_load : float      N/m
+    radius : float        of the disc, m
+    side : float          of the block, m
+    moduli : two floats   Young's modulus of block and disc, Pa; nu = 0.3
+    line_load : float     N/m
     """
     modulus = hertz.contact_modulus(moduli[0], NU, moduli[1], NU)
     half_width = float(hertz.line_contact(line_load, radius, modulus)[0])

@@ -103,7 +103,7 @@ class ContactHistory(Displayed):
 
     @classmethod
     def unknown(cls, count: int) -> ContactHistory:
-        """NaN at every angle: the contact of a contour that does not bound a body."""
+        """History of NaN at `count` angles, of a contour that does not bound a body."""
         values = np.full(count, np.nan)
         names = [f.name for f in fields(cls) if f.name != "tier"]
         known = dict.fromkeys(names, values) | dict.fromkeys(

@@ -93,7 +93,10 @@ class ContactPair:
         )
 
     def relative_radius(self, theta: ArrayLike) -> Array:
-        """Relative radius of curvature R (...), m: 1/R = 1/r_r + 1/r_c; 1/r_r = 0 for a face.
+        """Relative radius of curvature R (...), m, at cam angles theta (...), rad.
+
+        1/R = 1/r_r + 1/r_c, roller and contour; 1/r_r = 0 for a face. In a groove that of the wall
+        which carries.
 
         Raises
         ------

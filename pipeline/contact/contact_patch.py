@@ -88,10 +88,11 @@ class ContactPatch:
 
     @cached_property
     def body_stress(self) -> Array:
-        """Unit stress fields (3, m, 4) at the patch points by which a real body differs.
+        """Four stress fields xx, yy, xy at the patch points, (3, m, 4), by which the stress of a
+        real body differs from that of the half-plane.
 
-        Unit stress along the surface, along the surface and into the depth per half-width of
-        depth, and `hertz.curved_surface_stress`.
+        Uniform stress along the surface; stress along the surface, and into the depth, that grows
+        with the depth by 1 per half-width; `hertz.curved_surface_stress`.
         """
         depth = self.points[1]
         added = np.zeros((3, depth.size, 4))
@@ -124,7 +125,8 @@ def contact_patch(
 def patch_body(
     poisson: float, elements_per_half_width: int
 ) -> tuple[ElasticBody, ContactFrame, PressureShapes]:
-    """Half-disc mesh of a contact patch with its contact frame and pressure shapes.
+    """Half-disc of a contact patch with its contact frame and pressure shapes, lengths in
+    half-widths.
 
     The last one is kept, as both templates of a Poisson ratio share its factors.
     """
@@ -149,7 +151,7 @@ def stress_near(body: ElasticBody) -> StressRecovery:
 
 
 def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
-    """The arrays of a template by their names in `ContactPatch`.
+    """Arrays of a template by their names in `ContactPatch`, by finite elements.
 
     The mesh is symmetric about the middle: the shapes of the right half are solved, those of the
     left half are their mirror images.
@@ -184,7 +186,13 @@ def _mirrored(points: Array) -> NDArray[np.intp]:
 
 
 def _far_displacement(points: Array, shapes: PressureShapes, poisson: float) -> Array:
-    """Half-plane displacement (2, nodes, n) of each pressure shape, far from it."""
+    """Displacement (2, nodes, n) of a half-plane under each unit pressure shape at the nodes beyond
+    0.9 of the patch's radius, its arc; zero at the others.
+
+    Parameters
+    ----------
+    points : array (2, nodes)   nodes, over the half-width; y = 0 at the surface
+    """
     xi, weights = shapes.quadrature()
     weighted = shapes.values(xi) * weights
     far = np.hypot(*points) > 0.9 * _RADIUS
@@ -262,7 +270,9 @@ def solve_patches(
 
 
 def _one_ellipse(shapes: PressureShapes, pressure: Array, ellipses: Ellipses) -> NDArray[np.bool_]:
-    """Where (count,) the loaded knots are contiguous and end at the fitted ellipse, bool."""
+    """Where (count,) a pressure (count, n) is one ellipse, bool: the loaded knots are contiguous
+    and their ends within two knot spacings of those of the fitted ellipse.
+    """
     carrying = pressure > 0
     first, last = carrying.argmax(axis=1), carrying.shape[1] - 1 - carrying[:, ::-1].argmax(axis=1)
     low, high = (ellipses.centre + side * ellipses.half_width for side in (-1, 1))
@@ -274,11 +284,19 @@ def _one_ellipse(shapes: PressureShapes, pressure: Array, ellipses: Ellipses) ->
 def _elliptic_pressure(
     shapes: PressureShapes, compliance: Array, weighted_gap: Array, ellipses: Ellipses
 ) -> tuple[Array, Array]:
-    """Pressures (count, n) at the knots as linear functions times the fitted ellipse; residuals.
+    """Pressures (count, n) at the knots, as linear functions times the fitted ellipse, and their
+    residuals (count,).
 
     Linear pressures overshoot by 9 % at their last knot. The elliptic ones have zero gap in the
-    mean over each function, under the same force. Residual (count,): tension over the greatest
-    pressure, mean gap over a function, and overlap beside the ellipse, over the greatest gap.
+    mean over each function, under the same force. Residual: the greater of tension over the
+    greatest pressure, and of mean gap over a function or overlap beside the ellipse over the
+    greatest gap.
+
+    Parameters
+    ----------
+    compliance : array (n, n)         of both bodies, weighted settlement
+    weighted_gap : array (count, n)   initial gap times each pressure shape, integrated
+    ellipses : Ellipses               fitted to the linear pressures
     """
     count, few = weighted_gap.shape[0], _ELLIPTIC
     at = (shapes.centres - ellipses.centre[:, None]) / ellipses.half_width[:, None]

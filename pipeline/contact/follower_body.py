@@ -133,7 +133,9 @@ class FaceBody:
         return face_mesh(self.width, self.thickness, self.stem_diameter, sizing, self.radius)
 
     def contacts(self, contour: Contour, theta: Array, /) -> tuple[Array, Array]:
-        """Contact at its place along the face."""
+        """Contact points (2, n), m, and outward normals (2, n) in the frame of the face, at cam
+        angles (n,), rad.
+        """
         along = np.asarray(contour.pitch.slide(theta).on_face)
         if self.radius is None:
             nothing, one = np.zeros_like(along), np.ones_like(along)

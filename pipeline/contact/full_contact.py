@@ -273,7 +273,14 @@ def _with_elliptic_edges(
 
 
 def _overlap(linear: _Pressed, elliptic: _Pressed, gap: Callable[[Array], Array]) -> float:
-    """Maximum overlap beside the contact over the maximum gap, both weighted by linear shapes."""
+    """Maximum overlap of the surfaces beside the elliptic contact over the maximum gap, -, both
+    weighted by the linear shapes.
+
+    Parameters
+    ----------
+    linear, elliptic : _Pressed   contact with linear and with elliptic pressure shapes
+    gap : function xi -> array    distance of the undeformed surfaces along the normal, m
+    """
     shapes, pressure = linear.shapes, elliptic.solution.pressure[0]
     xi, weights = shapes.quadrature()
     apart = shapes.integrated(gap(xi), xi, weights)
@@ -290,7 +297,15 @@ def _peak_stress(
     body: ElasticBody, displacement: Array, frame: ContactFrame, half_width: float
 ) -> tuple[float, float, float, float]:
     """Maximum in-plane shear, Pa, its depth, m, maximum von Mises stress, Pa, its depth, m, below
-    the contact; displacement (2, nodes), m.
+    the contact.
+
+    Fitted to the nodal displacements about the maximum; near the surface that of the recovered
+    nodal stress.
+
+    Parameters
+    ----------
+    displacement : array (2, nodes)   of the body, m
+    half_width : float                of the contact, m
     """
     recovery = StressRecovery(body, elements_near(body, frame.origin, _STRESS_REACH * half_width))
     nodal = recovery(displacement[:, :, None])

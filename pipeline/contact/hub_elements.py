@@ -188,7 +188,9 @@ class HubUnits:
         return HubState(stress.T, (forces / known["share"][:, None]).T, torn)
 
     def unloaded(self, interference: float) -> float:
-        """Mean pressure of the fit at rest without load, Pa; 0 of a clearance."""
+        """Mean pressure of the fit at rest without load, Pa; 0 of a clearance. Interference of the
+        radii in m.
+        """
         if interference <= 0.0:
             return 0.0
         still = np.zeros(1)
@@ -351,7 +353,9 @@ class _Free:
         return np.asarray(x @ loads[1] - y @ loads[0])
 
     def displacement(self, loads: Array) -> Array:
-        """Displacement (2, nodes, k) under loads; their resultant acts evenly on the section."""
+        """Displacement (2, nodes, k), m, under loads (2, nodes, k), N/m, put in equilibrium first:
+        their resultant acts evenly on the section, their couple along the boundary `outside`.
+        """
         displacement = np.empty_like(loads)
         for first in range(0, loads.shape[2], _LOADS_AT_ONCE):
             few = slice(first, first + _LOADS_AT_ONCE)
@@ -367,8 +371,8 @@ class _Free:
 
 
 def _tangential(mesh: BodyMesh, name: str) -> Array:
-    """Nodal forces (2, nodes) along the outline `name`, counter-clockwise, in proportion to length
-    and radius.
+    """Nodal forces (2, nodes), m2, along the outline `name`, counter-clockwise, each the length
+    that the node carries times its radius.
     """
     forces, radius = np.zeros_like(mesh.points), mesh.boundary_nodes(name)
     start, end, _ = mesh.facet_triples(name)
@@ -379,7 +383,9 @@ def _tangential(mesh: BodyMesh, name: str) -> Array:
 
 
 def _shares(mesh: BodyMesh, name: str, nodes: NDArray[np.int64]) -> Array:
-    """Length (k,) of a round boundary that each of its nodes carries, m."""
+    """Length (k,), m, of a round boundary about the axis that each of its nodes carries; `nodes`
+    (k,): their numbers.
+    """
     start, end, _ = mesh.facet_triples(name)
     chord = np.hypot(*(mesh.points[:, end] - mesh.points[:, start]))
     radius = np.hypot(*mesh.points[:, start])
@@ -387,7 +393,13 @@ def _shares(mesh: BodyMesh, name: str, nodes: NDArray[np.int64]) -> Array:
 
 
 def _nodal(mesh: BodyMesh, name: str, length: Array) -> Array:
-    """Length (all nodes,) that each node carries of the facets of a boundary, by Simpson's rule."""
+    """Length (all nodes,), m, of a boundary that each node of the mesh carries, by Simpson's rule;
+    zero off the boundary.
+
+    Parameters
+    ----------
+    length : array (facets,)   of the facets of the boundary, m
+    """
     carried = np.zeros(mesh.points.shape[1])
     for nodes, part in zip(mesh.facet_triples(name), (1.0, 1.0, 4.0), strict=True):
         np.add.at(carried, nodes, part / 6.0 * length)
@@ -420,8 +432,8 @@ def _contact_forces(cam: _Free, seated: SeatedCam) -> Array:
 
 
 def _key_forces(cam: _Free, seated: SeatedCam) -> Array:
-    """Nodal forces (2, nodes, 2) of an even pressure of the key on one flank and on the other, with
-    couples of 1 and -1; zero without a keyway.
+    """Nodal forces (2, nodes, 2), 1/m, of an even pressure of the key on one flank, with a
+    counter-clockwise couple of 1, and on the other, with one of -1; zero without a keyway.
     """
     mesh, slot = cam.mesh, seated.slot
     loads = np.zeros((*mesh.points.shape, 2))

@@ -86,7 +86,8 @@ class Lubricant(Part):
     source: TableSource = NO_SOURCE
 
     def warmer(self, rise: float) -> Lubricant:
-        """Oil warmer by a rise, K; unchanged where its temperature is not stated.
+        """Oil warmer by a rise, K, thinned by Walther's equation; unchanged where its temperature
+        is not stated or the rise is not positive.
 
         References
         ----------
@@ -128,7 +129,15 @@ class LineFilm:
         entrainment_speed: ArrayLike,
         lubricant: Lubricant,
     ) -> LineFilm:
-        """Groups from SI values: N/m, m, Pa (E*), m/s.
+        """Groups of a line contact with an oil.
+
+        Parameters
+        ----------
+        line_load : array (...)           P', N/m, >= 0
+        relative_radius : array (...)     R, m
+        contact_modulus : float           E*, Pa
+        entrainment_speed : array (...)   mean speed of both surfaces through the contact, m/s; its
+            sign does not count
 
         Raises
         ------
@@ -265,7 +274,9 @@ def _groups(film: LineFilm, roughness: float, hardness: float, modulus: float) -
 def _refusals(
     film: LineFilm, roughness: float, hardness: float, modulus: float
 ) -> Iterator[tuple[NDArray[np.bool_], InputError]]:
-    """Where (...) a group or the load share is out of range, bool, and the error."""
+    """Each violated range of the regression: where (...) a group or the load share is out of it,
+    bool, and the error; inputs as those of `mixed_film`, with load.
+    """
     for name, values in _groups(film, roughness, hardness, modulus).items():
         low, high = _RANGE[name]
         outside = ~((values >= low) & (values <= high))
@@ -287,8 +298,8 @@ def _asperity_share(film: LineFilm, roughness: float, hardness: float, modulus: 
 
 
 def _regression(film: LineFilm, roughness: float, hardness: float, modulus: float) -> MixedFilm:
-    """Film thickness, m, and share of the load on asperities by the regression, without
-    its range.
+    """Film thickness, m, and share of the load on asperities by the regression, whether or not it
+    holds there; inputs as those of `mixed_film`.
     """
     W, U, G, s, V = _groups(film, roughness, hardness, modulus).values()
     central = 1 + 0.2 * s**1.222 * V**0.223 * W**-0.229 * U**-0.748 * G**-0.842

@@ -86,7 +86,14 @@ def persson_clearance(contact_angle: ArrayLike) -> Array:
 
 
 def persson_pressure(contact_angle: ArrayLike, angle: ArrayLike = 0.0) -> Array:
-    """Persson's pressure p R / Q (...) at angles from the line of action, rad; 0 beyond."""
+    """Persson's pressure p R / Q (...) at an angle from the line of action, rad; 0 beyond the
+    contact.
+
+    Parameters
+    ----------
+    contact_angle : array (...)   half the angle in contact, rad
+    angle : array (...)           from the line of action, rad
+    """
     b = np.tan(np.asarray(contact_angle, dtype=float) / 2.0)
     y = np.tan(np.asarray(angle, dtype=float) / 2.0)
     S, s = np.sqrt(1.0 + b**2), np.sqrt(np.maximum(b**2 - y**2, 0.0))
@@ -195,7 +202,14 @@ def _mean_compliance(pin: SolidBar, bush: Bush) -> float:
 def _in_window(
     window: float, clearance_number: float, pin: SolidBar, bush: Bush, knots: int
 ) -> Conforming:
-    """Contact at unit load and radius; lengths over load times mean compliance."""
+    """Contact at unit load and radius: pressure p R / Q, approach over load times mean compliance.
+
+    Parameters
+    ----------
+    window : float             half the angle that the knots cover, rad
+    clearance_number : float   radial clearance over load times mean compliance, >= 0
+    knots : int                of the pressure on half the contact
+    """
     count = int(_HARMONICS * knots / window) + 8
     mean_compliance = _mean_compliance(pin, bush)
     w = (pin_compliance(count, pin) + bush_compliance(count, bush)) / mean_compliance
@@ -218,7 +232,16 @@ def _in_window(
 
 
 def _edge(angle: Array, pressure: Array, window: float) -> float:
-    """Half contact angle, rad: zero of the squared pressure, which is smooth at the edge."""
+    """Half contact angle, rad: zero of the squared pressure, which is smooth at the edge.
+
+    With fewer than twelve knots in contact the angle of the last one; where the fit has no zero
+    near, one knot spacing more, at most the window.
+
+    Parameters
+    ----------
+    angle, pressure : array (knots,)   angle from the line of action, rad; pressure, any unit
+    window : float                     angle of the end of the knots, rad
+    """
     touching = np.flatnonzero(pressure > 0.0)
     if len(touching) < 12:
         return float(angle[touching[-1]])
@@ -232,7 +255,12 @@ def _edge(angle: Array, pressure: Array, window: float) -> float:
 
 
 def _peak(angle: Array, pressure: Array) -> float:
-    """Pressure on the line of action, by an even quartic through the middle of the contact."""
+    """Pressure on the line of action, by an even quartic through the inner half of the contact.
+
+    Parameters
+    ----------
+    angle, pressure : array (knots,)   angle from the line of action, rad; pressure, any unit
+    """
     last = int(np.flatnonzero(pressure > 0.0)[-1])
     inner = slice(0, max(last // 2, 4))
     square = angle[inner] ** 2
@@ -241,7 +269,8 @@ def _peak(angle: Array, pressure: Array) -> float:
 
 @lru_cache(maxsize=16)
 def _peak_table(pin: SolidBar, bush: Bush) -> tuple[MonotoneCubic, MonotoneCubic, float]:
-    """Peak p R/Q and contact angle over log(1 + clearance number); largest clearance number.
+    """Logarithms of the peak p R/Q and of half the contact angle, rad, as functions of log(1 + c),
+    and the largest c tabulated; c: clearance over load times mean compliance.
 
     The solutions are cached on disk.
     """
@@ -253,7 +282,9 @@ def _peak_table(pin: SolidBar, bush: Bush) -> tuple[MonotoneCubic, MonotoneCubic
 
 
 def _solved_table(pin: SolidBar, bush: Bush) -> dict[str, Array]:
-    """Clearance numbers, peak p R/Q and contact angle (n,), rad, by complementarity."""
+    """Clearance over load times mean compliance, peak p R/Q and half contact angle, rad, each (n,),
+    by complementarity, under the names `number`, `peak`, `angle`.
+    """
     largest = float(persson_clearance(_LEAST_ANGLE)) / 2.0
     numbers = np.r_[0.0, np.geomspace(1e-2, largest, 28)]
     mean_compliance = _mean_compliance(pin, bush)

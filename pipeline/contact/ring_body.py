@@ -166,9 +166,17 @@ def ball_springs(
 
 
 def _mean_way(mesh: BodyMesh, centre: Array, angle: float, half: float, inwards: bool) -> Array:
-    """Weights (2, nodes) of the mean inward or tangential displacement about an angle, rad.
+    """Weights (2, nodes) of the mean inward or tangential displacement of the inner circle over the
+    footprint of a ball, under an elliptic pressure.
 
-    Quadrature over the footprint, which is shorter than a facet.
+    By quadrature over the footprint, which is shorter than a facet.
+
+    Parameters
+    ----------
+    centre : array (2,)   of the ring, m
+    angle : float         direction from the centre to the ball, rad
+    half : float          half the length of the footprint, m
+    inwards : bool        displacement towards the centre; else counter-clockwise
     """
     facets = mesh.facet_triples("hub")
     arm = mesh.points[:, facets] - np.reshape(centre, (2, 1, 1))

@@ -126,7 +126,9 @@ def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
 
 
 def _pass(poisson: float, friction: float) -> dict[str, Array]:
-    """Fields of `RollingPass` by name, of a Hertz pressure with sliding traction."""
+    """Fields of `RollingPass` by name, of a Hertz pressure with a sliding traction `friction` times
+    the pressure, on a body of Poisson's ratio `poisson`.
+    """
     depth = np.linspace(0.0, _DEPTH_MAX, _DEPTHS)
     near = np.linspace(-2.0, 2.0, 321)
     far = np.geomspace(2.0, 200.0, 60)[1:]
@@ -289,8 +291,13 @@ def governing_stations(p0: Array, half_width: Array) -> NDArray[np.intp]:
 
 
 def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array) -> Array:
-    """Ratio of finite elements to closed form at cam angles `at`, rad, interpolated between those
-    of the contact; 1 where it carries no load.
+    """Ratio (n,) of finite elements to closed form at cam angles `at` (n,), rad, interpolated
+    between those of the contact; 1 where it carries no load.
+
+    Parameters
+    ----------
+    theta : array (m,)                          cam angles of the contact, rad
+    finite_elements, closed_form : array (m,)   one quantity by either method
     """
     if finite_elements is closed_form:
         return np.ones(at.size)
@@ -363,7 +370,15 @@ def greatest_line(height: Array, slope: Array, at: Array) -> Array:
 def _crossland(
     unit: RollingPass, p0: Array, body_hydrostatic: Array, limits: FatigueLimits
 ) -> dict[str, Array]:
-    """Crossland stress (n, k) with the hydrostatic stress (n,) of the body added, and its parts."""
+    """Crossland stress and its parts by their names in `Envelope`, (n, k), Pa, with the hydrostatic
+    stress of the body added.
+
+    Parameters
+    ----------
+    unit : RollingPass              k depths
+    p0 : array (n,)                 peak pressure, Pa
+    body_hydrostatic : array (n,)   Pa
+    """
     tension = p0[:, None] * unit.hydrostatic_greatest
     tension += body_hydrostatic[:, None]
     np.maximum(tension, 0.0, out=tension)

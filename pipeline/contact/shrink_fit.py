@@ -68,9 +68,10 @@ class SeatFit(Part):
         return (self.cam_temperature, self.shaft_temperature) != (ROOM, ROOM)
 
     def growth(self, radius: Value, cam: Material, shaft: Material) -> Value:
-        """Rise of the interference of the radii from 20 degC to operation, m.
+        """Rise of the interference of the radii from 20 degC to operation, m; `radius`: of the
+        seat, m.
 
-        NaN without the expansion of a heated material.
+        NaN where a temperature differs from 20 degC and a material has no coefficient of expansion.
         """
         if not self.heated:
             return 0.0

@@ -77,10 +77,16 @@ def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
 def _arc_displacement(
     points: Array, arc: NDArray[np.int64], shapes: PressureShapes, poisson: float
 ) -> Array:
-    """Half-plane displacement (2, nodes, n) of the arc under each traction shape.
+    """Displacement (2, nodes, n) of a half-plane under each traction shape at the nodes of the arc;
+    zero at the others.
 
-    The displacement of a point force depends on the angle from its line of action alone: that of
-    a tangential force is the field of the normal force turned by 90 deg.
+    The displacement of a point force depends on the angle from its line of action alone: that of a
+    tangential force is the field of the normal force turned by 90 deg.
+
+    Parameters
+    ----------
+    points : array (2, nodes)   nodes, over the half-width; y = 0 at the surface
+    arc : array of int          numbers of the nodes of the arc
     """
     xi, weights = shapes.quadrature()
     x, depth = points[0, arc], -points[1, arc]

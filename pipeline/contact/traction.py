@@ -269,8 +269,15 @@ def _steps(
     """Tangential force (n,), N, and spin of the roller (n,), rad/s, over the periodic turn; see
     `rolling_contact`.
 
-    rolling : spin without slip, rad/s; demand : force of rolling, N; limit : friction times normal
-    force, N; resisting : drag torque, N m; step : s.
+    Parameters
+    ----------
+    rolling : array (n,)     spin of rolling without slip, rad/s
+    demand : array (n,)      tangential force of rolling without slip, N
+    limit : array (n,)       friction coefficient times normal force, N
+    resisting : array (n,)   drag torque of the bearing, N m
+    inertia : float          of the roller, kg m2
+    radius : float           of the roller, m
+    step : float             time between positions, s
     """
     count = rolling.size
     tangential, turning = np.zeros(count), np.array(rolling)

@@ -58,7 +58,13 @@ class CycleBodies:
 
 
 def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
-    """Cam on the coarse mesh of a cycle, factorised; its element sizes divided by `refinement`."""
+    """Cam on the coarse mesh of a cycle, factorised; its element sizes divided by `refinement`.
+
+    Raises
+    ------
+    InputError
+        If bore and keyway leave no wall below the contour.
+    """
     outline = float(pair.contour.perimeter())
     if pair.rim_radius is not None:
         return _loaded_rim(pair, pair.rim_radius, outline / _GRID_OF_CYCLE_MESH, refinement)
@@ -263,11 +269,17 @@ def stress_on_patch(
 ) -> Array:
     """Stress (3, m, n), Pa, in the cam at the points of the patch at n positions.
 
-    At all m points of the patch, or at those numbered `points` (m,).
-
     Components along the tangent of the contact frame and into the depth; points in Hertz
-    half-widths of the position. From the pressures (n, k), Pa, at the knots and the correction of
-    the real body.
+    half-widths of the position.
+
+    Parameters
+    ----------
+    cam : CorrectionField         of the cam at the positions
+    theta : array (n,)            cam angles, rad
+    load : array (n,)             line load, N/m
+    half_width, p0 : array (n,)   of Hertz, m; Pa
+    pressure : array (n, k)       at the knots of the patch, Pa
+    points : array (m,) or None   numbers of the points of the patch; None: all
     """
     patch = contact_patch(pair.cam.poisson)
     unit, added = patch.stress, patch.body_stress

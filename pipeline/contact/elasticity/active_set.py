@@ -134,7 +134,16 @@ def _together(
     C: Array, g: Array, weights: Array, targets: Array, start: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
     """Pressures (count, n) and rigid motions (count, k) of all problems by primal-dual sweeps at
-    once; those that do not settle by `_primal`.
+    once; those that do not settle by `_primal`. All inputs are scaled to order 1.
+
+    Parameters
+    ----------
+    C : array (n, n)             compliance
+    g : array (count, n)         weighted initial gap
+    weights : array (n, k)       resultants of a unit pressure on each knot: force, with k = 2
+        moment
+    targets : array (count, k)   prescribed resultants
+    start : array (n,) of bool   knots in contact at first; all if none is
     """
     count, size = g.shape
     pressures, motions = np.zeros((count, size)), np.zeros(targets.shape)
@@ -177,10 +186,13 @@ def _determined(weights: Array, active: NDArray[np.bool_]) -> bool:
 def _equality_solutions(
     C: Array, g: Array, weights: Array, targets: Array, active: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
-    """Pressures (count, n) and rigid motions (count, k) with zero gap where `active`, zero pressure
-    elsewhere.
+    """Pressures (count, n) and rigid motions (count, k) with zero gap where `active` (count, n),
+    zero pressure elsewhere; other inputs as those of `_together`.
 
-    With the prescribed resultants `targets` (count, k), the first a unit force.
+    Raises
+    ------
+    ContactError
+        If the compliance is singular.
     """
     pressures, motions = np.zeros_like(g), np.zeros(targets.shape)
     for rows in alike(active.T):
@@ -201,6 +213,18 @@ def _equality_solutions(
 def _primal(C: Array, g: Array, weights: Array, targets: Array) -> tuple[Array, Array]:
     """Pressures (n,) and rigid motion (k,) of one problem by the primal active-set method; the
     energy decreases, so no set recurs.
+
+    Parameters
+    ----------
+    C : array (n, n)         compliance
+    g : array (n,)           weighted initial gap
+    weights : array (n, k)   resultants of a unit pressure on each knot
+    targets : array (k,)     prescribed resultants
+
+    Raises
+    ------
+    ContactError
+        If it does not converge, or the force acts beyond the end of the contact.
     """
     p = _balanced(weights, targets)
     active = np.ones(g.size, dtype=bool)
@@ -226,7 +250,18 @@ def _primal(C: Array, g: Array, weights: Array, targets: Array) -> tuple[Array, 
 
 
 def _balanced(weights: Array, targets: Array) -> Array:
-    """Pressures (n,), >= 0, of the prescribed resultants: uniform, or raised towards one end."""
+    """Pressures (n,), >= 0, of the prescribed resultants `targets` (k,): uniform, and with a moment
+    a point pressure at one end.
+
+    Parameters
+    ----------
+    weights : array (n, k)   resultants of a unit pressure on each knot: force, with k = 2 moment
+
+    Raises
+    ------
+    ContactError
+        If the force acts beyond the end of the contact.
+    """
     uniform = np.full(len(weights), 1 / weights[:, 0].sum())
     if weights.shape[1] == 1:
         return uniform

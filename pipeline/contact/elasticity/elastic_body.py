@@ -91,7 +91,9 @@ class ElasticBody:
 
     @cached_property
     def stiffness(self) -> scipy.sparse.csc_matrix:
-        """Stiffness matrix of linear elasticity, N/m2; faster than the assembly of skfem."""
+        """Stiffness matrix of linear elasticity and the springs, over all degrees of freedom, N/m
+        per m of width; faster than the assembly of skfem.
+        """
         from skfem import ElementTriP2
 
         scalar = self.basis.with_element(ElementTriP2())
@@ -121,7 +123,7 @@ class ElasticBody:
 
     @cached_property
     def held_dofs(self) -> NDArray[np.int64]:
-        """Held degrees of freedom.
+        """Numbers of the held degrees of freedom, ascending.
 
         Raises
         ------
@@ -188,7 +190,9 @@ class ElasticBody:
         return CondensedBody(self, nodes)
 
     def surface_forces(self, displacement: Array, boundary: str) -> Array:
-        """Nodal forces (2, nodes), N/m, on a boundary at a displacement (2, nodes), m."""
+        """Nodal forces (2, nodes), N/m, that act on the nodes of a boundary at a displacement (2,
+        nodes), m, by the stiffness; zero at the other nodes.
+        """
         flat = np.zeros(self.basis.N)
         flat[self.dofs] = displacement
         nodes = self.mesh.boundary_nodes(boundary)
@@ -225,10 +229,10 @@ class CondensedBody:
         self._matrix = Condensed(stiffness, pairs[:, (pairs >= 0).all(axis=0)], seen[self._kept])
 
     def displacement(self, loads: ArrayLike, held_at: ArrayLike | None = None) -> Array:
-        """Displacement (2, m, k) of the nodes under forces (2, m, k) on them.
+        """Displacement (2, m, k), m, of the condensed nodes under forces (2, m, k), N/m, on them.
 
         `held_at` (2, all nodes, k) is the displacement of the held nodes, m; the condensed nodes
-        must then include `ElasticBody.beside_held`.
+        must then include `ElasticBody.beside_held`. None: zero.
         """
         forces = np.asarray(loads, dtype=float)
         right = forces.reshape(-1, forces.shape[2]).copy()
@@ -255,7 +259,9 @@ class CondensedBody:
         return place[held], coupling, np.searchsorted(held, seen[~self._kept])
 
     def everywhere(self, loads: ArrayLike) -> Array:
-        """Displacement (2, all nodes, k) of the body under forces (2, m, k) on the nodes."""
+        """Displacement (2, all nodes, k), m, of the body under forces (2, m, k), N/m, on the
+        condensed nodes; held nodes at rest.
+        """
         forces = np.asarray(loads, dtype=float)
         body = self.body
         right = np.zeros((body.basis.N, forces.shape[2]))
@@ -280,7 +286,7 @@ class StressRecovery:
 
     def __init__(self, body: ElasticBody, elements: ArrayLike) -> None:
         """Assemble the operators from displacement to stress at the points of integration, and from
-        there to the nodes; `elements`: their numbers.
+        there to the nodes, of the elements with the numbers `elements`.
         """
         from skfem import Basis, ElementTriP2, ElementVector
 
@@ -330,7 +336,9 @@ class StressRecovery:
         )
 
     def operator(self, nodes: ArrayLike) -> Array:
-        """Stress (3, m, 2, n) at some of `nodes` under unit displacements of each of `nodes`."""
+        """Stress xx, yy, xy (3, m, 2, n), Pa/m, at `nodes` (m,) under a unit displacement x or y of
+        each of the n nodes of the recovered elements; `nodes`: numbers of the mesh, among them.
+        """
         order = np.argsort(self.nodes)
         rows = order[np.searchsorted(self.nodes, np.asarray(nodes, dtype=int), sorter=order)]
         columns = self._dofs[:, self.nodes].ravel()
@@ -344,8 +352,14 @@ class StressRecovery:
 def _stacked(
     values: list[Array], dofs: NDArray[np.int64], shape: tuple[int, int]
 ) -> scipy.sparse.csr_array:
-    """Sparse matrix (quadrature points, degrees of freedom) from values (elements, points) per
-    local shape and numbers `dofs` (shapes, elements).
+    """Sparse matrix of shape `shape` that evaluates a field at the points of integration of all
+    elements from its degrees of freedom.
+
+    Parameters
+    ----------
+    values : list of array (elements, points)   of each local shape at the points
+    dofs : array (shapes, elements)             column of each local shape
+    shape : two ints                            elements times points, and number of columns
     """
     elements, quadrature = values[0].shape
     rows = np.arange(elements * quadrature)

@@ -57,7 +57,8 @@ class FittedStress:
 def fitted_stress(
     points: Array, displacement: Array, elastic: tuple[float, float], place: Array, reach: float
 ) -> FittedStress | None:
-    """Potentials fitted about a point; None with too few nodes within reach.
+    """Potentials fitted by least squares to the displacements of the nodes about a point; None with
+    fewer than 26 nodes within reach.
 
     Parameters
     ----------
@@ -98,13 +99,14 @@ def greatest_fitted(
     measure: Callable[[Array], Array],
     start: Array,
 ) -> tuple[float, Array] | None:
-    """Maximum of a stress measure, and its point (2,), m, near a start (2,), m.
+    """Maximum of a stress measure, Pa, and its point (2,), m, near a start (2,), m.
 
-    The fit is repeated about its maximum; None where that leaves the nodes of the fit.
+    The fit is repeated about its maximum until that is within a tenth of the reach from its middle.
+    None where four fits do not bring it there, or a fit has too few nodes.
 
     Parameters
     ----------
-    fit_about : function   fit about a place (2,)
+    fit_about : function   fit about a place (2,), m; None with too few nodes
     measure : function     of a stress (3, ...), Pa
     """
     place = np.asarray(start, dtype=float)

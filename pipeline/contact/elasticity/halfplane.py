@@ -16,9 +16,13 @@ _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 def point_force_displacement(x: ArrayLike, depth: ArrayLike, poisson: float) -> Array:
     """Displacement (2, ...) of a half-plane under a unit normal force per unit length.
 
-    Components along the surface and into the solid, in units of force over plane-strain modulus
-    E / (1 - nu^2). The arbitrary rigid motion is chosen so that the point on the axis at depth 1
-    has no displacement.
+    Components along the surface and into the solid, in units of force over plane-strain modulus E /
+    (1 - nu^2). The arbitrary rigid motion is chosen so that the point on the axis at depth 1 has no
+    displacement.
+
+    Parameters
+    ----------
+    x, depth : array (...)   place from the force, along the surface and into the solid; any unit
 
     References
     ----------

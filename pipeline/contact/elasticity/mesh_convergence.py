@@ -55,10 +55,16 @@ class Convergence:
 def converged(values: Sequence[float], ratio: float) -> Convergence:
     """Richardson extrapolation of three values on meshes refined by a constant ratio.
 
-    The error bar is 1.25 |f1 - f2|/(r^p - 1). An observed order p below 1 takes the safety factor 3
-    and counts as at least 0.5: it widens the bar. One above 3, the order of the stresses, counts as
-    3. Values that do not converge monotonically have no order; their error bar is 3 times their
-    spread, of monotone ones not less than that of the order 0.5.
+    The error bar is 1.25 |f1 - f2|/(r^p - 1), f1 the finest value. An observed order p below 1
+    takes the safety factor 3 and counts as at least 0.5: it widens the bar. One above 3, the order
+    of the stresses, counts as 3. Values that do not converge monotonically, or differ by less than
+    2e-4, have no order; their error bar is 3 times their spread, of monotone ones not less than
+    that of the order 0.5.
+
+    Parameters
+    ----------
+    values : three floats   on the coarse, middle and fine mesh
+    ratio : float           element size of a mesh over that of the next finer one
 
     Raises
     ------
@@ -99,12 +105,14 @@ def converged_on_two(
 ) -> Convergence:
     """Richardson extrapolation of two values with the order observed on three meshes elsewhere.
 
-    The order is the least observed one, within its bounds; without one at every place the finer
-    value is not extrapolated, and its bar is that of the least bound. The safety factor is 3; the
-    greatest observed bar is added, as the scatter of the finest mesh is not known here.
+    The order is the least observed one, within its bounds 0.5 and 3; unless every place has one the
+    finer value is not extrapolated, and its bar is that of the order 0.5. The safety factor is 3;
+    the greatest observed bar is added, as the scatter of the finest mesh is not known here.
 
     Parameters
     ----------
+    values : two floats   on the coarse and the fine mesh
+    ratio : float         element size of the coarse mesh over that of the fine one
     observed : sequence   convergence of the same quantity on three meshes, at least one
 
     Raises

@@ -87,9 +87,10 @@ class PeakFinder:
     def where_likely(
         self, values_at: Callable[[Index], tuple[Array, ...]]
     ) -> tuple[tuple[Array, Array], ...]:
-        """Maxima of several fields, evaluated only near their likely places; see `__call__`.
+        """Maxima (k,) and their places (2, k) of several fields, which are evaluated only near
+        their likely places.
 
-        First on a twentieth of the points, then about the largest of those values.
+        First on a twentieth of the points, then about the largest values there.
 
         Parameters
         ----------
@@ -114,7 +115,9 @@ class PeakFinder:
 
     @cached_property
     def _coarse(self) -> tuple[Index, Index]:
-        """Numbers of the coarse points (c,), and of the nearest of them to each point (m,)."""
+        """Numbers of the coarse points (c,), one in each square of 1/8 half-width, and for each
+        point the index among them of the nearest one (m,).
+        """
         cells = np.floor(self._points / _COARSE_CELL)
         _, first = np.unique(cells, axis=1, return_index=True)
         coarse = np.sort(first)
@@ -133,7 +136,9 @@ class PeakFinder:
         return self._near[node]
 
     def _fit(self, node: int) -> Array:
-        """Coefficients (15, p) of the polynomial per value at the neighbours."""
+        """Matrix (15, p) from the values at the p neighbours of a point to the coefficients of the
+        polynomial fitted about it, in distances over the reach; `node`: number of the point.
+        """
         if node not in self._inverse:
             arms = self._points[:, self._neighbours(node)] - self._points[:, [node]]
             self._inverse[node] = np.asarray(
@@ -142,8 +147,14 @@ class PeakFinder:
         return self._inverse[node]
 
     def _fitted(self, fields: Array, nodes: Index, tops: Index) -> tuple[Array, Array]:
-        """Maxima (k,) and their places (2, k) of fields (p, k) at the points numbered `nodes` (p,);
-        of the polynomial about the point of the greatest value, `tops` (k,).
+        """Maxima (k,) and their places (2, k) of fields (p, k): of a polynomial fitted about the
+        greatest value, or this value where the polynomial has no maximum nearby.
+
+        Parameters
+        ----------
+        fields : array (p, k)   values at the points
+        nodes : array (p,)      numbers of the points, ascending
+        tops : array (k,)       number of the point of the greatest value of each field
         """
         columns = np.arange(tops.size)
         top, place = fields[np.searchsorted(nodes, tops), columns], self._points[:, tops]
@@ -172,7 +183,9 @@ def _terms(at: Array) -> Array:
 
 @lru_cache(maxsize=1)
 def _derivatives() -> Array:
-    """Coefficients (5, 15, 15) of the derivatives x, y, xx, xy, yy of a polynomial."""
+    """Matrices (5, 15, 15) from the coefficients of a polynomial to those of its derivatives by x,
+    y, xx, xy and yy.
+    """
     row = {(int(i), int(j)): k for k, (i, j) in enumerate(_POWERS)}
     by_x, by_y = np.zeros((2, len(_POWERS), len(_POWERS)))
     for (i, j), k in row.items():
@@ -185,7 +198,8 @@ def _derivatives() -> Array:
 
 def _summit(fit: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Maxima of polynomials with coefficients (15, k): value (k,), place (2, k), and whether there
-    is one near the origin (k,); by Newton's method.
+    is one within 0.5 of the origin in x and y (k,); by Newton's method. Without one: the value at
+    the origin.
     """
     slopes = _derivatives() @ fit
     at = np.zeros((2, fit.shape[1]))

@@ -44,7 +44,9 @@ class PressureShapes:
         return np.asarray(total if self.open_ends else total[1:-1])
 
     def values(self, xi: ArrayLike) -> Array:
-        """Shapes (n, ...) at the coordinates xi (...)."""
+        """Values of the linear shapes, 1 at their own knot, (n, ...), at coordinates xi (...), m;
+        zero outside the knots.
+        """
         x = np.asarray(xi, dtype=float)
         cell = np.clip(np.searchsorted(self.knots, x, side="right") - 1, 0, self.knots.size - 2)
         share = (x - self.knots[cell]) / (self.knots[cell + 1] - self.knots[cell])
@@ -66,7 +68,9 @@ class PressureShapes:
         return readonly(xi), readonly(weights), readonly(self.values(xi))
 
     def quadrature(self, breaks: ArrayLike = ()) -> tuple[Array, Array]:
-        """Gauss points and weights (q,), m, exact on each piece between knots and `breaks`."""
+        """Gauss points and weights (q,), m, six on each piece between knots and `breaks`, m; breaks
+        outside the knots are left out.
+        """
         low, high = self.knots[0], self.knots[-1]
         inner = np.asarray(breaks, dtype=float).ravel()
         ends = np.unique(np.concatenate([self.knots, inner[(inner > low) & (inner < high)]]))
@@ -109,7 +113,9 @@ class EllipticShapes:
         return self.values(xi) @ weights
 
     def values(self, xi: ArrayLike) -> Array:
-        """Shapes (n, ...) at the coordinates xi (...)."""
+        """Values of the shapes, linear functions times the ellipse, (n, ...), at coordinates xi
+        (...), m; zero outside the outer knots.
+        """
         x = np.asarray(xi, dtype=float)
         middle, half_width = self._ellipse
         ellipse = np.sqrt(np.maximum(1 - ((x - middle) / half_width) ** 2, 0.0))
@@ -126,7 +132,9 @@ class EllipticShapes:
         return readonly(xi), readonly(weights), readonly(self.values(xi))
 
     def quadrature(self, breaks: ArrayLike = ()) -> tuple[Array, Array]:
-        """Points and weights (q,), m, of Gauss quadrature in the angle of the ellipse."""
+        """Points and weights (q,), m, of Gauss quadrature in the angle of the ellipse, six on each
+        piece between knots and `breaks`, m.
+        """
         middle, half_width = self._ellipse
         share = (np.concatenate([self.knots, np.ravel(breaks)]) - middle) / half_width
         turned = np.arcsin(np.clip(share, -1.0, 1.0))

@@ -50,9 +50,10 @@ def _elastic(field: str, modulus: float, poisson: float) -> None:
 
 
 def pin_compliance(count: int, pin: SolidBar) -> Array:
-    """Inward radial displacement of a pin of radius 1 per pressure cos(n phi), (count,), 1/Pa.
+    """Inward radial displacement of a pin of radius 1 over its pressure cos(n phi), n = 0 to count
+    - 1, (count,), 1/Pa.
 
-    The first harmonic is 0: its radial displacement is a rigid translation.
+    The first harmonic, n = 1, is 0: its radial displacement is a rigid translation.
 
     References
     ----------
@@ -65,7 +66,9 @@ def pin_compliance(count: int, pin: SolidBar) -> Array:
 
 
 def bush_compliance(count: int, bush: Bush) -> Array:
-    """Outward radial displacement of a hole of radius 1 per pressure cos(n phi), (count,), 1/Pa."""
+    """Outward radial displacement of a hole of radius 1 over its pressure cos(n phi), n = 0 to
+    count - 1, (count,), 1/Pa; 0 for n = 1, a rigid translation.
+    """
     shear, kappa = _constants(bush)
     n = np.arange(2.0, count)
     if bush.wall is None:
@@ -78,7 +81,15 @@ def bush_compliance(count: int, bush: Bush) -> Array:
 
 
 def _bonded(n: Array, outer: float, kappa: float) -> Array:
-    """2 mu times radial displacement (n,) of the hole at unit pressure, `outer` radius clamped."""
+    """Outward radial displacement of the hole of a bush under a unit pressure cos(n phi), times
+    twice the shear modulus, (m,), by Michell's solution; the outer surface is clamped.
+
+    Parameters
+    ----------
+    n : array (m,)   harmonics, >= 2
+    outer : float    outer radius over that of the hole
+    kappa : float    Kolosov's constant, 3 - 4 nu
+    """
     # Terms that grow with the radius are scaled to 1 at the outer radius, others at the hole.
     grow, decay = outer ** (-n), outer ** (-n)
     zero = np.zeros_like(n)

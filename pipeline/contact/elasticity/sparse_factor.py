@@ -36,7 +36,9 @@ def back_end() -> str:
 
 
 def factorised(matrix: scipy.sparse.sparray) -> Callable[[Array], Array]:
-    """Solver of a factorised matrix for right-hand sides (n, k)."""
+    """Solver of a sparse symmetric positive definite matrix (n, n), factorised once, for right-hand
+    sides (n, k).
+    """
     chosen = back_end()
     if chosen == "cholmod":
         return _by_cholmod(scipy.sparse.csc_array(matrix))
@@ -154,7 +156,15 @@ class Condensed:
 
 
 def _elimination_order(matrix: scipy.sparse.sparray, pairs: Index, last: Index) -> Index:
-    """Elimination order (n,): minimum degree on the nodes, the chosen unknowns last."""
+    """Elimination order (n,) of the unknowns: minimum degree on the nodes, the chosen unknowns
+    last.
+
+    Parameters
+    ----------
+    matrix : sparse (n, n)   symmetric
+    pairs : array (2, m)     x and y unknowns of each node with two
+    last : array (k,)        the chosen unknowns
+    """
     size = matrix.shape[0]
     chosen = np.zeros(size, dtype=bool)
     chosen[last] = True

@@ -49,7 +49,8 @@ def _relative(points: ArrayLike, origin: Array) -> Array:
 
 
 def knots_of(mesh: BodyMesh, boundary: str, frame: ContactFrame, reach: float) -> Array:
-    """Pressure knots (k,) of a surface within `reach` of the contact, along the tangent, m.
+    """Pressure knots (k,), m along the tangent, ascending, of a surface within `reach`, m, of the
+    contact point.
 
     Knots are all nodes of the surface, ends and middles of facets. With exact integrals the
     pressure is stable, and results vary four times less with the position of the mesh than with
@@ -76,7 +77,8 @@ def normal_loads(
     frame: ContactFrame,
     shapes: PressureShapes | EllipticShapes,
 ) -> Array:
-    """Nodal forces (2, nodes, n) of each pressure shape along the normal of the frame, m.
+    """Nodal forces (2, nodes, n), m, along the normal of the frame, under each pressure shape of
+    unit pressure on a boundary of a mesh.
 
     The transpose integrates a displacement times each shape.
 
@@ -115,8 +117,13 @@ def normal_loads(
 
 
 def _local_coordinate(xi_nodes: Array, xi: Array) -> Array:
-    """Coordinate s in [0, 1] on quadratic facets at xi along the tangent, m, by Newton's method;
-    xi_nodes: of both ends and the middle, m.
+    """Coordinate s in [0, 1] on quadratic facets at xi (q,) along the tangent, m, by Newton's
+    method.
+
+    Parameters
+    ----------
+    xi_nodes : array (3, q)   first end, last end and middle of the facet of each point, m along the
+        tangent
     """
     first, last, middle = xi_nodes
     s = (xi - first) / (last - first)

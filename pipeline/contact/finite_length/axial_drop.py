@@ -83,7 +83,13 @@ class CircularCrown:
             raise InputError("crown.radius", self.radius, "> 0 m")
 
     def drop(self, y: Array) -> Array:
-        """Drop (...), m, of the arc."""
+        """Drop (...), m, of the arc at axial coordinates y (...), m, from its middle.
+
+        Raises
+        ------
+        InputError
+            If a coordinate is beyond the radius.
+        """
         if not np.abs(y).max() < self.radius:
             radius = units.shown(self.radius, "mm")
             raise InputError("crown.radius", radius, "> half the length of the contact")
@@ -163,7 +169,13 @@ class TabulatedCrown:
         return cls(rows["y_mm"] * units.factor("mm"), rows["drop_um"] * units.factor("um"))
 
     def drop(self, y: Array) -> Array:
-        """Drop (...), m, interpolated."""
+        """Drop (...), m, at axial coordinates y (...), m, interpolated linearly.
+
+        Raises
+        ------
+        InputError
+            If a coordinate is beyond the table.
+        """
         if not self.is_stated(y).all():
             end = units.shown(float(self.y[-1]), "mm")
             raise InputError("crown.y", end, "at least half the length of contact")
@@ -171,7 +183,9 @@ class TabulatedCrown:
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether the drop is alike on both sides."""
+        """Whether the drop is alike on both sides of y = 0, as far as the table has both; to 1e-9
+        of its greatest drop.
+        """
         mirrored = np.interp(-self.y, self.y, self.table)
         within = np.abs(self.y) <= min(-self.y[0], self.y[-1])
         scale = 1e-9 * float(np.abs(self.table).max())
@@ -241,12 +255,16 @@ BodyCrown = CircularCrown | LogarithmicCrown | TabulatedCrown
 
 
 def crown_of(shape: AxialCrown, place: CrownPlace, drops: TabulatedCrown | None) -> BodyCrown:
-    """Crown as a case states it; `drops`: the one of its table.
+    """Crown of a body as a case states it, laid out for the contact of `place`.
+
+    Parameters
+    ----------
+    drops : TabulatedCrown or None   table of the crown's file, of kind "table" alone
 
     Raises
     ------
     InputError
-        If it does not fit the contact, by the key within the crown.
+        If it does not fit the contact; it names the key within the crown.
     """
     length = shape.length or place.length
     if shape.kind == "circular" and shape.radius is not None:
@@ -279,15 +297,17 @@ class SummedCrown:
     side: int = 1
 
     def drop(self, y: Array) -> Array:
-        """Drop (...), m, of all crowns."""
+        """Drop (...), m, of all crowns together at axial coordinates y (...), m, from the middle of
+        the contact.
+        """
         total = np.zeros_like(y)
         for crown, middle in self.crowns:
             total = total + (self._beside(crown, middle, y) if middle else crown.drop(y))
         return np.asarray(total)
 
     def _beside(self, crown: Crown, middle: float, y: Array) -> Array:
-        """Drop (...), m, at y of a crown with its middle at `middle`, m, less its value and slope
-        at y = 0; that of one side, `side`, counts on both.
+        """Drop (...), m, at y (...), m, of a crown with its middle at `middle`, m, less its value
+        and slope at y = 0; the drop on the side `side` of y = 0 counts on both.
         """
         before, level, after = crown.drop(np.array([-_SLOPE_STEP, 0.0, _SLOPE_STEP]) - middle)
         slope = (after - before) / (2.0 * _SLOPE_STEP)
@@ -333,9 +353,8 @@ class FinitePair:
         return bool(np.allclose(drop, other, rtol=1e-9, atol=1e-9 * np.abs(drop).max()))
 
     def gap(self, x: Array, y: Array) -> Array:
-        """Distance (...), m, of the undeformed surfaces at x and y (...), m; circles as parabolas.
-
-        The parabola of the circles is that of Hertz.
+        """Distance (...), m, of the undeformed surfaces at x across and y along the line (...), m:
+        parabola of the relative curvature, as Hertz, and drops of crown and ends.
         """
         apart = 0.5 * self.curvature * x**2 + self.crown.drop(y)
         for body in self.bodies:

@@ -49,7 +49,9 @@ class BlockField:
 
 
 def block_field(body: FiniteBody, contact: LengthContact) -> BlockField:
-    """Fields of a block, its base held, under the pressure of the first contact."""
+    """Fields of a block, its base held, under the pressure of a contact, the first of `contact`, by
+    quadratic bricks.
+    """
     grid, material = block_grid(contact.cells, body), body.material
     pressure = contact.pressure[0]
     middle = len(pressure) // 2
@@ -76,8 +78,13 @@ def block_field(body: FiniteBody, contact: LengthContact) -> BlockField:
 
 
 def _displacement(grid: BrickGrid, poisson: float, pressure: Array) -> Array:
-    """Displacement times Young's modulus (2, i, j, k, 3), m Pa, of the symmetric and antisymmetric
-    part, read from the disk cache or computed; see `brick_body.displacement`.
+    """Displacement times Young's modulus (2, i, j, k, 3), m Pa, under the symmetric and the
+    antisymmetric part of a pressure, read from the disk cache or computed; see
+    `brick_body.displacement`.
+
+    Parameters
+    ----------
+    pressure : array (2, along, across)   Pa, on the cells: symmetric and antisymmetric in y
     """
     inputs = (tuple(grid.x), tuple(grid.y), tuple(grid.z), grid.cells, poisson, pressure.tobytes())
 
@@ -88,7 +95,9 @@ def _displacement(grid: BrickGrid, poisson: float, pressure: Array) -> Array:
 
 
 def _hexahedra(sizes: list[int]) -> NDArray[np.int64]:
-    """Corners (m, 8) of the bricks of a lattice of points, in the order of VTK."""
+    """Numbers of the corners (m, 8) of the bricks of a lattice of points, in the order of VTK;
+    `sizes`: numbers of points along x, y and z, which runs fastest.
+    """
     numbers = np.arange(np.prod(sizes)).reshape(sizes)
     low, high = slice(None, -1), slice(1, None)
     corners = [(low, low), (high, low), (high, high), (low, high)]
@@ -100,10 +109,17 @@ def _hexahedra(sizes: list[int]) -> NDArray[np.int64]:
 def _corner_stress(
     axes: tuple[Array, Array, Array], lattice: Array, lame: float, shear: float
 ) -> Array:
-    """Stress (nx, ny, nz, 6), Pa, at the corners of the elements, the mean of theirs.
+    """Stress XX, YY, ZZ, XY, YZ, XZ (nx, ny, nz, 6), Pa, at the corners of the elements: mean of
+    all elements at a corner.
 
-    Within an element it is that of the eight points of reduced integration, extrapolated: there
-    the stress of these elements is most exact (Barlow, Int. J. Numer. Meth. Eng. 10 (1976) 243).
+    Within an element it is that of the eight points of reduced integration, extrapolated: there the
+    stress of these elements is most exact (Barlow, Int. J. Numer. Meth. Eng. 10 (1976) 243).
+
+    Parameters
+    ----------
+    axes : three arrays (nx,), (ny,), (nz,)             element edges, m
+    lattice : array (2 nx - 1, 2 ny - 1, 2 nz - 1, 3)   displacement at half edges, m
+    lame, shear : float                                 first Lame parameter and shear modulus, Pa
     """
     near, far = 0.5 - 0.5 / np.sqrt(3.0), 0.5 + 0.5 / np.sqrt(3.0)
     corners = np.array(list(product((0, 1), repeat=3)))

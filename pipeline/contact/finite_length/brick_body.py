@@ -70,7 +70,9 @@ class QuarterCompliance:
         freeze(self, symmetric=self.symmetric, antisymmetric=self.antisymmetric)
 
     def both_sides(self, across: int) -> Array:
-        """Compliance (2n, 2n) of the cells of y < 0 and y > 0, y ascending, `across` cells in x."""
+        """Compliance (2n, 2n), m3, of the cells of both halves y < 0 and y > 0, from those of one:
+        y ascending, x running first, with `across` cells in x.
+        """
         count = len(self.symmetric)
         same = 0.5 * (self.symmetric + self.antisymmetric)
         other = 0.5 * (self.symmetric - self.antisymmetric)
@@ -116,9 +118,11 @@ def condensed(grid: BrickGrid, poisson: float, *, free_ends: bool = True) -> Qua
 
 
 def displacement(grid: BrickGrid, poisson: float, pressure: Array) -> Array:
-    """Displacement times Young's modulus (2, i, j, k, 3), m Pa, of a block with free ends.
+    """Displacement times Young's modulus (2, i, j, k, 3), m Pa, of a block with free ends, its base
+    held.
 
-    On the lattice of half edges along x, y and z, NaN where it has no node; z into the block.
+    On the lattice of half edges along x, y and z, NaN where it has no node; z into the block. First
+    the field under the pressures symmetric in y, then that under the antisymmetric ones.
 
     Parameters
     ----------
@@ -218,8 +222,14 @@ class _Elimination:
         return self.section.facet_loads(float(self._steps[slab])) if slab < self._along else None
 
     def without_outer_plane(self, slab: int, loads: _Loads | None, columns: Index) -> _Gone:
-        """Eliminate the outer plane of a slab, with the nodes behind it, under loads in some
-        columns of the right side; what is left acts on the inner plane.
+        """Eliminate the outer plane of a slab, of larger y, with the nodes between its planes; what
+        is left acts on the inner plane.
+
+        Parameters
+        ----------
+        slab : int               number of the element along y, from the middle
+        loads : _Loads or None   on the facets of the slab
+        columns : array of int   columns of the right-hand sides in which the loads count
         """
         outer, cross, inner, middle = self._stiffness.condensed(float(self._steps[slab]))
         ahead, half, kept = np.zeros_like(self._right), None, self._kept
@@ -282,8 +292,12 @@ class _Section:
         self.supported_between = self._supported(refined_x[is_between], refined_z[is_between])
 
     def _supported(self, place_x: Index, place_z: Index) -> Index:
-        """Unknowns, three per node, that are neither held by the base nor by the symmetry of x;
-        places of the nodes in half edges.
+        """Numbers of the unknowns, three per node, that are neither held by the base nor by the
+        symmetry of x.
+
+        Parameters
+        ----------
+        place_x, place_z : array of int (nodes,)   places of the nodes, in half edges
         """
         free = np.ones((place_x.size, 3), dtype=bool)
         free[place_z == 2 * (self.z.size - 1)] = False
@@ -313,7 +327,9 @@ class _Section:
         lattice[numbers >= 0] = values.reshape(-1, 3)[numbers[numbers >= 0]]
 
     def facet_loads(self, thickness: float) -> _Loads:
-        """Loads of the facets of a slab of a thickness, m, along z: into the block."""
+        """Nodal forces of unit pressures, along z into the block, on the facets of a slab; its
+        thickness along y, m.
+        """
         across = self.grid.cells[0]
         widths = np.diff(self.x)[:across]
         plane = np.zeros((3 * self.planar, across))
@@ -416,9 +432,8 @@ def _reference() -> _Reference:
 
 
 def shape_slopes(points: Array) -> tuple[Index, Array]:
-    """Node positions (20, 3) of a brick in half edges, and slopes of its shape functions.
-
-    Slopes (n, 3, 20) along the axes of the unit cube at points (n, 3) of it.
+    """Node positions (20, 3) of a brick in half edges, and slopes (n, 3, 20) of its shape functions
+    along the axes of the unit cube, at points (n, 3) of it.
     """
     from skfem import Basis, ElementHexS2, MeshHex
 
@@ -434,7 +449,14 @@ def shape_slopes(points: Array) -> tuple[Index, Array]:
 def _element_stiffness(
     width: Array, depth: Array, lame: float, shear: float
 ) -> tuple[Array, Array, Array]:
-    """Stiffness of bricks (elements, 60, 60) by powers 1, 0 and -1 of their size along y."""
+    """Stiffness of bricks in three parts (elements, 60, 60), those in proportion to the powers 1, 0
+    and -1 of their size along y.
+
+    Parameters
+    ----------
+    width, depth : array (elements,)   sizes along x and z, m
+    lame, shear : float                first Lame parameter and shear modulus, over Young's modulus
+    """
     slopes = _reference().slopes
     count = width.size
     parts = np.zeros((3, count, _BRICK_NODES, 3, _BRICK_NODES, 3))

@@ -46,9 +46,15 @@ class ContactSpan(NamedTuple):
 
 
 def contact_cells(pair: FinitePair, force: float, moment: float, sizes: CellSizes) -> PressureCells:
-    """Pressure cells on the part of the line in contact under a force, N, and a moment, N m.
+    """Pressure cells on the part of the line in contact under a force, N, and a moment about y = 0,
+    N m.
 
     The number of cells along the line does not depend on the load; their edges follow the contact.
+    Without a crown they are on the whole line.
+
+    Parameters
+    ----------
+    sizes : CellSizes   of the cells across and along the line
     """
     half_width, _ = hertz.line_contact(
         force / pair.contact_length, 1.0 / pair.curvature, pair.contact_modulus
@@ -102,8 +108,15 @@ def contact_span(pair: FinitePair, force: float, moment: float) -> ContactSpan:
 def _span(
     whole: float, curvature: float, modulus: float, crown: Crown, force: float, moment: float
 ) -> ContactSpan:
-    """Extent of the contact on a crowned line of length `whole`, m, under force and moment, by
-    springs along the line; cached for bodies that share these inputs.
+    """Extent of the contact on a crowned line under a force and a moment, by springs along the
+    line; cached for bodies that share these inputs.
+
+    Parameters
+    ----------
+    whole : float           length of the line, m
+    curvature : float       1/R1 + 1/R2 across the line, 1/m
+    modulus : float         E*, Pa
+    force, moment : float   N; N m about y = 0
     """
     low, high, length = -0.5 * whole, 0.5 * whole, whole
     pressed = np.empty(0)
@@ -127,9 +140,22 @@ def _span(
 
 
 def _pressed(y: Array, drop: Array, total: float, lever: float) -> Array:
-    """Indentations (k,), m, of a given sum and centre, m, on strips at y, m, of a drop, m.
+    """Indentations (k,), m, >= 0, of equal strips under a rigid motion, with a given sum and
+    centre.
 
     Newton on the convex energy, damped where a step does not lower it.
+
+    Parameters
+    ----------
+    y : array (k,)      middles of the strips along the line, m
+    drop : array (k,)   of the crown, m
+    total : float       sum of the indentations, m
+    lever : float       centre of the indentations along y, m: moment over force
+
+    Raises
+    ------
+    ContactError
+        If the iteration does not converge.
     """
     scale = float(np.abs(y).max())
     basis = np.column_stack([np.ones_like(y), y / scale])

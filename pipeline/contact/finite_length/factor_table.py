@@ -124,9 +124,15 @@ class FactorTable:
     def axial_pressure(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
     ) -> tuple[Array, Array]:
-        """Edges (count, m + 1), m, along y and pressures (count, m) over plane-strain p0, x = 0.
+        """Pressure along the middle of the line, x = 0, of `count` contacts: edges of the cells
+        along y (count, m + 1), m, and pressures on them (count, m) over plane-strain p0.
 
         Inputs as those of `factors`.
+
+        Raises
+        ------
+        InputError
+            If an input is out of bounds, or a moment over force and length above `GREATEST_MOMENT`.
         """
         kappa, load, couple = _checked_inputs(curvature, force, moment)
         share = couple / (load * self.pair.contact_length)
@@ -149,9 +155,13 @@ class FactorTable:
         return interpolated[:, :ends], np.maximum(interpolated[:, ends:], 0.0)
 
     def of_one(self, curvature: float, force: float) -> tuple[Array, Array]:
-        """Cell edges, m, along y and pressures over plane-strain p0 of one contact without a
-        moment, as `axial_pressure`; solved directly where results depend on the load, as the table
-        would need 16 nodes.
+        """Cell edges (m + 1,), m, along y and pressures (m,) over plane-strain p0 of one contact
+        without a moment; solved directly where results depend on the load, as the table would need
+        16 nodes.
+
+        Parameters
+        ----------
+        curvature, force : float   1/R1 + 1/R2, 1/m; N
         """
         if not self._depends_on_load:
             return self.axial_pressure(curvature, force)
@@ -174,10 +184,16 @@ class FactorTable:
         most: ArrayLike = np.inf,
         compliance: ArrayLike = 0.0,
     ) -> Array:
-        """Moment (count,), N m, of contacts tilted by `tilt` (count,), rad, as half-spaces.
+        """Moment (count,), N m, about y = 0 that tilted contacts exert, as half-spaces.
 
-        In amount at most `most` (count,), N m, and `GREATEST_MOMENT` of force and length. One of
-        both supports yields by `compliance` (count,), rad/(N m), times the moment.
+        Its amount is limited to `most` and to `GREATEST_MOMENT` of force and length.
+
+        Parameters
+        ----------
+        curvature, force : array (count,)   1/R1 + 1/R2, 1/m; N
+        tilt : array (count,)               of the bodies to each other without load, rad
+        most : array (count,)               greatest moment, N m
+        compliance : array (count,)         by which the supports yield to the moment, rad/(N m)
         """
         kappa, load, angle = _checked_inputs(curvature, force, tilt)
         length = load * self.pair.contact_length
@@ -226,8 +242,11 @@ class FactorTable:
         """Interpolation in the table: its nodes about the contacts, and for each contact the
         numbers of its nodes and their weights, both (contacts, k).
 
-        count (contacts,): number of moments that each contact needs at its nodes; missing ones are
-        computed.
+        Parameters
+        ----------
+        curvature, force : array (contacts,)   1/R1 + 1/R2, 1/m; N
+        count : array (contacts,)              number of moments that each contact needs at its
+            nodes; missing ones are computed
         """
         if self._depends_on_load:
             line_load = force / self.pair.contact_length
@@ -276,12 +295,16 @@ class FactorTable:
         self._nodes[key] = computed if known is None else known.joined(computed)
 
     def _computed(self, key: tuple[int, int], moments: Array) -> _Node:
-        """Node of the table, read from the disk cache or computed, for moments over force and
-        length (k,), >= 0.
+        """Node of the table for moments (k,), >= 0, over force and length; read from the disk cache
+        or computed.
 
-        key : power of the ratio of neighbouring nodes of the half-width or, where results depend on
-        the load, of the curvature; then that of the line load. Cell edges, m, pressure along the
-        line over p0, and tilt over half-width squared times curvature, times the length of contact.
+        It holds cell edges, m, pressure along the line over p0, and tilt times length of contact
+        over curvature times squared half-width.
+
+        Parameters
+        ----------
+        key : two ints   power of the ratio of neighbouring nodes of the half-width or, where
+            results depend on the load, of the curvature; then that of the line load
         """
         line_load = _LOAD * _LOAD_RATIO ** key[1]
         per_curvature = 4.0 * line_load / (np.pi * self.pair.contact_modulus)
@@ -323,7 +346,8 @@ class FactorTable:
 
 def _solved(pair: FinitePair, force: float, couples: Array) -> tuple[Array, Array, Array]:
     """Cell edges along y (count, m + 1), m, pressures on the centre line (count, m), Pa, and tilts
-    (count,), rad, at moments `couples` (count,), N m; on wider cells where the contact leaves them.
+    (count,), rad, of a pair under a force, N, and moments `couples` (count,), N m; on wider cells
+    where the contact leaves them.
     """
     sizes = cycle_sizes(pair)
     for _ in range(_WIDENINGS):
@@ -337,8 +361,12 @@ def _solved(pair: FinitePair, force: float, couples: Array) -> tuple[Array, Arra
 def _solved_on(
     pair: FinitePair, force: float, couples: Array, sizes: CellSizes
 ) -> tuple[Array, Array, Array]:
-    """As `_solved`, on cells of these sizes alone; WideContactError where the contact
-    leaves them.
+    """Results of `_solved` on cells of the sizes `sizes`.
+
+    Raises
+    ------
+    WideContactError
+        If the contact leaves the cells.
     """
     line, turn, ends, begin = [], [], [], None
     # Each contact begins with the cells that touch under the moment before.
@@ -385,8 +413,15 @@ class _Node:
 
     @classmethod
     def of(cls, ladder: _Ladder, moments: Array, edges: Array, line: Array, turn: Array) -> _Node:
-        """Node with a row per moment of the ladder, filled with edges, m, pressures and turns
-        computed at `moments`; those below zero by symmetry where left out.
+        """Node with a row per signed moment of a ladder, filled where computed; rows of negative
+        moments by symmetry where `moments` has none.
+
+        Parameters
+        ----------
+        moments : array (p,)       over force and length, of the computed rows
+        edges : array (p, m + 1)   of the cells along y, m
+        line : array (p, m)        pressures over p0
+        turn : array (p,)          scaled tilts, see the class
         """
         ends, lines = (np.zeros((ladder.signed.size, each.shape[1])) for each in (edges, line))
         turns = np.full(ladder.signed.size, np.nan)
@@ -419,6 +454,11 @@ def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
     ----------
     pair : FinitePair     its curvature and the depths of its bodies are not used
     mean_length : float   of the means at the ends, m
+
+    Raises
+    ------
+    InputError
+        If the mean length is not within the length of contact.
     """
     if not 0 < mean_length <= pair.contact_length:
         shown, whole = (units.shown(each, "mm") for each in (mean_length, pair.contact_length))
@@ -444,7 +484,13 @@ def _lines(nodes: tuple[_Node, ...]) -> Array:
 
 
 def _checked_inputs(*values: ArrayLike) -> list[Array]:
-    """Curvature, force and a third input broadcast to arrays (count,); InputError out of bounds."""
+    """Curvatures, 1/m, forces, N, and a third input (moment or tilt), broadcast to arrays (count,).
+
+    Raises
+    ------
+    InputError
+        If a curvature or force is not positive, or a value not finite.
+    """
     arrays = [np.atleast_1d(np.asarray(value, dtype=float)) for value in values]
     kappa, load, third = np.broadcast_arrays(*arrays)
     for name, each in (("curvature", kappa), ("force", load)):
@@ -472,7 +518,9 @@ def _moment_stencil(signed: Array, share: Array) -> tuple[Index, Array]:
 
 
 def _lagrange(place: Array, nodes: Array) -> Array:
-    """Weights (count, 4) of the cubic through four nodes (count, 4)."""
+    """Weights (count, 4), by Lagrange, of the values at four nodes (count, 4) in the cubic through
+    them at a place (count,).
+    """
     weights = np.ones(nodes.shape)
     for i in range(4):
         for j in _others(i):
@@ -485,9 +533,14 @@ def _others(i: int) -> Iterable[int]:
 
 
 def _weighted(columns: Index, weights: Array, table: Array) -> Array:
-    """Rows (count, m): weighted sums of the rows `columns` (count, k) of a table (rows, m).
+    """Weighted sums (count, m) of rows of a table (rows, m).
 
     Of many rows as a sparse matrix, whose import takes a tenth of a second; the sums are the same.
+
+    Parameters
+    ----------
+    columns : array (count, k)   numbers of the rows of each sum
+    weights : array (count, k)   of these rows
     """
     count, size = columns.shape
     if count > _FEW_ROWS:

@@ -191,7 +191,7 @@ def begun_ends(
     ----------
     loads : sequence      the most critical first
     mean_length : float   of the means at the ends, m
-    elements : float      per half-width, at least
+    elements : float      cells per half-width of contact, at least
 
     Raises
     ------
@@ -218,8 +218,17 @@ def _key(grid: BrickGrid, poisson: float) -> object:
 
 
 def _meshes(loads: Sequence[LengthLoad], ratio: float) -> tuple[_Mesh, ...]:
-    """Mesh of each load; loads whose half-widths differ by less than a ratio share that of the
-    widest. ratio : of the cell sizes to those of `SIZES`, 1 or more.
+    """Mesh of each load; loads whose half-widths differ by less than the ratio `ONE_MESH` share
+    that of the widest.
+
+    Parameters
+    ----------
+    ratio : float   cell sizes over those of `SIZES`, 1 or more
+
+    Raises
+    ------
+    ContactError
+        If a contact is wider than the widest cells.
     """
     half_widths = [plane_strain(load.pair, load.force)[0] for load in loads]
     groups: list[float] = []
@@ -235,7 +244,18 @@ def _meshes(loads: Sequence[LengthLoad], ratio: float) -> tuple[_Mesh, ...]:
 
 
 def _sizes(loads: Sequence[LengthLoad], half_width: float, ratio: float) -> CellSizes:
-    """Cells coarser by a ratio, as wide as the contacts of the loads by half-spaces need."""
+    """Cell sizes `ratio` times those of `SIZES`, whose window covers the contacts of all loads by
+    half-spaces.
+
+    Parameters
+    ----------
+    half_width : float   of the cells, m
+
+    Raises
+    ------
+    ContactError
+        If a contact is wider than the widest window.
+    """
     sizes = SIZES if ratio == 1 else SIZES.coarser(ratio)
     least = max(least_window(load.pair, load.force, load.moment) for load in loads)
     for window in _WINDOWS:

@@ -62,9 +62,13 @@ class LengthContact:
         return np.asarray(self.centre_line.max(axis=1))
 
     def end_means(self, length: float) -> Array:
-        """Mean pressures (count, 2), Pa, over the last `length`, m, of contact at y < 0 and y > 0.
+        """Mean pressures (count, 2), Pa, over the last `length`, m, of contact at y < 0 and y > 0,
+        on the centre line, from the last cell in contact.
 
-        Of the centre line, from the last cell in contact.
+        Raises
+        ------
+        ContactError
+            If a contact is shorter than this length.
         """
         means, lengths = means_at_ends(self.edges, self.centre_line, length)
         if not (lengths >= length).all():
@@ -73,9 +77,12 @@ class LengthContact:
 
 
 def at_middle(edges: Array, line: Array) -> Array:
-    """Pressures (count,) at y = 0, interpolated between cell middles.
+    """Pressures (count,) at y = 0, linear between the middles of cells.
 
-    edges (count, m + 1), m; line (count, m).
+    Parameters
+    ----------
+    edges : array (count, m + 1)   of the cells along y, m
+    line : array (count, m)        pressures on the cells
     """
     middles, rows = 0.5 * (edges[:, 1:] + edges[:, :-1]), np.arange(len(line))
     left = np.clip((middles <= 0.0).sum(axis=1) - 1, 0, line.shape[1] - 2)
@@ -85,10 +92,15 @@ def at_middle(edges: Array, line: Array) -> Array:
 
 
 def means_at_ends(edges: Array, line: Array, length: float) -> tuple[Array, Array]:
-    """Mean pressures (count, 2), Pa, over the last `length`, m, of each end; contact length, m.
+    """Mean pressures over the last `length`, m, of each end of contact, at small and large y,
+    (count, 2), in the unit of `line`, and the length of contact (count,), m.
 
-    At small and large y, of pressures (count, m) on cells of edges (count, m + 1), m, from the last
-    cell in contact; of the whole contact where that is shorter.
+    From the last cell in contact; of the whole contact where that is shorter.
+
+    Parameters
+    ----------
+    edges : array (count, m + 1)   of the cells along y, m
+    line : array (count, m)        pressures on the cells
     """
     touching, rows, cells = line > 0, np.arange(len(line)), line.shape[1]
     first = touching.argmax(axis=1)
@@ -127,9 +139,11 @@ def signed_pressure(
 
     Parameters
     ----------
-    flat : float        length of the line without ends, m
-    length : float      of the mean at a corner, m
-    has_corner : bool   whether the pressure grows without bound at the ends
+    edges : array (count, m + 1)   of the cells along y, m
+    line : array (count, m)        pressures on the cells, in any unit
+    flat : float                   length of the line without ends, m
+    length : float                 of the mean at a corner, m
+    has_corner : bool              whether the pressure grows without bound at the ends
     """
     means, _ = means_at_ends(edges, line, length)
     most = line.argmax(axis=1)

@@ -267,10 +267,15 @@ def _result(
     unknowns: int,
     halves: Sequence[_SignedLine] = (),
 ) -> TierResult:
-    """Result of one method from contacts on three meshes, coarse to fine, with error bars; the
-    contact is that on mesh `place`.
+    """Result of one method, with error bars, from a contact on three meshes.
 
-    halves : sequence   by half-spaces on the same cells and on finer ones that fit the contact
+    Parameters
+    ----------
+    lines : three _SignedLine           coarse to fine
+    place : int                         number of the mesh whose contact is kept
+    unknowns : int                      of the finest mesh
+    halves : four _SignedLine or none   by half-spaces on the same cells, and on finer ones that fit
+        the contact
     """
     values = np.array([each.values for each in lines]).T
     beside = np.array([each.values for each in halves]).T if halves else [None] * len(values)
@@ -293,6 +298,12 @@ def _converged(values: Array, halves: Array | None) -> Convergence:
     Cells wider than the contact needs scatter it, and err alike in both tiers: of values without an
     observed order, the error of the half-spaces on the same cells is taken off before the bar is
     taken, and added to it; the lesser bar holds.
+
+    Parameters
+    ----------
+    values : array (3,)           coarse to fine
+    halves : array (4,) or None   by half-spaces on the same cells, and on finer ones that fit the
+        contact
     """
     plain = converged(values.tolist(), _MESH_RATIO)
     if halves is None or plain.order is not None:
@@ -334,8 +345,11 @@ def block_compliance(
     bodies: tuple[FiniteBody, FiniteBody],
     condensed: Condensed | None = None,
 ) -> tuple[Array, int]:
-    """Compliance (n, n), m3/Pa, of the cells on both blocks; number of unknowns.
+    """Compliance (n, n), m3/Pa, of the cells on both blocks together, and the number of unknowns of
+    both.
 
+    Parameters
+    ----------
     condensed : callable   compliance of a block; default: `condensed_block`
     """
     solve = condensed or condensed_block

@@ -110,7 +110,9 @@ def pressure_cells(pair: FinitePair, half_width: float, sizes: CellSizes) -> Pre
 
 
 def edges_across(half_width: float, sizes: CellSizes) -> Array:
-    """Edges (k + 1,), m, of the cells across a contact of a half-width, m."""
+    """Edges (k + 1,), m, from 0 of the cells across a contact of a Hertz half-width, m: equal up to
+    4/3 of it, then growing until they reach the window.
+    """
     h = half_width / sizes.per_half_width
     x = [h * k for k in range(int(np.ceil(_UNIFORM * sizes.per_half_width)) + 1)]
     while x[-1] < sizes.window * half_width:
@@ -119,7 +121,7 @@ def edges_across(half_width: float, sizes: CellSizes) -> Array:
 
 
 def edges_along(pair: FinitePair, half_width: float, sizes: CellSizes) -> Array:
-    """Edges (m + 1,), m, of the cells along a contact of a half-width, m, symmetric about 0.
+    """Edges (m + 1,), m, of the cells along a contact of a Hertz half-width, m, symmetric about 0.
 
     At a rounded end the cells resolve the width of its peak, which depends on the half-width; their
     number does not.
@@ -160,7 +162,14 @@ def _end_radius(pair: FinitePair) -> float | None:
 
 
 def _rounded(flat: float, radius: float, peak: float, sizes: CellSizes) -> Array:
-    """Edges, m, of the half y >= 0 of a flat of half-length `flat` with a rounded end."""
+    """Edges, m, of the cells of the half y >= 0 of a line with a rounded end.
+
+    Parameters
+    ----------
+    flat : float     half the length of the flat part, m
+    radius : float   of the rounded end, m
+    peak : float     width of the pressure peak at the end, m
+    """
     per_peak = sizes.per_half_width * _PER_PEAK
     resolved = int(np.ceil(_PEAK_RESOLVED * per_peak))
     beyond = np.arange(resolved + 1) / per_peak
@@ -177,7 +186,9 @@ def _rounded(flat: float, radius: float, peak: float, sizes: CellSizes) -> Array
 
 
 def _steps(length: float, first: float, count: int, largest: float) -> Array:
-    """Steps (count,) of a length, m, growing from the first one by one ratio up to the largest."""
+    """Steps (count,), m, which sum up to `length`, m, and grow from about `first`, m, by a constant
+    ratio up to `largest`, m.
+    """
 
     def steps(ratio: float) -> Array:
         return np.asarray(np.minimum(first * ratio ** np.arange(count), largest))
@@ -191,7 +202,9 @@ def _steps(length: float, first: float, count: int, largest: float) -> Array:
 
 
 def graded(length: float, first: float, growth: float, largest: float) -> Array:
-    """Edges (k,) from 0 to `length`, steps growing geometrically from `first` to `largest`."""
+    """Edges (k,) from 0 to `length`, m; steps grow from `first`, m, by the ratio `growth` to at
+    most about `largest`, m. One step where the first is longer than the length.
+    """
     if first >= length:
         return np.array([0.0, length])
     step, ends = first, [0.0, first]

@@ -84,11 +84,14 @@ def subsurface_stress(
 def stress_below(
     cells: PressureCells, pressure: Array, poisson: float, y: Array, depth: Array
 ) -> Array:
-    """Stress (n, d, 3, 3), Pa, at x = 0, y (n,) and depths (d,), m, > 0; tension positive.
+    """Stress (n, d, 3, 3), Pa, of a half-space at x = 0, places y (n,) along the line, m, and
+    depths (d,), m, > 0; tension positive.
 
     Parameters
     ----------
+    cells : PressureCells     of the contact
     pressure : array (m, k)   Pa, on the cells of x > 0; that of x < 0 is the same
+    poisson : float           nu of the body
 
     References
     ----------
@@ -111,9 +114,14 @@ def stress_below(
 
 
 def _corner_stress(x: Array, y: Array, z: Array, poisson: float) -> dict[tuple[int, int], Array]:
-    """Stress times 2 pi of a unit pressure on the quarter plane from a corner, up to constants.
+    """Stress components, by pairs of axes, times 2 pi, of a half-space under a unit pressure on the
+    quarter plane from a corner, up to constants that cancel over the corners of a patch.
 
-    x, y and z of the point from the corner. Of the potentials f of 1/r and g of ln(r + z).
+    By the potentials f of 1/r and g of ln(r + z).
+
+    Parameters
+    ----------
+    x, y, z : array   point from the corner, m; z is the depth
     """
     r = np.sqrt(x**2 + y**2 + z**2)
     soft = 1.0 - 2.0 * poisson
