@@ -50,7 +50,7 @@ from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.guide_reactions import GuidePair
-from camwright.pipeline.follower.rocker import Rocker
+from camwright.pipeline.follower.rocker import Rocker, RockerOutput
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.torque.period import FOUR_STROKE, Period
@@ -337,6 +337,14 @@ class Case(Displayed, Section):
         if self.rocker is None:
             return None
         return self.rocker.linkage(None if arm is None else arm.length)
+
+    @property
+    def output(self) -> RockerOutput | None:
+        """Mass and force that a rocker moves; None without either."""
+        arm, rocker = self.follower.arm, self.rocker
+        if rocker is None or not (rocker.output_mass or rocker.output_force):
+            return None
+        return RockerOutput(rocker, None if arm is None else arm.length)
 
     @property
     def facing(self) -> FollowerKind:

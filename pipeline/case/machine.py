@@ -59,6 +59,7 @@ from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.pivot import Pivot
 from camwright.pipeline.follower.pivot_forces import FRICTION, ArmPivot
+from camwright.pipeline.follower.rocker import RockerOutput
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem
@@ -164,6 +165,7 @@ class Machine(Displayed):
     torque: Torque | None = field(default=None, compare=False)
     arm: FollowerArm | None = None
     pivot: Pivot | None = None
+    output: RockerOutput | None = None
 
     @property
     def crank_speed(self) -> float:
@@ -421,7 +423,7 @@ class Machine(Displayed):
         if self.arm is None or self.pivot is None:
             return None
         prime, offset = self.cam.prime_radius, self.follower.offset
-        pivot = self.pivot.about(self.arm, self.mass, prime, offset)
+        pivot = self.pivot.about(self.arm, self.mass, prime, offset, self.output)
         return replace(pivot, friction=self.friction.nominal[0], spring=self.spring.shape)
 
     @property
@@ -438,6 +440,7 @@ class Machine(Displayed):
             gravity_along_axis=self.gravity_along_axis,
             external=self.external,
             viscous_damping=self.viscous_damping,
+            output=self.output,
             face_friction=self.follower.side_friction,
             pivot=self.arm_pivot,
             held=self.cam.pulls,
@@ -539,6 +542,7 @@ def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machin
         torque=torque,
         arm=follower.arm,
         pivot=follower.pivot,
+        output=case.output,
     )
 
 

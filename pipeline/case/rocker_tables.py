@@ -15,7 +15,8 @@ def with_rocker(tables: Tables) -> Tables:
     """Tables of a case, with what the output of a rocker carries reduced to the follower.
 
     The mass is added to that of the follower by the square of the ratio at zero lift, a force to
-    its external force by the ratio, which is constant.
+    its external force by the ratio, which is constant; what the rocker itself moves stands in its
+    table from then on.
 
     Raises
     ------
@@ -27,6 +28,9 @@ def with_rocker(tables: Tables) -> Tables:
     if not isinstance(stated, dict) or not isinstance(follower, dict) or not carried & set(stated):
         return tables
     table = {key: value for key, value in stated.items() if key not in carried}
+    for key in carried & set(stated):
+        if f"output_{key}" in stated:
+            raise InputError(f"rocker.output_{key}", str(stated[key]), f"left out with {key}")
     rocker = read_part(Rocker, table, Rocker.table)
     arm = follower.get("arm")
     if isinstance(arm, dict) and "length" not in arm:
@@ -41,6 +45,7 @@ def with_rocker(tables: Tables) -> Tables:
             raise InputError("rocker.mass", str(stated[_MASS]), "> 0 kg")
         total = units.parse(follower["mass"], "kg", "follower.mass") + mass * ratio**2
         reduced["mass"] = units.format(total, "g")
+        table["output_mass"] = stated[_MASS]
     if _FORCE in stated:
         force = units.parse(stated[_FORCE], "N", "rocker.force")
         if rocker.ratio is None or "external_force_file" in follower:
@@ -50,4 +55,5 @@ def with_rocker(tables: Tables) -> Tables:
             follower.get("external_force", "0 N"), "N", "follower.external_force"
         )
         reduced["external_force"] = units.format(own_force + force * ratio, "N")
+        table["output_force"] = stated[_FORCE]
     return tables | {"rocker": table, "follower": reduced}

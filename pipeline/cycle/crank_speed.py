@@ -81,9 +81,12 @@ class SpeedStudy:
         return 2.0 * self.added_inertia / outer_radius**2, self.added_inertia / outer_radius**2
 
 
-def follower_inertia(pitch: FollowerPath, mass: float, gear_ratio: float, count: int) -> Array:
+def follower_inertia(
+    pitch: FollowerPath, system: FollowerSystem, gear_ratio: float, count: int
+) -> Array:
     """Inertia of the follower at the crank, m (ds/dtheta_crank)^2, kg m2, at equal cam angles."""
-    slope = pitch.lift(uniform_turn(count), 1) / gear_ratio
+    theta = uniform_turn(count)
+    mass, slope = system.moving_mass(pitch.lift(theta)), pitch.lift(theta, 1) / gear_ratio
     return np.asarray(mass * slope**2)
 
 
@@ -153,7 +156,7 @@ def _motion_with_cam(
     span: float,
 ) -> CrankMotion:
     """Motion of the crank with the cam; `mounted` includes the rotating parts of the mechanism."""
-    follower = follower_inertia(pitch, system.mass, gear_ratio, torque.size)
+    follower = follower_inertia(pitch, system, gear_ratio, torque.size)
     return crank_motion(
         torque,
         mounted.plus(0.0, follower),

@@ -63,7 +63,10 @@ def _sense(numbers: Numbers) -> float:
 
 def pivot_of(numbers: Numbers) -> ArmPivot | None:
     """Pivot of the arm of a follower; None without one."""
-    return None if numbers.get(FRICTION) is None else arm_pivot(numbers.get, _sense(numbers))
+    if numbers.get(FRICTION) is None:
+        return None
+    output = None if numbers.case is None else numbers.case.output
+    return arm_pivot(numbers.get, _sense(numbers), output)
 
 
 def _on_an_arm(jet: Jet, numbers: Numbers) -> Motion:
@@ -409,8 +412,12 @@ class LoadedCam:
 
     def inertia_at(self, speed: Value) -> Array:
         """Inertia force at a cam speed, rad/s, N."""
-        force: Array = self.numbers["follower.mass"] * speed**2 * self.jet.lift_d2
-        return force
+        lift, acceleration = self.jet.lift, speed**2 * self.jet.lift_d2
+        force: Array = self.numbers["follower.mass"] * acceleration
+        output = None if self.numbers.case is None else self.numbers.case.output
+        if output is None:
+            return force
+        return np.asarray(force + output.inertia(lift, speed * self.jet.slope, acceleration))
 
     @cached_property
     def inertia(self) -> Array:

@@ -343,7 +343,8 @@ class _Follower:
             external, slope = system.external.at(theta), loads.lift_slope
             resting = pivot.pull(loads.spring_force, external, loads.travel, 0.0, 0.0)
             still = np.zeros(theta.size)
-            thrown = replace(pivot, gravity_angle=None).pull(
+            unloaded = pivot.output and pivot.output.unloaded
+            thrown = replace(pivot, gravity_angle=None, output=unloaded).pull(
                 still, still, loads.travel, slope, loads.acceleration
             )
             share = np.ones(theta.size)
@@ -357,7 +358,7 @@ class _Follower:
             closing=loads.closing_force,
             beside=loads.applied_force + _bent(machine.spring, loads.lift),
             # The coils have their own inertia in the surge.
-            inertia=loads.inertia_force * machine.mass_without_spring / machine.mass,
+            inertia=loads.inertia_force - machine.spring_mass * loads.acceleration,
             viscous=loads.viscous_force,
             gain=1.0 / (share * loads.lever * np.cos(loads.pressure_angle)),
             arm=(loads.lift_slope + slide.torque) / share,

@@ -15,6 +15,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
 from camwright.pipeline.follower.pivot_forces import ArmPivot, Pressed, Pull
+from camwright.pipeline.follower.rocker import RockerOutput
 from camwright.pipeline.follower.spring import Spring
 
 REST = 1e-9  # slope over stroke, 1/rad, up to which a spline is in a dwell
@@ -109,6 +110,7 @@ class FollowerSystem:
                                     point supports
     pivot : ArmPivot                of an arm; None: of none, or of one without friction and weight
     held : bool                     the cam pulls the follower, too, as by the walls of a groove
+    output : RockerOutput           that a rocker moves, its mass at zero lift part of `mass`; None
 
     Raises
     ------
@@ -129,6 +131,7 @@ class FollowerSystem:
     rubbing: Rubbing | None = None
     pivot: ArmPivot | None = None
     held: bool = False
+    output: RockerOutput | None = None
 
     def __post_init__(self) -> None:
         """Refuse a spacing that is not positive, and a negative mass, overhang, friction or
@@ -151,6 +154,18 @@ class FollowerSystem:
     def spring_force(self, lift: Array) -> Array:
         """Force (..., n) of the spring at a lift, N."""
         return self.spring.force(lift)
+
+    def inertia_force(self, lift: Array, velocity: Array, acceleration: Array) -> Array:
+        """Force (..., n), N, of the moving mass, and of an output by its ratio at the lift."""
+        force = self.mass * acceleration
+        if self.output is None:
+            return np.asarray(force)
+        return np.asarray(force + self.output.inertia(lift, velocity, acceleration))
+
+    def moving_mass(self, lift: Array) -> Array:
+        """Mass (...), kg, by the kinetic energy at a lift."""
+        beyond = 0.0 if self.output is None else self.output.moving_mass(lift)
+        return np.asarray(self.mass + beyond + 0.0 * lift)
 
     def applied_force(self, theta: Array, lift: Array) -> Array:
         """Weight and external force at cam angles and lifts (n,), N, positive towards the cam."""
@@ -493,7 +508,7 @@ def follower_loads(
     rate, speed = finite("cam_acceleration", cam_acceleration), _forward(cam_speed, theta)
     acceleration = lift_d2 * speed**2 + slope * rate
     spring_force, applied_force = system.spring_force(lift), system.applied_force(theta, lift)
-    inertia_force = system.mass * acceleration
+    inertia_force = system.inertia_force(lift, slope * speed, acceleration)
     viscous_force = system.viscous_damping * slope * speed
     demand = spring_force + applied_force + inertia_force + viscous_force
 
@@ -576,7 +591,7 @@ def torque_on_cam(
     def torque(speed: Array, cam_acceleration: Array) -> Array:
         """Torque on the cam (n,), N m, at its speeds, rad/s, and accelerations, rad/s2, (n,)."""
         acceleration = lift_d2 * speed**2 + slope * cam_acceleration
-        inertia_force = system.mass * acceleration
+        inertia_force = system.inertia_force(still.lift, slope * speed, acceleration)
         viscous_force = system.viscous_damping * slope * speed
         demand = closing + inertia_force + viscous_force
         share = share_left(slope * wall_of(demand, held=system.held), jam, lock)

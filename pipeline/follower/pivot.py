@@ -22,6 +22,7 @@ from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.guide_reactions import Guide, require_about
 from camwright.pipeline.follower.pivot_forces import ArmPivot
+from camwright.pipeline.follower.rocker import RockerOutput
 from camwright.pipeline.follower.roller_parts import DynamicRating, StaticRating
 
 _Friction = Annotated[float | None, In(at_least=0, at_most=1)]
@@ -74,7 +75,7 @@ class Pivot(Part):
     defaults: ClassVar[Mapping[str, str]] = {
         "bush": "the pivot has a needle bearing",
         "needle_bearing": "the pivot has a bush",
-        "swinging_mass": "`follower.mass`",
+        "swinging_mass": "`follower.mass` without the share of `rocker.output_mass`",
         "mass_distance": "`follower.arm.length`",
         "gravity_angle": "the weight is left out",
         "load_distance": "`follower.arm.length`",
@@ -137,22 +138,29 @@ class Pivot(Part):
         return self if mass is None else replace(self, swinging_mass=factor * mass)
 
     def about(
-        self, arm: FollowerArm, mass: float, prime_radius: float, offset: float | None
+        self,
+        arm: FollowerArm,
+        mass: float,
+        prime_radius: float,
+        offset: float | None,
+        output: RockerOutput | None = None,
     ) -> ArmPivot:
         """Pivot of an arm with a mass at its reference point, kg, at a prime radius, m; offset of a
-        flat face from the pivot, m, None of a round surface.
+        flat face from the pivot, m, None of a round surface; output: of its second arm.
         """
+        swinging = mass - (0.0 if output is None else output.reduced_mass)
         return ArmPivot(
             length=arm.length,
             sense=arm.sense,
             start=arm.start(prime_radius, offset),
             radius=0.5 * self.bearing.diameter,
             friction=self.bearing.friction,
-            mass=mass if self.swinging_mass is None else self.swinging_mass,
+            mass=swinging if self.swinging_mass is None else self.swinging_mass,
             mass_distance=arm.length if self.mass_distance is None else self.mass_distance,
             mass_angle=self.mass_angle,
             gravity_angle=self.gravity_angle,
             load_distance=arm.length if self.load_distance is None else self.load_distance,
             load_angle=self.load_angle,
             load_moment=self.load_moment,
+            output=output,
         )

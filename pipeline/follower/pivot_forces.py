@@ -16,6 +16,7 @@ from camwright.geometry.arm_path import Arm
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base.external_force import STANDARD_GRAVITY
+from camwright.pipeline.follower.rocker import RockerOutput
 from camwright.pipeline.follower.spring_kinds import SpringShape
 
 _QUARTER_TURN = 0.5 * np.pi
@@ -95,6 +96,7 @@ class ArmPivot:
                             square to the line from the pivot
     load_moment : float     external moment towards the cam, N m
     spring : SpringShape    with its resultant on the arm; None: at the reference point
+    output : RockerOutput   of a second arm on the pivot, which it pushes; None: none
 
     References
     ----------
@@ -114,6 +116,12 @@ class ArmPivot:
     load_angle: Value
     load_moment: Value
     spring: SpringShape | None = None
+    output: RockerOutput | None = None
+
+    @property
+    def _of_output(self) -> float:
+        """Share of the output in the external force, N."""
+        return 0.0 if self.output is None else self.output.reduced_force
 
     def applied(self, external: Value, travel: Value) -> Array:
         """Weight, external force and moment reduced to the reference point, N, towards the cam.
@@ -123,7 +131,9 @@ class ArmPivot:
         external : array (..., n)   external force, N
         travel : array (..., n)     direction of travel, rad
         """
-        moment = external * self.load_distance + self.load_moment
+        beyond = self._of_output
+        moment = (external - beyond) * self.load_distance + self.load_moment
+        moment = moment + beyond * self.length
         if self.gravity_angle is not None:
             lever = self.mass_distance * np.cos(self._from_vertical(travel, self.mass_angle))
             moment = moment + self.mass * STANDARD_GRAVITY * lever
@@ -152,7 +162,10 @@ class ArmPivot:
         """
         cos, sin = np.cos(self.load_angle), self.sense * np.sin(self.load_angle)
         pulled = self.of_spring(spring, travel)
-        along, across = pulled.along - external * cos, pulled.across - external * sin
+        pushed = self.of_output(travel, velocity, acceleration)
+        acting = external - self._of_output
+        along = pulled.along + pushed.along - acting * cos
+        across = pulled.across + pushed.across - acting * sin
         cos, sin = np.cos(self.mass_angle), np.sin(self.mass_angle)
         radius = self.mass * self.mass_distance
         turning, outward = acceleration / self.length, (velocity / self.length) ** 2
@@ -168,9 +181,24 @@ class ArmPivot:
         """Resultant of the spring of a force at the reference point, N, on the arm."""
         if self.spring is None:
             return Pull(np.asarray(-force), np.asarray(0.0 * force))
-        lift = self.length * (_QUARTER_TURN - self.start - self.sense * travel)
-        along_arm, outwards = self.spring.pull_on_arm(np.asarray(force), np.asarray(lift))
+        lift = np.asarray(self._lift(travel))
+        along_arm, outwards = self.spring.pull_on_arm(np.asarray(force), lift)
         return Pull(outwards, -self.sense * along_arm)
+
+    def of_output(self, travel: Value, velocity: Value, acceleration: Value) -> Pull:
+        """Push of the output on the second arm, inertia included; velocity and acceleration of the
+        reference point, m/s and m/s2.
+        """
+        if self.output is None:
+            return Pull(np.asarray(0.0 * travel), np.asarray(0.0 * travel))
+        lift = np.asarray(self._lift(travel))
+        force = np.asarray(self.output.push(lift, velocity, acceleration))
+        along_arm, outwards = self.output.rocker.push_on_arm(force, lift, self.output.arm_length)
+        return Pull(outwards, -self.sense * along_arm)
+
+    def _lift(self, travel: Value) -> Value:
+        """Lift at a direction of travel, rad, m."""
+        return self.length * (_QUARTER_TURN - self.start - self.sense * travel)
 
     def balanced(
         self, required: Array, pressed: Pressed, pull: Pull, direction: Value
@@ -233,12 +261,15 @@ FRICTION = "follower.pivot.friction"
 """Key of the friction of the pivot, of a bush or a needle bearing."""
 
 
-def arm_pivot(at: Callable[[str], Value | None], sense: float) -> ArmPivot | None:
+def arm_pivot(
+    at: Callable[[str], Value | None], sense: float, output: RockerOutput | None = None
+) -> ArmPivot | None:
     """Pivot from numbers by dotted key; None without its friction: it is not described.
 
     Parameters
     ----------
-    at : callable   dotted key -> number, SI; None where the case omits it
+    at : callable            dotted key -> number, SI; None where the case omits it
+    output : RockerOutput    of a second arm; None: none
     """
 
     def stated(key: str, default: Value) -> Value:
@@ -252,6 +283,7 @@ def arm_pivot(at: Callable[[str], Value | None], sense: float) -> ArmPivot | Non
     if friction is None:
         return None
     length = number("follower.arm.length")
+    beyond = 0.0 if output is None else output.reduced_mass
     arm = Arm(number("follower.arm.centre_distance"), length, sense)
     return ArmPivot(
         length=length,
@@ -259,11 +291,12 @@ def arm_pivot(at: Callable[[str], Value | None], sense: float) -> ArmPivot | Non
         start=arm.start_angle(number("cam.prime_radius"), at("follower.face.offset")),
         radius=0.5 * number("follower.pivot.diameter"),
         friction=friction,
-        mass=stated("follower.pivot.swinging_mass", number("follower.mass")),
+        mass=stated("follower.pivot.swinging_mass", number("follower.mass") - beyond),
         mass_distance=stated("follower.pivot.mass_distance", length),
         mass_angle=stated("follower.pivot.mass_angle", 0.0),
         gravity_angle=at("follower.pivot.gravity_angle"),
         load_distance=stated("follower.pivot.load_distance", length),
         load_angle=stated("follower.pivot.load_angle", 0.0),
         load_moment=stated("follower.pivot.load_moment", 0.0),
+        output=output,
     )

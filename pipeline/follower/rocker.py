@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import pi
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.rocker_lift import RockerArm, RockerLinkage
 from camwright.pipeline.base.quantities import (
     In,
     Known,
     Length,
+    Mass,
     Part,
     Positive,
     Resolved,
@@ -44,14 +46,14 @@ class Rocker(Part):
     resolved: ClassVar[Mapping[str, Resolved]] = {
         "mass": Resolved(
             "> 0 kg",
-            "mass that the output moves; `follower.mass` contains it from then on, by the square of"
-            " the ratio at zero lift",
+            "mass that the output moves, as `output_mass`; `follower.mass` contains it from then"
+            " on, by the square of the ratio at zero lift",
             Known("weighed, or drawing", "90 g"),
         ),
         "force": Resolved(
             "N",
-            "constant force on the output against its lift, of a rocker of constant `ratio`;"
-            " `follower.external_force` contains it from then on",
+            "constant force on the output against its lift, of a rocker of constant `ratio`, as"
+            " `output_force`; `follower.external_force` contains it from then on",
             Known("process, or measured", "200 N"),
         ),
     }
@@ -60,6 +62,8 @@ class Rocker(Part):
         "length": "by `ratio`, constant",
         "input_length": "that of `[follower.arm]`",
         "ramp": "without lash there is none",
+        "output_mass": "`mass`, else none",
+        "output_force": "`force`, else none",
     }
 
     ratio: Annotated[Positive | None, Known("drawing", 1.5)] = None
@@ -86,6 +90,13 @@ class Rocker(Part):
     ] = None
     """cam angle over which the cam takes up the lash, and gives it back, of a stated lift of the
     output"""
+    output_mass: Annotated[Mass | None, Known("weighed, or drawing", "90 g")] = None
+    """mass of the output that `follower.mass` contains by the square of the ratio at zero lift"""
+    output_force: Annotated[
+        float | None, In("N", at_least=-1e7, at_most=1e7), Known("process, or measured", "200 N")
+    ] = None
+    """constant force on the output against its lift that `follower.external_force` contains by the
+    constant `ratio`"""
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
@@ -104,6 +115,9 @@ class Rocker(Part):
                     )
         if self.lash > 0.0 and self.lift == "output" and self.ramp is None:
             raise InputError("rocker.ramp", "missing", "given with a lash and a lift of the output")
+        if self.output_force is not None and self.ratio is None:
+            stated = shown(self.output_force, "N")
+            raise InputError("rocker.output_force", stated, "left out without a constant ratio")
 
     def linkage(self, arm_length: float | None) -> RockerLinkage:
         """Its two arms with the lash; arm_length: of the follower's arm, m; None: of a stem.
@@ -139,7 +153,7 @@ class Rocker(Part):
         lash = f", lash {shown(self.lash, 'mm')}" if self.lash else ""
         return (f"rocker of {arm}, {side}{lash}",)
 
-    def push_on_arm(self, force: Array, lift: Array, arm_length: float) -> Array:
+    def push_on_arm(self, force: Array, lift: Array, arm_length: float | None) -> Array:
         """Force of the output on the rocker (2, ...), N, along the arm from the pivot and outwards.
 
         The second arm is in line with the first at zero swing and at any other, on its side.
@@ -150,13 +164,83 @@ class Rocker(Part):
         lift : array (...)    of the follower, m
         """
         side = -1.0 if self.side == "opposite" else 1.0
-        raised = self.angle + lift / arm_length if self.length is not None else 0.0 * lift
+        raised = 0.0 * lift
+        if self.length is not None and arm_length is not None:
+            raised = self.angle + lift / arm_length
         return np.asarray(-side * force * np.stack([np.sin(raised), np.cos(raised)]))
 
     @property
     def ramp_angle(self) -> float:
         """Cam angle over which the lash is taken up, rad."""
         return pi if self.ramp is None else self.ramp
+
+
+@dataclass(frozen=True)
+class RockerOutput:
+    """Mass and constant force that a rocker moves, as forces on the follower and its second arm.
+
+    The output follows its arm without lash. arm_length: of the arm of the follower, m; None: a stem
+    moves the rocker.
+
+    References
+    ----------
+    Kinetic energy m_o v'^2 s'^2/2 of an output v(s) on a lift s; Lagrange's equation.
+    """
+
+    rocker: Rocker
+    arm_length: float | None
+
+    @cached_property
+    def linkage(self) -> RockerLinkage:
+        """Arms of the rocker."""
+        return self.rocker.linkage(self.arm_length)
+
+    @cached_property
+    def ratio(self) -> float:
+        """Travel of the output per lift of the follower at zero lift."""
+        return float(self.linkage.ratio(0.0))
+
+    @property
+    def mass(self) -> float:
+        """Mass of the output, kg."""
+        return self.rocker.output_mass or 0.0
+
+    @property
+    def force(self) -> float:
+        """Constant force on the output against its lift, N."""
+        return self.rocker.output_force or 0.0
+
+    @property
+    def reduced_mass(self) -> float:
+        """Its share of the mass of the follower, kg."""
+        return self.mass * self.ratio**2
+
+    @property
+    def reduced_force(self) -> float:
+        """Its share of the external force on the follower, N."""
+        return self.force * self.ratio
+
+    @property
+    def unloaded(self) -> RockerOutput:
+        """Without the constant force."""
+        return replace(self, rocker=replace(self.rocker, output_force=None))
+
+    def moving_mass(self, lift: Value) -> Value:
+        """Mass (...), kg, at the follower beyond that of zero lift, by the square of the ratio."""
+        return self.mass * (self.linkage.travel(lift)[1] ** 2 - self.ratio**2)
+
+    def inertia(self, lift: Value, velocity: Value, acceleration: Value) -> Value:
+        """Inertia force (...), N, on the follower beyond that of the mass at zero lift; m, m/s and
+        m/s2 of the follower.
+        """
+        _, ratio, change, _ = self.linkage.travel(lift)
+        turned = ratio * change * velocity**2
+        return self.mass * ((ratio**2 - self.ratio**2) * acceleration + turned)
+
+    def push(self, lift: Value, velocity: Value, acceleration: Value) -> Value:
+        """Force (...), N, of the output on the second arm against its lift, inertia included."""
+        _, ratio, change, _ = self.linkage.travel(lift)
+        return self.force + self.mass * (ratio * acceleration + change * velocity**2)
 
 
 UNIFORM = Rocker(ratio=1.0)

@@ -95,6 +95,11 @@ MODEL_LIMITS = (
         " pitch of the needles is not judged, nor is the load along the pin."
     ),
     ModelLimit(
+        "The output of a rocker follows its second arm without lash, and moves for the elastic"
+        " follower and in a flight with its mass at zero lift; its friction and weight are"
+        " those of `rocker.force`, and the strength of its second arm is not judged."
+    ),
+    ModelLimit(
         "A face does not turn about its stem; its block is held by the stem, or over its whole back"
         " by an arm."
     ),

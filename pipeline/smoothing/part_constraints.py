@@ -62,7 +62,7 @@ def _swept_force(at: ScenarioCam, limit: float) -> Array:
     fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
     push = at.closing + fix.swept_surge
-    push = push + (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.lift_d2
+    push = push + at.inertia_at(speed) - scenario.spring_mass * speed**2 * at.jet.lift_d2
     push = push + at.numbers["follower.viscous_damping"] * speed * at.jet.slope
     normal = push / at.share * at.motion.gain
     return where_applies(scenario.swept, 1.0 + limit - normal / at.least_spring)

@@ -127,7 +127,7 @@ def test_the_mechanism_acts_as_its_loads_say():
 
 def test_the_lifted_mass_turns_with_the_crank():
     pitch = pitch_of()
-    moved = follower_inertia(pitch, 0.175, 2.0, COUNT)
+    moved = follower_inertia(pitch, SYSTEM, 2.0, COUNT)
     np.testing.assert_allclose(moved, 0.175 * (0.012 * np.sin(THETA / 2.0) / 2.0) ** 2, atol=1e-12)
     still = mechanism_torque(pitch, SYSTEM, 2.0, COUNT)(np.zeros(COUNT), np.zeros(COUNT))
     assert still.min() < 0.0 < still.max()
