@@ -364,6 +364,16 @@ class Part:
         }
         return replace(self, **changed)  # type: ignore[type-var]
 
+    def of_many(self, values: Mapping[str, object]) -> Self:
+        """Parts of many designs at once: some fields by name as arrays (m, 1), SI.
+
+        The arrays are not compared with their bounds: a screening refuses designs before.
+        """
+        copy = object.__new__(type(self))
+        for each in fields(self):  # type: ignore[arg-type]
+            object.__setattr__(copy, each.name, values.get(each.name, getattr(self, each.name)))
+        return copy
+
     @property
     def lacking(self) -> tuple[str, ...]:
         """Names of the fields without a value; `defaults` lists those whose default counts."""

@@ -54,7 +54,7 @@ from camwright.pipeline.follower.follower_stiffness import (
     shaft_compliance,
     stem_compliance_along,
 )
-from camwright.pipeline.follower.follower_tilt import ArmTilt, FollowerTilt, StemTilt
+from camwright.pipeline.follower.follower_tilt import FollowerTilt, StemTilt, arm_tilt
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.pivot import Pivot
@@ -244,10 +244,9 @@ class Machine(Displayed):
         """Compliance and clearance by which the follower tilts across the plane of the cam: of the
         stem in its guides, or of an arm.
         """
-        arm, bar, bush = self.arm, self.arm_bar, None if self.pivot is None else self.pivot.bush
-        if arm is None or (bar is None and bush is None):
-            return StemTilt(self.stem, self.guides)
-        return ArmTilt(0.0 if bar is None else bar.couple_compliance, arm.plane_offset, bush)
+        bush = None if self.pivot is None else self.pivot.bush
+        of_arm = None if self.arm is None else arm_tilt(self.arm, self.arm_bar, bush)
+        return StemTilt(self.stem, self.guides) if of_arm is None else of_arm
 
     @property
     def contact_width(self) -> float:
@@ -393,7 +392,7 @@ class Machine(Displayed):
         """Compliance of the bush of the pivot at the end of the arm, m/N; None without one."""
         if self.arm is None or self.pivot is None or self.pivot.bush is None:
             return None
-        bush, share = self.pivot.bush, self.arm.pivot_share(self.arm.held(self.spring.link))
+        bush, share = self.pivot.bush, self.arm.pivot_share(float(self.arm.held(self.spring.link)))
         return share**2 / (bush.foundation_modulus * bush.length)
 
     @property

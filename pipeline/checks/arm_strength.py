@@ -71,8 +71,10 @@ def _arm_of(numbers: Numbers) -> FollowerArm:
 
 def bar_of(numbers: Numbers) -> ArmBar | None:
     """Arm of a case as a bar; None where it is not described."""
-    case = numbers.known_case
-    return ArmBar.of(case.follower.arm, case.facing, case.follower.mass, case.spring.link)
+    case, link = numbers.known_case, numbers.known_case.spring.link
+    arm = None if case.follower.arm is None else numbers.of_part(case.follower.arm)
+    link = None if link is None else numbers.of_part(link)
+    return ArmBar.of(arm, case.facing, numbers["follower.mass"], link)
 
 
 def arm_forces(cam: LoadedCam) -> ArmForces:
@@ -94,7 +96,7 @@ def _nan_first(each: tuple[Extreme, ArmSection]) -> float:
 
 
 def _governing(section: ArmSection) -> str:
-    distance = shown(section.distance, "mm")
+    distance = shown(float(section.distance), "mm")
     return f"governing section: {section.name}, {distance} from the pivot"
 
 
@@ -243,11 +245,11 @@ def _with_section(demand: Demand, solution: Solution) -> Demand:
             "F": abs(float(loads.along[k])),
             "L": abs(float(loads.sideways[k])),
             "T": float(loads.twisting[k]),
-            "W": section.modulus,
-            "A": section.area,
-            "W_y": section.side_modulus,
-            "W_t": section.torsion_modulus,
-            "K_f": section.notch,
+            "W": float(section.modulus),
+            "A": float(section.area),
+            "W_y": float(section.side_modulus),
+            "W_t": float(section.torsion_modulus),
+            "K_f": float(section.notch),
             "R_p": bar.material.core_yield,
         },
     )

@@ -967,8 +967,10 @@ torsion_fatigue = _torsion_check(
 
 def _rising(numbers: Numbers) -> Allowed:
     """Lift up to which the force of a linked spring rises; None without a link."""
-    spring = numbers.known_case.spring
-    return Allowed(None if spring.linked is None or spring.shape is None else spring.shape.reach)
+    shape = numbers.spring_shape
+    return Allowed(
+        None if numbers.known_case.spring.linked is None or shape is None else shape.reach
+    )
 
 
 def _of_link(demand: Demand, solution: Solution) -> Demand:
@@ -976,7 +978,7 @@ def _of_link(demand: Demand, solution: Solution) -> Demand:
     link = solution.machine.spring.linked
     if link is None:
         return demand
-    note = f"dead centre of the spring at a lift of {shown(link.most_lift, 'mm', 4)}"
+    note = f"dead centre of the spring at a lift of {shown(float(link.most_lift), 'mm', 4)}"
     return replace(demand, figures=(link.source,), note=note)
 
 

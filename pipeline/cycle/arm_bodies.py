@@ -80,7 +80,10 @@ def swung_bodies(numbers: Numbers) -> dict[str, SwungBody]:
         bodies[FORK] = SwungBody(bar._replace(inner=end), 0.5 * cheek, (0.0, deep))
     depth, width, hub = (numbers.get(key) for key in (ARM_DEPTH, ARM_WIDTH, "follower.arm.hub"))
     if depth is not None:
-        beside = stated.plane_offset, (np.nan if width is None else 0.5 * width + aside)
+        beside = (
+            numbers["follower.arm.plane_offset"],
+            (np.nan if width is None else 0.5 * width + aside),
+        )
         bodies["arm"] = SwungBody(bar._replace(outer=end), 0.5 * depth, beside)
         diameter = depth if hub is None else hub
         bodies[HUB] = SwungBody(bar._replace(outer=0.0), 0.5 * diameter, beside)

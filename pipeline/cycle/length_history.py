@@ -400,9 +400,13 @@ def moment_compliance(machine: Machine, overhang: Value, spacing: Value) -> Valu
     overhang : float or array   of the stem at maximum lift, m: where it is shortest
     spacing : float or array    of the guides, m
     """
+    return machine.tilting.compliance(overhang, spacing) + camshaft_compliance(machine)
+
+
+def camshaft_compliance(machine: Machine) -> float:
+    """Slope of the camshaft at the cam per moment there, rad/(N m); 0 of a rigid one."""
     shaft = slope_of(machine.camshaft)
-    yields = 0.0 if shaft is None else shaft.couple
-    return machine.tilting.compliance(overhang, spacing) + yields
+    return 0.0 if shaft is None else shaft.couple
 
 
 class TiltedPair(Protocol):

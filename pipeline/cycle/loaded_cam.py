@@ -216,8 +216,7 @@ class LoadedCam:
     @property
     def spring_shape(self) -> SpringShape | None:
         """Force rise of a nonlinear spring; None for a linear one."""
-        case = self.numbers.case
-        return None if case is None else case.spring.shape
+        return self.numbers.spring_shape
 
     @property
     def drag(self) -> Drag | None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
 from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import AnyLimit
@@ -19,6 +21,15 @@ from camwright.pipeline.contact.traction import ring_inertia
 from camwright.pipeline.follower.bearing_life import contamination_factor
 from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.pivot_forces import FRICTION
+from camwright.pipeline.follower.spring_kinds import SpringShape
+
+P = TypeVar("P", bound=Part)
+_OF_SHAPE = (
+    "follower.arm.length",
+    *(f"spring.link.{name}" for name in ("arm_radius", "arm_angle", "fixed_radius", "fixed_angle")),
+    *(f"spring.link.{name}" for name in ("rate", "preload")),
+)
+"""Keys by which springs on arms differ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +48,9 @@ class Numbers:
     _read: dict[str, Value | None] = field(default_factory=dict, repr=False)
     _figures: dict[object, tuple[tuple[Value | None, ...], tuple[Value, ...]]] = field(
         default_factory=dict, repr=False
+    )
+    _shapes: list[tuple[tuple[Value | None, ...], SpringShape]] = field(
+        default_factory=list, repr=False
     )
 
     def get(self, key: str) -> Value | None:
@@ -125,9 +139,36 @@ class Numbers:
         )
         return tuple(of_each.T[..., None])
 
+    def of_part(self, part: P, table: str = "") -> P:
+        """Part of a case with those of its numbers that differ from it; of many designs arrays.
+
+        table: dotted key of the part; "": its own.
+        """
+        named = {f"{table or part.table}.{each.name}": each.name for each in fields(part)}  # type: ignore[arg-type]
+        changed = {name: self.changed[key] for key, name in named.items() if key in self.changed}
+        return part.of_many(changed) if changed else part
+
+    @property
+    def spring_shape(self) -> SpringShape | None:
+        """Force rise of a nonlinear spring, of many designs by their links and arms; None for a
+        linear one.
+        """
+        shape = None if self.case is None else self.case.spring.shape
+        if shape is None or not any(key in self.changed for key in _OF_SHAPE):
+            return shape
+        values = tuple(self.get(key) for key in _OF_SHAPE)
+        cached = self._shapes
+        if not cached or any(a is not b for a, b in zip(cached[0][0], values, strict=True)):
+            table = self.of_part(shape.stated)
+            if "length" in table.labels:
+                table = table.of_many({"length": self["follower.arm.length"]})
+            cached[:] = [(values, shape.with_stated(table))]
+        return cached[0][1]
+
     def __or__(self, changed: Mapping[str, Value | None]) -> Numbers:
         """With other numbers; what is read from the case is read once."""
-        return Numbers({**self.changed, **changed}, self.case, self._read, self._figures)
+        stored = self._read, self._figures, self._shapes
+        return Numbers({**self.changed, **changed}, self.case, *stored)
 
 
 def _greatest_friction(guide: str, numbers: Numbers) -> Value:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import cos
 from typing import Annotated, ClassVar, Literal
 
+import numpy as np
+
 from camwright.geometry.arm_path import Arm, ArmContour, ArmPath
+from camwright.geometry.arrays import Value
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
@@ -109,11 +111,14 @@ class FollowerArm(Part):
         """Whether the section of the arm is stated, by one of its dimensions at least."""
         return self.width is not None or self.depth is not None
 
-    def held(self, link: SpringLink | None) -> float:
+    def held(self, link: SpringLink | None) -> Value:
         """Distance from the pivot at which the spring acts, along the arm, m."""
         if self.spring_distance is not None:
             return self.spring_distance
-        return 0.0 if link is None else max(link.arm_radius * cos(link.arm_angle), 0.0)
+        if link is None:
+            return 0.0
+        held: Value = np.maximum(link.arm_radius * np.cos(link.arm_angle), 0.0)
+        return held
 
     def pivot_share(self, held: float) -> float:
         """Force on the pivot per force across the end of the arm, held at a distance, m."""

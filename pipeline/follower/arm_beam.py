@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, distinct
+from camwright.geometry.arrays import Array, Value, distinct
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.follower.arm import FollowerArm
@@ -23,21 +23,23 @@ _ODD = np.arange(1.0, 80.0, 2.0)  # terms of the series of a twisted rectangle
 _EQUAL_AREA = 0.808  # diameter of a round section over the root of a rectangle's area
 
 
-def torsion_of_rectangle(width: float, depth: float) -> tuple[float, float]:
+def torsion_of_rectangle(width: Value, depth: Value) -> tuple[Value, Value]:
     """Torsion constant, m4, and section modulus of torsion, m3, of a rectangular bar with sides
-    `width` and `depth`, m, in any order.
+    `width` and `depth`, m, in any order; (...).
 
     References
     ----------
     Timoshenko and Goodier, Theory of Elasticity, sec. 109: series of the rectangular bar.
     """
-    short, long = min(width, depth), max(width, depth)
-    half = 0.5 * np.pi * _ODD * long / short
+    short, long = np.minimum(width, depth), np.maximum(width, depth)
+    half = 0.5 * np.pi * _ODD * np.asarray(long / short)[..., None]
     decay = np.exp(-half)  # cosh overflows on a thin strip
-    constant = 1.0 - 192.0 / np.pi**5 * short / long * np.sum(np.tanh(half) / _ODD**5)
-    greatest = 1.0 - 8.0 / np.pi**2 * np.sum(2.0 * decay / (1.0 + decay**2) / _ODD**2)
-    twist = float(long * short**3 / 3.0 * constant)
-    return twist, float(twist / (short * greatest))
+    over_sides = np.sum(np.tanh(half) / _ODD**5, axis=-1)
+    constant = 1.0 - 192.0 / np.pi**5 * short / long * over_sides
+    in_middle = np.sum(2.0 * decay / (1.0 + decay**2) / _ODD**2, axis=-1)
+    greatest = 1.0 - 8.0 / np.pi**2 * in_middle
+    twist = long * short**3 / 3.0 * constant
+    return twist, twist / (short * greatest)
 
 
 class SectionLoads(NamedTuple):
@@ -62,33 +64,33 @@ class ArmSection(NamedTuple):
     """
 
     name: str
-    distance: float
-    width: float
-    depth: float
-    notch: float
-    hole: float = 0.0
+    distance: Value
+    width: Value
+    depth: Value
+    notch: Value
+    hole: Value = 0.0
     cheeks: int = 0
     eye: bool = False
 
     @property
-    def area(self) -> float:
+    def area(self) -> Value:
         """m2."""
         return self.width * (self.depth - self.hole)
 
     @property
-    def modulus(self) -> float:
+    def modulus(self) -> Value:
         """Section modulus in the plane of the cam, m3."""
         return self.width * (self.depth**3 - self.hole**3) / (6.0 * self.depth)
 
     @property
-    def side_modulus(self) -> float:
+    def side_modulus(self) -> Value:
         """Section modulus across the plane of the cam, m3."""
         return self.area * self.width / 6.0
 
     @property
-    def torsion_modulus(self) -> float:
+    def torsion_modulus(self) -> Value:
         """m3; beside a hole of the two bars that it leaves."""
-        bars = 2 if self.hole else 1
+        bars = np.where(np.asarray(self.hole) > 0.0, 2.0, 1.0)
         return bars * torsion_of_rectangle(self.width, (self.depth - self.hole) / bars)[1]
 
     @property
@@ -155,6 +157,10 @@ class ArmForces(NamedTuple):
     couple: Array
 
 
+def _or(stated: Value | None, default: Value) -> Value:
+    return default if stated is None else stated
+
+
 @dataclass(frozen=True)
 class ArmBar:
     """Straight bar on a pivot, which the contact bends at its end.
@@ -169,20 +175,20 @@ class ArmBar:
     holds_pin : bool     of a roller
     """
 
-    length: float
-    width: float
-    depth: float
+    length: Value
+    width: Value
+    depth: Value
     material: Material
     arm: FollowerArm
-    held: float
-    end_share: float
+    held: Value
+    end_share: Value
     pin: Pin | None = None
     fork: Fork | None = None
     holds_pin: bool = True
 
     @classmethod
     def of(
-        cls, arm: FollowerArm | None, end: FollowerKind, mass: float, link: SpringLink | None
+        cls, arm: FollowerArm | None, end: FollowerKind, mass: Value, link: SpringLink | None
     ) -> ArmBar | None:
         """Bar of an arm of a follower with the roller or face `end`; None of a stem, and of an arm
         without section or material.
@@ -199,7 +205,7 @@ class ArmBar:
         pin, fork = end.parts.get("pin"), end.parts.get("fork")
         return cls(
             *(arm.length, arm.width, arm.depth, arm.material, arm, arm.held(link)),
-            min(masses / mass, 1.0),
+            np.minimum(masses / mass, 1.0),
             pin if isinstance(pin, Pin) else None,
             fork if isinstance(fork, Fork) else None,
             "pin" in end.parts,
@@ -208,11 +214,11 @@ class ArmBar:
     @property
     def pivot(self) -> tuple[ArmSection, ...]:
         """Sections at the pivot: through its bore, and where the arm leaves the hub."""
-        arm, notch = self.arm, self.arm.pivot_notch or np.nan
-        beside = ("beside the pivot", 0.5 * (arm.hub or 0.0), self.width, self.depth, notch)
+        arm, notch = self.arm, _or(self.arm.pivot_notch, np.nan)
+        beside = ("beside the pivot", 0.5 * _or(arm.hub, 0.0), self.width, self.depth, notch)
         if arm.bore is None:
             return (ArmSection(*beside),)
-        hub = arm.hub or self.depth
+        hub = _or(arm.hub, self.depth)
         through = ArmSection("through the bore of the pivot", 0.0, self.width, hub, notch, arm.bore)
         return through, ArmSection(*beside)
 
@@ -221,20 +227,26 @@ class ArmBar:
         """Sections at the roller: the eye of the pin, where the pin is described, and the cheeks or
         the arm where they leave the eye.
         """
-        notch, (reach, width, depth, cheeks) = self.arm.roller_notch or np.nan, self._end
+        notch, (reach, width, depth, cheeks) = _or(self.arm.roller_notch, np.nan), self._end
         left = (width, depth) if cheeks else (self.width, self.depth)
         beside = ArmSection("beside the roller", self.length - reach, *left, notch, cheeks=cheeks)
-        if self.pin is None or not self.pin.diameter < depth:
+        if self.pin is None or not np.any(self.pin.diameter < depth):
             return (beside,)
-        eye = self.length, width, depth, notch, self.pin.diameter, cheeks, True
-        return ArmSection("eye of the roller's pin", *eye), beside
+        # of many designs one without an eye has no stress there
+        has_eye = np.asarray(self.pin.diameter < depth)
+        hole = self.pin.diameter if has_eye.all() else has_eye * self.pin.diameter
+        notch = notch if has_eye.all() else has_eye * notch
+        eye = ArmSection(
+            "eye of the roller's pin", self.length, width, depth, notch, hole, cheeks, eye=True
+        )
+        return eye, beside
 
     @property
-    def _end(self) -> tuple[float, float, float, int]:
+    def _end(self) -> tuple[Value, Value, Value, int]:
         """Reach of the eye from the roller centre along the arm, m, width over all cheeks and depth
         of the eye, m, and number of cheeks; 0 cheeks where the arm itself is the eye.
         """
-        hub, pin, fork = self.arm.roller_hub or self.depth, self.pin, self.fork
+        hub, pin, fork = _or(self.arm.roller_hub, self.depth), self.pin, self.fork
         if pin is None or fork is None or fork.cheek_height is None or fork.cheek_length is None:
             return 0.5 * hub, self.width, hub, 0
         cheeks = fork.cheeks(pin)
@@ -245,16 +257,16 @@ class ArmBar:
 
         Its hubs are left out.
         """
-        reach = max(self.length - inset, 0.0)
+        reach = np.maximum(self.length - inset, 0.0)
         section = self.material.density * self.width * self.depth
-        return section * reach**3 / (3.0 * self.length**2)
+        return float(section * reach**3 / (3.0 * self.length**2))
 
     @property
     def sections(self) -> tuple[ArmSection, ...]:
         """Judged sections, at the pivot and at a roller."""
         return (*self.pivot, *(self.roller if self.holds_pin else ()))
 
-    def bending(self, distance: float, forces: ArmForces) -> Array:
+    def bending(self, distance: Value, forces: ArmForces) -> Array:
         """Bending moment (...), N m, of a section, in the plane of the cam, > 0 as the contact
         bends the arm.
 
@@ -263,13 +275,14 @@ class ArmBar:
 
         Parameters
         ----------
-        distance : float     of the section from the pivot, m
-        forces : ArmForces   (...), N
+        distance : float or array   of the section from the pivot, m
+        forces : ArmForces          (...), N
         """
         share = distance / self.length
         bar = 1.0 - 1.5 * share + 0.5 * share**3
         swung = self.end_share * (1.0 - share) + (1.0 - self.end_share) * bar
-        sprung = max(1.0 - distance / self.held, 0.0) if self.held else 0.0
+        acts = np.asarray(self.held) > 0.0
+        sprung = np.maximum(1.0 - distance / np.where(acts, self.held, 1.0), 0.0) * acts
         moment = forces.across - forces.pressed * share - forces.inertia * swung
         moment = moment - forces.closing * sprung
         return np.asarray(self.length * moment)
@@ -294,7 +307,7 @@ class ArmBar:
         offset = away + self._offset(section)
         return SectionLoads(bent, forces.along, forces.along * offset, forces.pressed * offset)
 
-    def _offset(self, section: ArmSection) -> float:
+    def _offset(self, section: ArmSection) -> Value:
         """Distance of the middle of a section from that of the roller, m."""
         if self.pin is None or self.fork is None or not section.cheeks:
             return self.arm.plane_offset
@@ -313,7 +326,8 @@ class ArmBar:
         """
         reach, width, depth, cheeks = self._end
         root = self.length - reach if cheeks else self.length
-        corners = distinct([0.0, min(self.held, self.length), root, self.length])
+        ends = (0.0, min(self.held, self.length), root, self.length)
+        corners = distinct([float(each) for each in ends])
         total, card = 0.0, self.material
         shear = card.E / (2.0 * (1.0 + card.nu))
         kappa = 10.0 * (1.0 + card.nu) / (12.0 + 11.0 * card.nu)
@@ -328,7 +342,7 @@ class ArmBar:
         return float(total)
 
     @property
-    def couple_compliance(self) -> float:
+    def couple_compliance(self) -> Value:
         """Slope of the line of contact under a couple there in its plane, rad/(N m).
 
         Twist of the arm and bending of its cheeks to either side, at a pressure angle of zero.

@@ -8,6 +8,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from camwright.geometry.arrays import Array, Value
+from camwright.pipeline.follower.arm import FollowerArm
+from camwright.pipeline.follower.arm_beam import ArmBar
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
 from camwright.pipeline.follower.stem_beam import Stem
 
@@ -91,8 +93,8 @@ class ArmTilt:
     bush : Guide     of its pivot; None: of needles, or not described
     """
 
-    twist: float
-    offset: float
+    twist: Value
+    offset: Value
     bush: Guide | None
 
     def within(self, spacing: Value) -> Value:
@@ -101,7 +103,7 @@ class ArmTilt:
         return play + 0.0 * spacing
 
     @property
-    def slope(self) -> float:
+    def slope(self) -> Value:
         """Twist of the arm and of the pin on its bush per couple, rad/(N m)."""
         if self.bush is None:
             return self.twist
@@ -122,3 +124,12 @@ class ArmTilt:
     def turned(self, loads: TiltingLoads, offset: Value) -> Array:
         """Elastic part alone: the clearance is in `within`; see `FollowerTilt`."""
         return np.asarray(self.slope * np.maximum(loads.force, 0.0) * (offset + self.offset))
+
+
+def arm_tilt(arm: FollowerArm, bar: ArmBar | None, bush: Guide | None) -> ArmTilt | None:
+    """Tilt of an arm as a beam, None where its section is not stated, in the bush of its pivot,
+    None of another one; None where neither is described.
+    """
+    if bar is None and bush is None:
+        return None
+    return ArmTilt(0.0 if bar is None else bar.couple_compliance, arm.plane_offset, bush)

@@ -437,8 +437,8 @@ def bush_foundation_modulus(
         ("wall", wall, "m"),
         ("elastic_modulus", elastic_modulus, "Pa"),
     ):
-        if not 0.0 < value < np.inf:
-            raise InputError(f"guide.{name}", value, f"> 0 {unit}")
+        if not np.all((np.asarray(value) > 0.0) & np.isfinite(value)):
+            raise InputError(f"guide.{name}", float(np.min(value)), f"> 0 {unit}")
     nu = poisson_ratio
     if not 0.0 <= nu <= 0.49:
         raise InputError("guide.poisson_ratio", nu, "from 0 to 0.49")

@@ -620,9 +620,8 @@ class Spring(Part):
         if self.linked is None or shape is None:
             return self
         preload = self.preload / self.lever_at_rest
-        return replace(
-            self, link=None, rocker=None, rate=self.rate * shape.own_share, preload=preload
-        )
+        rate = float(self.rate * shape.own_share)
+        return replace(self, link=None, rocker=None, rate=rate, preload=preload)
 
     def on_arm(self, length: float | None, rocker: Rocker | None = None) -> Spring:
         """The spring as it acts on the arc at the length of an arm, m; None: on a stem.
@@ -669,7 +668,11 @@ class Spring(Part):
     def with_derived(self) -> Spring:
         """Spring with rate and preload of its gas or torsion spring, or by its link."""
         shape = self.shape
-        return self if shape is None else replace(self, rate=shape.rate, preload=shape.preload)
+        return (
+            self
+            if shape is None
+            else replace(self, rate=float(shape.rate), preload=float(shape.preload))
+        )
 
     def force(self, lift: Array) -> Array:
         """Force at a lift (...), m, in N."""

@@ -83,17 +83,17 @@ class SpringShape(Part, ABC):
 
     @property
     @abstractmethod
-    def preload(self) -> float:
+    def preload(self) -> Value:
         """Force at zero lift, N."""
 
     @property
     @abstractmethod
-    def rate(self) -> float:
+    def rate(self) -> Value:
         """Slope of the force at zero lift, N/m."""
 
     @property
     @abstractmethod
-    def reach(self) -> float:
+    def reach(self) -> Value:
         """Lift up to which the law holds, m."""
 
     @abstractmethod
@@ -110,8 +110,12 @@ class SpringShape(Part, ABC):
         """Table from which it depends on the arm."""
         return self
 
+    def with_stated(self, stated: Part) -> SpringShape:
+        """With another table in place of `stated`."""
+        return stated if isinstance(stated, SpringShape) else self
+
     @property
-    def own_share(self) -> float:
+    def own_share(self) -> Value:
         """Rate at its own ends over that on the follower, both at zero lift."""
         return 1.0
 
@@ -518,19 +522,19 @@ class PivotSpring(TorsionWire):
         return self if length is None else replace(self, length=length)
 
     @property
-    def preload(self) -> float:
+    def preload(self) -> Value:
         """Force at zero lift, N."""
         return self.moment / self.length
 
     @property
-    def rate(self) -> float:
+    def rate(self) -> Value:
         """Slope of the force at zero lift, N/m."""
         return self.angular_rate / self.length**2
 
     @property
-    def reach(self) -> float:
+    def reach(self) -> Value:
         """Lift up to which the law holds, m: half a turn of the arm."""
-        return float(np.pi * self.length)
+        return np.pi * self.length
 
     def pull_on_arm(self, force: Array, lift: Array) -> Array:
         """Zero: a moment alone."""

@@ -100,9 +100,9 @@ class SpringLink(Part):
         return self.fixed_angle - self.arm_angle
 
     @property
-    def dead_centre(self) -> float:
+    def dead_centre(self) -> Value:
         """Swing to the dead centre, with the pivot in line with the ends, rad."""
-        return float(self.between % np.pi)
+        return self.between % np.pi
 
     def distance(self, swing: Value) -> Value:
         """Distance (...) of the ends, m, at a swing, rad."""
@@ -129,7 +129,7 @@ class SpringLink(Part):
         return travel, first / self.length, second / self.length**2, third / self.length**3
 
     @property
-    def most_lift(self) -> float:
+    def most_lift(self) -> Value:
         """Lift of the follower to the dead centre, m."""
         return self.dead_centre * self.length
 
@@ -249,25 +249,29 @@ class LinkedSpring(SpringShape):
             least = shown(float(-self._own[0] * change / lever**2), "kN/m")
             limit = f"> {least}: the force on the cam must rise with the lift"
             table = self.table if spring is None else spring.table
-            raise InputError(f"{table}.rate", shown(self._own[1], "kN/m"), limit)
+            raise InputError(f"{table}.rate", shown(float(self._own[1]), "kN/m"), limit)
 
     @property
     def stated(self) -> Part:
         return self.link
+
+    def with_stated(self, stated: Part) -> LinkedSpring:
+        return self.of_many({"link": stated})
 
     @property
     def own(self) -> SpringShape | None:
         return self.spring
 
     @cached_property
-    def _own(self) -> tuple[float, float]:
+    def _own(self) -> tuple[Value, Value]:
         """Force, N, and rate, N/m, of the spring at zero lift."""
         if self.spring is not None:
             return self.spring.preload, self.spring.rate
-        return float(self.link.preload or 0.0), float(self.link.rate or 0.0)
+        preload, rate = self.link.preload, self.link.rate
+        return 0.0 if preload is None else preload, 0.0 if rate is None else rate
 
     @property
-    def own_share(self) -> float:
+    def own_share(self) -> Value:
         return self._own[1] / self.rate
 
     def on_arm(self, length: float | None, rocker: Rocker | None = None) -> Self:
@@ -280,26 +284,27 @@ class LinkedSpring(SpringShape):
         return self.link.by_lift(lift)[1]
 
     @cached_property
-    def preload(self) -> float:
+    def preload(self) -> Value:
         """Force on the arc at zero lift, N."""
-        return float(self._own[0] * self.lever(0.0))
+        return _plain(self._own[0] * self.lever(0.0))
 
     @cached_property
-    def rate(self) -> float:
+    def rate(self) -> Value:
         """Slope of the force on the arc at zero lift, N/m."""
-        return float(self._slope(np.zeros(1))[0])
+        return _plain(self._slope(np.zeros(1)))
 
     @cached_property
-    def reach(self) -> float:
+    def reach(self) -> Value:
         """Lift up to which the force on the arc rises, m, short of the dead centre."""
-        low, high = 0.0, self.link.most_lift
+        high = np.atleast_1d(np.broadcast_arrays(self.link.most_lift, *self._own)[0])
+        low = np.zeros_like(high)
         for _ in range(_ROUNDS):
-            lift = np.linspace(low, high, _PLACES)[1:-1]
-            falls = ~(self._slope(lift) > 0.0)
-            k = int(np.argmax(falls)) if falls.any() else falls.size
-            lift = np.concatenate([[low], lift, [high]])
-            low, high = float(lift[k]), float(lift[k + 1])
-        return low
+            lift = np.linspace(low[..., 0], high[..., 0], _PLACES, axis=-1)
+            falls = ~(self._slope(lift[..., 1:-1]) > 0.0)
+            first = np.argmax(falls, axis=-1, keepdims=True)
+            k = np.where(falls.any(axis=-1, keepdims=True), first, falls.shape[-1])
+            low, high = (np.take_along_axis(lift, k + side, axis=-1) for side in (0, 1))
+        return _plain(low)
 
     def _slope(self, lift: Array) -> Array:
         """Slope of the force by the lift (...), N/m; NaN beyond the law of the spring."""
@@ -312,7 +317,7 @@ class LinkedSpring(SpringShape):
     @property
     def _longest(self) -> float:
         """Travel of its ends up to which the law of the spring holds, m."""
-        return np.inf if self.spring is None else self.spring.reach
+        return np.inf if self.spring is None else float(self.spring.reach)
 
     def _risen(self, travel: Array) -> Rise:
         if self.spring is not None:
@@ -344,6 +349,11 @@ class SpringBehindRocker(LinkedSpring):
 
     table: ClassVar[str] = "spring.rocker"
     carried: ClassVar[Literal["", "stem", "arm"]] = ""
+
+
+def _plain(value: Value) -> Value:
+    """A float of one spring; arrays (m, 1) of many as they are."""
+    return float(np.ravel(value)[0]) if np.ndim(value) < 2 else value
 
 
 def linked(link: SpringLink | RockerSpring, spring: SpringShape | None) -> LinkedSpring:

@@ -22,11 +22,13 @@ from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
 from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.checks.arm_strength import bar_of
 from camwright.pipeline.checks.torque_balance import NO_MEAN
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, face_of, motion_of, pivot_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import keyway_cut, rotating_force
 from camwright.pipeline.follower.follower_forces import Push
+from camwright.pipeline.follower.follower_tilt import FollowerTilt, arm_tilt
 from camwright.pipeline.follower.guide_table import SupportOfMany
 from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.screening.screened_cam import ScreenedCam, ScreenedState
@@ -80,8 +82,32 @@ class Designs:
         """Values at a key (m, 1), SI; NaN where the case omits it."""
         if key in self.columns:
             return self.columns[key]
+        if key in self.of_springs:
+            return self.of_springs[key]
         stated = value_of(self.case, key)
         return np.full((self.count, 1), np.nan if stated is None else float(stated))
+
+    @KeptResult
+    def of_springs(self) -> Mapping[str, Array]:
+        """Rate and preload on the follower (m, 1) of springs whose links or arms differ."""
+        shape = Numbers(self.columns, self.case).spring_shape
+        if shape is None or shape is self.case.spring.shape:
+            return {}
+        of_each = {"spring.rate": shape.rate, "spring.preload": shape.preload}
+        shaped = (self.count, 1)
+        return {key: np.array(np.broadcast_to(each, shaped)) for key, each in of_each.items()}
+
+    @KeptResult
+    def tilting(self) -> FollowerTilt:
+        """Compliance and clearance by which the followers tilt across the plane of the cam."""
+        machine, numbers = self.machine, self.numbers
+        if machine.arm is None:
+            return machine.tilting
+        pivot, arm = machine.pivot, numbers.of_part(machine.arm)
+        bush = None if pivot is None else pivot.bush
+        if bush is not None:
+            bush = numbers.of_part(bush, "follower.pivot.bush")
+        return arm_tilt(arm, bar_of(numbers), bush) or machine.tilting
 
     @KeptResult
     def numbers(self) -> Numbers:
@@ -95,7 +121,7 @@ class Designs:
             "contact.modulus": self.machine.contact_modulus,
             "cam.fastest": self.fastest[:, None] / self.case.mechanism.gear_ratio,
         }
-        return Numbers({**self.columns, **known}, self.case)
+        return Numbers({**self.columns, **self.of_springs, **known}, self.case)
 
     def limit(self, row: AnyLimit) -> Array:
         """Values of a limit (m,), SI; NaN without one."""
@@ -126,7 +152,7 @@ class Designs:
             stored = knot_integrals(source.torque)
             stored = stored - sampled_least(stored)[:, None]
             energy = share * np.maximum(stored, 0.0)
-        return stored_lift(energy, rate, preload, self.case.spring.shape)
+        return stored_lift(energy, rate, preload, self.numbers.spring_shape)
 
     @KeptResult
     def jets(self) -> Array:
@@ -316,7 +342,7 @@ class Designs:
         if cam.counter_hole is not None:
             return np.zeros((self.count, 1)), np.zeros((self.count, 1))
         theta = uniform_turn(along.shape[-1])
-        ring = (along + 1j * across) * np.exp(1j * theta)
+        ring = (along + 1j * across) * np.exp(1j * (theta + self.whole.motion.travel))
         beside = np.roll(ring, -1, axis=-1)
         swept = np.imag(np.conj(ring) * beside)
         moment = np.sum((ring + beside) * swept, axis=-1, keepdims=True) / 6.0

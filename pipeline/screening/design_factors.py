@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arm_path import Arm
+from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.flat_face_contour import require_face_width
+from camwright.geometry.lift import Lift
+from camwright.geometry.periodic_spline import knot_derivatives
 from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import with_values
 from camwright.pipeline.case.case_values import WIRE, quantity_of, replaced, value_of, wound_spring
-from camwright.pipeline.case.consistency import check_numbers, rules
+from camwright.pipeline.case.consistency import At, check_numbers, rules
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.machine import machine
 from camwright.pipeline.case.toml_text import TomlValue
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.guide_reactions import require_fit
 
+_GUIDES = ("guides.a", "guides.b")
+_RUBBING = (*_GUIDES, "follower.pivot.bush", "follower.pivot.needle_bearing")
 ARRAYS: tuple[str, ...] = (
     "spring.rate", "spring.preload", "spring.travel_max",
     *(f"spring.design.{name}" for name in WIRE),
@@ -32,6 +38,19 @@ ARRAYS: tuple[str, ...] = (
     "roller.bearing.static_radial_limit",
     "follower.mass", "follower.overhang_at_max_lift", "follower.viscous_damping",
     *(f"follower.face.{name}" for name in ("width", "depth", "thickness", "friction", "pv_limit")),
+    *(f"follower.arm.{name}" for name in (
+        "centre_distance", "length", "width", "depth", "bore", "hub", "roller_hub", "plane_offset",
+        "spring_distance", "pivot_notch", "roller_notch")),
+    *(f"follower.pivot.{name}" for name in (
+        "swinging_mass", "mass_distance", "mass_angle", "gravity_angle", "load_distance",
+        "load_angle", "load_moment")),
+    *(f"follower.pivot.bush.{name}" for name in (
+        "length", "diameter", "clearance", "wall", "friction", "friction_min", "friction_max",
+        "pressure_limit", "pv_limit", "speed_limit", "wear_rate")),
+    *(f"follower.pivot.needle_bearing.{name}" for name in (
+        "length", "diameter", "friction", "friction_min", "friction_max", "C", "C0")),
+    *(f"spring.link.{name}" for name in (
+        "arm_radius", "arm_angle", "fixed_radius", "fixed_angle", "rate", "preload")),
     "guides.spacing",
     "guides.a.friction", "guides.a.friction_min", "guides.a.friction_max",
     "guides.b.friction", "guides.b.friction_min", "guides.b.friction_max",
@@ -50,11 +69,18 @@ def is_array(case: Case, key: str, values: Factor) -> bool:
     """Whether designs that differ in a key can be solved together as arrays.
 
     False for a key in a table that the case leaves out, for a speed that is zero in a design, where
-    the engine has no torque, and for rate and preload of a gas or torsion spring.
+    the engine has no torque, for rate and preload of a gas or torsion spring, for a key of an arm
+    that the case leaves out, on which the sections depend, for the length of an arm with a rocker,
+    and for an arm whose lift is that of an eccentric disc.
     """
-    if case.spring.shape is not None and key.endswith((".preload", "spring.rate")):
+    on_arc = case.spring.shape is not None and not key.startswith("spring.link.")
+    if on_arc and key.endswith((".preload", "spring.rate")):
         return False
     if value_of(case, key.rpartition(".")[0]) is None:
+        return False
+    if key.startswith(("follower.arm.", "spring.link.")) and value_of(case, key) is None:
+        return False
+    if key in _OF_ARC and (case.rocker is not None or _is_eccentric(case)):
         return False
     if key.startswith("smoothing."):
         return key in ARRAYS and case.smoothing.kind != "constrained"
@@ -63,6 +89,13 @@ def is_array(case: Case, key: str, values: Factor) -> bool:
         still = any(_number(In("rpm"), _plain(each)) == 0.0 for each in speeds)
         return key.endswith((".preload", ".speed")) and not still
     return key in ARRAYS
+
+
+_OF_ARC = ("follower.arm.centre_distance", "follower.arm.length")
+
+
+def _is_eccentric(case: Case) -> bool:
+    return case.lift is not None and case.lift.kind == "eccentric"
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +210,11 @@ def _number(quantity: In, value: TomlValue) -> float:
 
 
 def refusals(
-    case: Case, values: Mapping[str, Array], highest: Array, travel: Array | None = None
+    case: Case,
+    values: Mapping[str, Array],
+    highest: Array,
+    travel: Array | None = None,
+    lifts: Array | None = None,
 ) -> list[str]:
     """Reason for the refusal of each design, "" where it is accepted.
 
@@ -188,14 +225,19 @@ def refusals(
     values : mapping       by key of an array path, SI, each (m,)
     highest : array (m,)   maximum lift, m; NaN where it is not known
     travel : array (m,)    of the contact on a flat face, m; None: a roller, or not known
+    lifts : array (m, n)   m, or (1, n) of all; None: not known
     """
     words = [""] * highest.size
-    for row in np.flatnonzero(_suspects(case, values, highest, travel)):
+    suspects = _suspects(case, values, highest, travel)
+    suspects |= _swing_suspects(case, values, _values(case, values, highest.size), lifts)
+    for row in np.flatnonzero(suspects):
         numbers = {key: float(column[row]) for key, column in values.items()}
         try:
             own = replaced(case, numbers)
             check_numbers(own)
             _require_guided(own, float(highest[row]))
+            if lifts is not None and own.follower.arm is not None:
+                own.contour(Lift(uniform_turn(lifts.shape[-1]), lifts[row % len(lifts)]))
             if travel is not None:
                 require_face_width(value_of(own, "follower.face.width"), float(travel[row]))
         except CamError as error:
@@ -212,19 +254,60 @@ def _require_guided(case: Case, highest: float) -> None:
     require_fit(state.stem, state.guides, np.array([least, least + highest]), knots=3)
 
 
-def _suspects(
-    case: Case, values: Mapping[str, Array], highest: Array, travel: Array | None
+def _swing_suspects(
+    case: Case, values: Mapping[str, Array], at: At, lifts: Array | None
 ) -> NDArray[np.bool_]:
-    """Designs that may be refused (m,): out of bounds, or against one another."""
-    count = highest.size
+    """Designs whose arm (m,) may not reach the cam, may leave the turn in which its follower can
+    touch it, or have a spring that does not close; lifts (m, n) or (1, n), m, None: not known.
+    """
+    arm = case.follower.arm
+    if arm is None:
+        return np.zeros((), dtype=bool)
+    distance, length = (at(f"follower.arm.{name}") for name in ("centre_distance", "length"))
+    sized = (distance > 0.0) & (length > 0.0)
+    linkage = Arm(np.where(sized, distance, 1.0), np.where(sized, length, 1.0), arm.sense)
+    offset = None if value_of(case, "follower.face.offset") is None else at("follower.face.offset")
+    start = linkage.start_angle(at("cam.prime_radius"), offset)
+    lift = np.zeros((1, 1)) if lifts is None else lifts
+    angle = np.asarray(start)[:, None] + lift / np.asarray(linkage.length)[:, None]
+    most = np.pi if offset is None else 0.5 * np.pi
+    within = (angle > _NEAR_CENTRES) & (angle < most - _NEAR_CENTRES)
+    if offset is not None:
+        arms = replace(linkage, centre_distance=np.asarray(linkage.centre_distance)[:, None])
+        within &= np.asarray(arms.face_radius(angle, offset[:, None])) > 0.0
+        if lifts is not None:
+            rate = knot_derivatives(lifts, 1)[1] / np.asarray(linkage.length)[:, None]
+            within &= arm.sense * rate < 1.0 - _NEAR_CENTRES
+    wrong = ~(sized & within.all(axis=-1))
+    shape = Numbers({key: each[:, None] for key, each in values.items()}, case).spring_shape
+    if shape is not None and shape is not case.spring.shape:
+        for figure in (shape.preload, shape.rate):
+            wrong |= ~(np.broadcast_to(figure, (distance.size, 1))[:, 0] > 0.0)
+    return np.asarray(wrong)
+
+
+_NEAR_CENTRES = 1e-3
+"""Angle from a line of centres, rad, at which an arm is tried on its own, between samples, too."""
+
+
+def _values(case: Case, values: Mapping[str, Array], count: int) -> At:
+    """Function: values of a key (m,), SI; NaN where the case leaves it out."""
 
     def at(key: str) -> Array:
-        """Values of a key (m,); NaN where the case leaves it out."""
         if key in values:
             return values[key]
         stated = value_of(case, key)
         return np.full(count, np.nan if stated is None else stated, dtype=float)
 
+    return at
+
+
+def _suspects(
+    case: Case, values: Mapping[str, Array], highest: Array, travel: Array | None
+) -> NDArray[np.bool_]:
+    """Designs that may be refused (m,): out of bounds, or against one another."""
+    count = highest.size
+    at = _values(case, values, count)
     wrong = np.zeros(count, dtype=bool)
     for key, column in values.items():
         quantity = quantity_of(key)
@@ -239,10 +322,13 @@ def _suspects(
             wrong |= ~(wound.can_be_coiled & wound.is_open)
         half = 0.5 * (at("guides.a.length") + at("guides.b.length"))
         wrong |= at("guides.spacing") <= half
-        for side in "ab":
-            friction = at(f"guides.{side}.friction")
-            wrong |= at(f"guides.{side}.friction_min") > friction
-            wrong |= at(f"guides.{side}.friction_max") < friction
+        for table in _RUBBING if case.follower.pivot is not None else _GUIDES:
+            friction = at(f"{table}.friction")
+            wrong |= at(f"{table}.friction_min") > friction
+            wrong |= at(f"{table}.friction_max") < friction
+        if case.follower.arm is not None:
+            hub = at("follower.arm.depth" if case.follower.arm.hub is None else "follower.arm.hub")
+            wrong |= at("follower.arm.bore") >= hub
         reach = (
             at("follower.overhang_at_max_lift")
             + highest

@@ -20,8 +20,8 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMENT
 from camwright.pipeline.cycle.length_history import (
     ContactLoads,
+    camshaft_compliance,
     factor_range,
-    moment_compliance,
     raised_load,
     worst_of,
 )
@@ -32,7 +32,7 @@ from camwright.pipeline.cycle.line_tilt import (
     rigid_moment,
 )
 from camwright.pipeline.cycle.numbers import Numbers
-from camwright.pipeline.follower.follower_tilt import TiltingLoads
+from camwright.pipeline.follower.follower_tilt import FollowerTilt, TiltingLoads
 
 # Keys that the contact of finite length depends on, and the number of its different shapes up to
 # which each is solved.
@@ -64,6 +64,8 @@ class DesignValues(Protocol):
     def numbers(self) -> Numbers: ...
     @property
     def stem_offset(self) -> Array: ...
+    @property
+    def tilting(self) -> FollowerTilt: ...
 
 
 class LineFactors(NamedTuple):
@@ -102,7 +104,7 @@ def turning_of(
     """
     on_a, on_b = (designs.numbers[f"guides.{side}.friction_greatest"] for side in "ab")
     loads = TiltingLoads(force, rubbing, (on_a, on_b), pivot, _spacing(designs))
-    follower = designs.machine.tilting
+    follower = designs.tilting
     return FollowerTurning(shaft, follower.held(loads), follower.turned(loads, designs.stem_offset))
 
 
@@ -263,7 +265,7 @@ def _tilt(designs: DesignValues, turning: FollowerTurning) -> LineTilt:
         base_radius=designs.value("cam.prime_radius") - designs.numbers["follower.surface"],
         clearance=designs.value(f"limits.{ROLLER_CLEARANCE.id}"),
         bearing_length=width,
-        guides=machine.tilting.within(_spacing(designs)),
+        guides=designs.tilting.within(_spacing(designs)),
         twist=turning.twist,
     )
 
@@ -271,7 +273,8 @@ def _tilt(designs: DesignValues, turning: FollowerTurning) -> LineTilt:
 def _yields(designs: DesignValues) -> Array:
     """Slope of stem and camshaft under the moment of the contact (m, 1), rad/(N m)."""
     overhang = designs.value("follower.overhang_at_max_lift")
-    return np.asarray(moment_compliance(designs.machine, overhang, _spacing(designs)))
+    yields = camshaft_compliance(designs.machine)
+    return np.asarray(designs.tilting.compliance(overhang, _spacing(designs)) + yields)
 
 
 def _spacing(designs: DesignValues) -> Array:

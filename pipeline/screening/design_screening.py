@@ -76,8 +76,9 @@ def screen_designs(
     Designs that differ in the keys of `ARRAYS` alone, and in preload and speed of load cases, are
     solved as arrays: rate, preload, travel and winding of the spring, prime and roller radius,
     offset, widths, bore, bearing ratings, sizes, friction and PV limit of a flat face, follower
-    mass, overhang and damping, spacing and friction of the guides, inertia, share of compensation,
-    width of a smoother and every limit. Others are grouped by their values, with one case each. The
+    mass, overhang and damping, spacing and friction of the guides, dimensions of an arm, of its
+    pivot and the link of its spring, inertia, share of compensation, width of a smoother and every
+    limit. Others are grouped by their values, with one case each. The
     rate is `spring.rate`, not that of the winding: a check compares them. The lift of a constrained
     synthesis is that of the case: every design keeps its stored energy.
 
@@ -238,7 +239,7 @@ class _Blocks:
 def refusals_of(designs: Designs, values: Mapping[str, Array]) -> list[str]:
     """Refusal of each design by its values and its lift in words, "" where it is accepted."""
     travel = None if designs.case.follower.face is None else designs.contact_travel
-    return refusals(designs.case, values, designs.highest, travel)
+    return refusals(designs.case, values, designs.highest, travel, designs.lift)
 
 
 def step_of(samples: int, positions: int) -> int:

@@ -59,6 +59,8 @@ def _by_measure(declared: Declaration, measure: Measure, how: Measured) -> Scree
 
     def judged(designs: Designs) -> Judged | None:
         numbers, shape = numbers_of(designs), (designs.count, 1)
+        if not np.any(how.applies(np.full(shape, np.nan), numbers)):
+            return None
         if declared.lacks_left_out(designs.machine, numbers):
             return None
         allowed, _, if_exceeded = how.allowed(numbers)
@@ -366,7 +368,7 @@ def _gas_heating(designs: Designs) -> Judged | None:
     """Gas temperature of a gas spring over the load cases by duty (m,), and its limit, degC."""
     case, strokes, lift = designs.case, _strokes(designs), designs.highest[:, None]
     preload, rate = (designs.value(f"spring.{key}") for key in ("preload", "rate"))
-    work = spring_energy(preload, rate, lift, case.spring.shape)
+    work = spring_energy(preload, rate, lift, designs.numbers.spring_shape)
 
     def warm(cam: ScreenedCam) -> Array:
         rate = strokes * cam.speed / FULL_TURN

@@ -292,7 +292,7 @@ def _travel(one: Declaration, how: Measured, numbers: Numbers, last: Surge) -> f
         return sign * float((np.asarray(how.value(worst, numbers)) - limit)[0])
 
     shape = None if numbers.case is None else numbers.case.spring.shape
-    least, most = (_TRAVEL_LEAST, _TRAVEL_MOST) if shape is None else (0.0, shape.reach)
+    least, most = (_TRAVEL_LEAST, _TRAVEL_MOST) if shape is None else (0.0, float(shape.reach))
     if not excess(least) < 0.0 < excess(most):
         return None
     return float(scipy.optimize.brentq(excess, least, most, xtol=1e-12))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -16,7 +17,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.base.verdict import governing_id
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import read_case, with_values
+from camwright.pipeline.case.case_file import case_of, read_case, tables_of, with_values
 from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.toml_text import TomlValue
@@ -306,7 +307,38 @@ def parts_without_ends() -> Case:
     })  # fmt: skip
 
 
-ONE_BY_ONE = {"roller": parts_without_ends, "face": made.face_case}
+SECTION = {
+    "width": "20 mm", "depth": "22 mm", "bore": "14 mm", "hub": "26 mm", "roller_hub": "14 mm",
+    "plane_offset": "0.5 mm", "spring_distance": "40 mm", "material": "steel", "pivot_notch": 2.0,
+    "roller_notch": 2.5,
+}  # fmt: skip
+SWUNG = {
+    "swinging_mass": "300 g", "mass_distance": "30 mm", "mass_angle": "5 deg",
+    "gravity_angle": "60 deg", "load_distance": "40 mm", "load_angle": "10 deg",
+    "load_moment": "0.2 N m",
+}  # fmt: skip
+LINK = {
+    "arm_radius": "50 mm", "arm_angle": "4 deg", "fixed_radius": "70 mm", "fixed_angle": "80 deg",
+    "rate": "20 kN/m", "preload": "400 N",
+}  # fmt: skip
+
+
+def arm_without_ends(bearing: str) -> Case:
+    """Machine with every part of an arm and a spring on it, but ends of the line of contact."""
+    tables: Any = tables_of(made.arm_case(bearing))
+    tables["spring"] = {"link": LINK, "travel_max": "20 mm"}
+    tables["follower"]["arm"] |= SECTION
+    tables["follower"]["pivot"] |= SWUNG
+    del tables["cam"]["end"], tables["roller"]["end"], tables["scope"]
+    return case_of(tables)
+
+
+ONE_BY_ONE: dict[str, Callable[[], Case]] = {
+    "roller": parts_without_ends,
+    "face": made.face_case,
+    "arm in a bush": partial(arm_without_ends, "bush"),
+    "arm in needles": partial(arm_without_ends, "needle_bearing"),
+}
 SLOW = ("guides.spacing", "guides.a.friction_max", "guides.b.friction_max")
 """Keys of which each value has tables of the guides of its own, or that bound another key."""
 FIXED = (*SLOW, "mechanism.compensation", "roller.radius")
@@ -326,6 +358,10 @@ def test_designs_at_once_are_those_one_by_one(follower: str) -> None:
             factors[f"limits.{name}"] = draw.uniform(0.9, 0.95, count)
     assert {"cam.width", "cam.bore_radius", "limits.shaft_reliability"} <= set(keys)
     assert follower == "face" or {"roller.width", "roller.bearing.C0"} <= set(keys)
+    if follower.startswith("arm"):
+        tables = {"follower.arm": SECTION, "follower.pivot": SWUNG, "spring.link": LINK}
+        of_arm = {f"{table}.{key}" for table, each in tables.items() for key in each}
+        assert of_arm - {"follower.arm.material"} <= set(keys)
     columns = screen_designs(base, factors)
     assert set(columns["message"]) == {""}
     for k in range(count):
@@ -340,8 +376,9 @@ def test_designs_at_once_are_those_one_by_one(follower: str) -> None:
     judged = {each.check for each in SCREENED
               if set(columns.get(f"{each.check}.status", [])) & {"pass", "fail"}}  # fmt: skip
     concerned = {each.check for each in SCREENED if f"{each.check}.status" in columns}
-    assert concerned - judged <= NOT_JUDGED[follower], concerned - judged
-    assert OF_PARTS[follower] <= judged
+    kind = follower.split()[0]
+    assert concerned - judged <= NOT_JUDGED[kind], concerned - judged
+    assert OF_PARTS[kind] <= judged
 
 
 NOT_JUDGED = {
@@ -349,6 +386,7 @@ NOT_JUDGED = {
                "machine_shaft_gap"},
     "face": {"edge_pressure", "guide_pressure_A", "guide_pressure_B", "cam_slip",
              "spring_stress", "spring_fatigue", "machine_shaft_gap"},
+    "arm": {"concave_radius", "edge_pressure", "pivot_pressure"},
 }  # fmt: skip
 """Checks that do not apply, lack the ends, or are a bound within the limit."""
 OF_EVERY = {
@@ -362,7 +400,42 @@ OF_PARTS = {
         "roller_modified_life", "bearing_lubrication", "grease_life",
     },
     "face": OF_EVERY,
+    "arm": (OF_EVERY - {"guide_wear_A", "guide_wear_B"}) | {
+        "arm_yield", "arm_gap", "link_reach", "pivot_jam_index", "pivot_jam_index_friction_max",
+    },
 }  # fmt: skip
+
+
+NAN_KEYS = ("follower.arm.length", "follower.pivot.swinging_mass", "spring.link.fixed_angle")
+
+
+@pytest.mark.parametrize(("key", "value", "words"), [
+    *((key, np.nan, key) for key in NAN_KEYS),
+    ("follower.arm.length", 0.001, "cam.prime_radius = "),
+    ("follower.arm.centre_distance", -0.07, "follower.arm.centre_distance = -70 mm"),
+    ("follower.arm.bore", 0.03, "follower.arm.bore = 30 mm, must be < 26 mm"),
+    ("follower.pivot.bush.friction", 0.5, "follower.pivot.bush.friction_max"),
+    ("spring.link.fixed_angle", -1.0, "spring.link.fixed_angle = -57.3"),
+    ("spring.link.fixed_angle", 0.3, "spring.link.rate = 20 kN/m, must be > "),
+])  # fmt: skip
+def test_an_arm_that_cannot_be_is_a_row(key: str, value: float, words: str) -> None:
+    """NaN, a value out of its bounds, and parts that contradict one another; the next is judged."""
+    base = arm_without_ends("bush")
+    columns = screen_designs(base, {key: np.array([value, value_of(base, key)])})
+    assert list(columns["screen"] == "error") == [True, False]
+    assert words in columns["message"][0]
+    statuses = {columns[name][0] for name in columns if name.endswith(".status")}
+    assert statuses == {""}
+
+
+def test_an_arm_past_its_line_of_centres_is_refused_as_in_the_preview() -> None:
+    base = arm_without_ends("bush")
+    design = {"cam.prime_radius": 0.1299}
+    columns = screen_designs(base, {key: np.array([value]) for key, value in design.items()})
+    with pytest.raises(InputError) as refused:
+        preview_case(replaced(base, design), corners=False)
+    assert columns["message"][0] == str(refused.value)
+    assert columns["message"][0].startswith("follower.arm angle = ")
 
 
 def test_more_rings_than_are_solved_are_not_judged() -> None:

@@ -8,16 +8,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_seeded_arms import drawn as drawn_arm
 
 from camwright.geometry.arrays import Array, uniform_turn
-from camwright.geometry.energy import spring_deflection
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals, periodic_quintic
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import within_depth
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import read_case, with_values
-from camwright.pipeline.case.case_values import replaced
+from camwright.pipeline.case.case_file import case_of, read_case, with_values
+from camwright.pipeline.case.case_values import replaced, value_of
+from camwright.pipeline.case.external_load import closing_preload
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machine
 from camwright.pipeline.checks.check import Check
@@ -26,8 +27,10 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.follower_forces import Push
 from camwright.pipeline.follower.guide_reactions import guide_reactions
 from camwright.pipeline.follower.guide_table import OverhangTable, SupportOfMany
+from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.screening.design_factors import ARRAYS, is_array
 from camwright.pipeline.screening.design_screening import screen_designs, synthesis
 from camwright.pipeline.screening.screened_checks import SCREENED
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -84,6 +87,24 @@ RANGES: Mapping[str, Mapping[str, tuple[float, float]]] = {
         "limits.bore_share": (0.005, 0.1), "limits.pin_share": (0.02, 0.1),
         "limits.target_life": (1e6, 1e8), "limits.viscosity_ratio": (0.5, 2.0),
     },
+    "gx120-arm": {
+        "spring.rate": (160e3, 200e3), "spring.preload": (1000.0, 1300.0),
+        "cam.prime_radius": (0.053, 0.06), "roller.radius": (0.0235, 0.025),
+        "follower.mass": (0.55, 0.7), "follower.arm.centre_distance": (0.097, 0.104),
+        "follower.arm.length": (0.085, 0.092), "follower.arm.width": (0.028, 0.034),
+        "follower.arm.depth": (0.022, 0.03), "follower.arm.bore": (0.021, 0.024),
+        "follower.arm.hub": (0.034, 0.04), "follower.arm.plane_offset": (0.0, 1e-3),
+        "follower.arm.pivot_notch": (1.5, 2.5), "follower.arm.roller_notch": (1.5, 3.0),
+        "follower.pivot.swinging_mass": (0.8, 1.0), "follower.pivot.mass_distance": (0.05, 0.07),
+        "follower.pivot.mass_angle": (-0.2, 0.2), "follower.pivot.gravity_angle": (1.0, 2.0),
+        "follower.pivot.load_moment": (-3.0, 3.0), "follower.pivot.bush.length": (0.02, 0.03),
+        "follower.pivot.bush.diameter": (0.018, 0.022),
+        "follower.pivot.bush.clearance": (2e-5, 6e-5), "follower.pivot.bush.wall": (1e-3, 2e-3),
+        "follower.pivot.bush.friction": (0.04, 0.08),
+        "follower.pivot.bush.wear_rate": (1e-17, 1e-16),
+        "follower.pivot.bush.pressure_limit": (1e7, 1e8),
+        "follower.pivot.bush.pv_limit": (1e5, 1e7),
+    },
     "papers/petrescu_c": {
         "spring.rate": (2e3, 20e3), "spring.preload": (20.0, 90.0),
         "cam.prime_radius": (0.02, 0.04), "cam.offset": (-0.002, 0.002),
@@ -126,29 +147,40 @@ def drawn(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, Arr
     return {key: values for key, values in factors.items() if key not in without}
 
 
-def previewed(name: str, factors: Mapping[str, Array]) -> Iterator[Trial]:
-    """Each design solved on its own by closed forms."""
-    case, energy = stated(name), None
+def previewed(
+    case: Case, factors: Mapping[str, Array], positions: int | None = None
+) -> Iterator[Trial]:
+    """Each design solved on its own by closed forms; positions: None: those of a preview."""
+    energy = None
     if case.smoothing.kind == "constrained":
         case, energy = synthesis(case)
     torques = engine_torques(case)
     for k in range(len(next(iter(factors.values())))):
         own = replaced(case, {key: float(values[k]) for key, values in factors.items()})
         contour = own.contour(_lift(own, energy) if energy is not None else cam_lift(own, torques))
-        yield solve(own, contour, tier=Tier.PREVIEW, torques=torques, corners=False)
+        yield solve(
+            own, contour, tier=Tier.PREVIEW, torques=torques, positions=positions, corners=False
+        )
 
 
 def _lift(case: Case, energy: Array) -> Lift:
-    values = spring_deflection(energy, case.spring.rate, case.spring.preload)
+    spring = case.spring
+    values = stored_lift(energy, spring.rate, closing_preload(case), spring.shape)
     return Lift(uniform_turn(energy.size), values)
 
 
 def deviations(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, float]:
     """Greatest deviation of each check over the greater of demand and limit; `screen` agrees."""
-    factors = drawn(name, count, without)
-    columns = screen_designs(stated(name), factors, positions=POSITIONS.get(name, 180))
+    return compared(stated(name), drawn(name, count, without), POSITIONS.get(name, 180))
+
+
+def compared(
+    case: Case, factors: Mapping[str, Array], positions: int = 180, solved: int | None = None
+) -> dict[str, float]:
+    """As `deviations`, of designs of a case; solved: cam angles of the previews, None: theirs."""
+    columns = screen_designs(case, factors, positions=positions)
     worst: dict[str, float] = defaultdict(float)
-    for k, trial in enumerate(previewed(name, factors)):
+    for k, trial in enumerate(previewed(case, factors, solved)):
         assert columns["message"][k] == ""
         known = {check.id: check for check in trial.checks}
         fails = set()
@@ -282,6 +314,39 @@ def test_a_single_case_has_the_statuses_of_its_row(name: str) -> None:
 def test_hundreds_of_designs_agree_with_their_previews(name: str) -> None:
     worst = deviations(name, 100)
     assert {"p0", "force", "contact_pressure"} <= set(worst)
+    assert exceeded(worst) == {}
+
+
+SMOOTH = "cycloidal"
+
+
+def seeded_arm(seed: int) -> tuple[Case, dict[str, Array]]:
+    """A seeded arm with a smooth swing, and two designs about it by all its keys of arrays."""
+    tables = drawn_arm(seed)
+    for segment in tables["lift"]["segment"]:
+        segment["law"] = segment["law"] if segment["law"] == "dwell" else SMOOTH
+    case, draw = case_of(tables), np.random.default_rng(seed)
+    of_arm = ("follower.arm.", "follower.pivot.", "spring.link.", "cam.prime_radius")
+    keys = [key for key in ARRAYS if key.startswith(of_arm) and is_array(case, key, [1.0])
+            and value_of(case, key)]  # fmt: skip
+    return case, {key: value_of(case, key) * draw.uniform(0.98, 1.02, 2) for key in keys}
+
+
+ARMS = (0, 2, 3, 4, 5, 8, 10, 11, 14, 16, 17, 18, 19, 20, 23)
+"""Seeded arms that bound a body: roller, flat and curved face, bush, needles and neither, coil,
+torsion and linked spring."""
+
+
+@pytest.mark.parametrize(
+    "seed", [pytest.param(k, marks=() if k in (3, 17, 23) else pytest.mark.slow) for k in ARMS]
+)
+def test_seeded_arms_agree_with_their_previews(seed: int) -> None:
+    case, factors = seeded_arm(seed)
+    assert {"follower.arm.length", "follower.arm.centre_distance"} <= set(factors)
+    worst = compared(case, factors, 360, 360)
+    assert {"p0", "force", "contact_pressure", "jump"} <= set(worst)
+    if case.follower.pivot is not None and case.scope.covers("pivot"):
+        assert {"pivot_jam_index", "pivot_jam_index_friction_max"} <= set(worst)
     assert exceeded(worst) == {}
 
 

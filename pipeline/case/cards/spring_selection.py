@@ -91,7 +91,8 @@ def put_force(case: Tables) -> None:
     if law is None:
         return  # `Case` refuses a kind without its table
     shape = _reduced(law, case)
-    for key, value, unit in (("rate", shape.rate, "kN/m"), ("preload", shape.preload, "N")):
+    rate, preload = float(shape.rate), float(shape.preload)
+    for key, value, unit in (("rate", rate, "kN/m"), ("preload", preload, "N")):
         if key in spring:
             limit = f"left out: by {shape.table} it is {units.shown(value, unit)}"
             raise InputError(f"spring.{key}", str(spring[key]), limit)
