@@ -105,7 +105,9 @@ class BrakeBalance:
         return torque * CYCLE_ANGLE / self.swept
 
     def _causes(self, brake: float) -> list[str]:
-        """The error of dead centre, gain and zero that each close the difference."""
+        """Sentences on the three errors of the pressure trace, of dead centre, gain or zero, each
+        as large as would alone bring the indicated torque to the brake torque `brake`, N m.
+        """
         missing = self._pressure(brake - self.indicated)
         if self.shift is None:
             centre = f"dead centre, but none within {degrees(SHIFT_MAX):g} deg"

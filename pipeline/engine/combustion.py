@@ -24,7 +24,11 @@ def wiebe(progress: ArrayLike, a: float, m: float) -> Array:
 
 
 def _burns(engine: CylinderEngine) -> tuple[tuple[float, float, float, float], ...]:
-    """Share, duration (rad), a and m of each Wiebe burn of the engine."""
+    """Wiebe burns of the fuel: (share of the fuel, duration in crank angle, rad, a, m) of each, a
+    and m being the exponents of the Wiebe function.
+
+    One burn, or with a premixed share first that of the premixed fuel, then the main one.
+    """
     main = (1.0 - engine.premixed_share, engine.burn_duration, engine.wiebe_a, engine.wiebe_m)
     if engine.premixed_share == 0.0:
         return (main,)

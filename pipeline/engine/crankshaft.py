@@ -74,6 +74,7 @@ class Crankshaft(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a load exponent beside a motor line, and a load that cannot be made."""
         super().__post_init__()
         if self.motor_line and self.load_exponent:
             limit = "left out beside crankshaft.motor_line"
@@ -106,6 +107,9 @@ class Inertia:
     varying: Array
 
     def __post_init__(self) -> None:
+        """Refuse negative parts, fewer than 12 angles, and a total inertia of zero; the array
+        becomes read-only.
+        """
         if not 0.0 <= self.constant < np.inf:
             raise InputError("crankshaft.inertia", self.constant, ">= 0 kg m^2")
         varying = finite("crankshaft.varying_inertia", self.varying)
@@ -363,10 +367,24 @@ def _shape(speed: Array, load: Load) -> Array:
 
 
 def _speed(energy: Array, inertia: Array, mean_speed: float, span: float) -> Array:
-    """Speed (n,), rad/s, whose kinetic energy is `energy` (n,), J, and a constant, set so that the
-    mean over time is `mean_speed`; inertia (n,), kg m2.
+    """Speed (n,), rad/s, of a crank over its cycle from the energy that its torques have given it,
+    with a constant of energy for which the mean speed over time is the stated one.
 
-    StallError where no constant above the lowest speed allowed gives that mean.
+    By Newton's method on the constant.
+
+    Parameters
+    ----------
+    energy : array (n,)    integral of the torque over the angle, J, at equal angles
+    inertia : array (n,)   kg m2
+    mean_speed : float     mean over time, rad/s
+    span : float           angle of the cycle, rad, for the message
+
+    Raises
+    ------
+    StallError
+        If no constant with which the speed is at least 1 % of the mean everywhere gives that mean.
+    CamError
+        If the steps do not converge.
     """
 
     def speed(floor: float) -> Array:
@@ -399,13 +417,27 @@ def _speed(energy: Array, inertia: Array, mean_speed: float, span: float) -> Arr
 def _speed_on_line(
     driven: Array, inertia: Array, motor: MotorLine, start: Array, span: float
 ) -> Array:
-    """Periodic speed of torques (n,), N m, and a motor: dE/dtheta = T + T_motor(omega).
+    """Periodic speed (n,), rad/s, of a shaft driven by a motor and other torques T: dE/dtheta = T +
+    T_motor(omega), E = J omega^2/2.
 
-    Newton's steps from the speed `start`, each the solution of the linearised equation
-    dE/dtheta + c E = r, with c > 0 where the line falls. With the integrating factor of c about its
-    mean it has constant coefficients, and each harmonic its own equation. A steep line on a light
-    crank has a factor that harmonics do not resolve: c is then the middle of its range, and each
-    step leaves the share of the error that c departs from it.
+    Newton's steps, each the solution of the linearised equation dE/dtheta + c E = r, with c > 0
+    where the torque of the motor falls. With the integrating factor of c about its mean it has
+    constant coefficients, and each harmonic its own equation. A steep line on a light crank has a
+    factor that harmonics do not resolve: c is then the middle of its range, and each step leaves
+    the share of the error that c departs from it.
+
+    Parameters
+    ----------
+    driven : array (n,)    T without the motor, N m, at equal angles
+    inertia : array (n,)   J, kg m2
+    motor : MotorLine      torque over speed
+    start : array (n,)     first speed, rad/s
+    span : float           angle of the cycle, rad
+
+    Raises
+    ------
+    CamError
+        If the torque of the motor does not fall with the speed, or the steps do not converge.
     """
     speed, order = start, _orders(driven.size, span)
     for _ in range(_SPEED_STEPS_MAX):
@@ -441,8 +473,8 @@ def _orders(count: int, span: float) -> Array:
 
 
 def _integral(values: Array, span: float) -> Array:
-    """Integral over the shaft angle of values (n,) of zero mean, itself of zero mean; they span
-    `span`, rad, at equal angles. By Fourier series.
+    """Integral over the shaft angle of periodic values (n,) of zero mean at equal angles over a
+    cycle of `span`, rad; the integral has zero mean. By Fourier series.
     """
     spectrum, order = np.fft.rfft(values), _orders(values.size, span)
     spectrum[0] = 0.0

@@ -87,6 +87,9 @@ class RunningGear(Part):
     """crank angle of each cylinder behind the first"""
 
     def __post_init__(self) -> None:
+        """Refuse a rod that is not longer than crank radius plus pin offset, and firing offsets
+        that are none or not finite.
+        """
         super().__post_init__()
         if not self.rod_length > self.crank_radius + abs(self.pin_offset):
             limit = f"> crank_radius = {shown(self.crank_radius, 'mm')}"

@@ -27,7 +27,12 @@ class TorqueTable(Part):
 
 
 def torque_from_cycle(cycle: CylinderCycle) -> Torque:
-    """Engine torque from the cycle of one cylinder, common to all, at their firing offsets."""
+    """Torque of an engine of equal cylinders, by component, from the cycle of one: repeated at the
+    firing offsets and summed.
+
+    Gas, inertia of the reciprocating masses, valve train, friction and, where there is one, oil
+    dipper.
+    """
     parts = {
         "gas": cycle.gas_torque,
         "inertia": cycle.inertia_torque,

@@ -37,14 +37,15 @@ def wall_area(engine: CylinderEngine, theta: ArrayLike) -> Array:
 def film_coefficient(
     engine: CylinderEngine, crank_speed: float, theta: Array, volume: Array, charge: Charge
 ) -> FilmCoefficient:
-    """Function of node number of the cycle, pressure, Pa, and temperature, K, for the film
-    coefficient of the walls, W/(m2 K).
+    """Film coefficient of the heat transfer from the gas to the walls, W/(m2 K), as a function of
+    node number in the cycle, pressure, Pa, and temperature, K.
 
     Parameters
     ----------
-    crank_speed : float        rad/s
-    theta, volume : array (n,) crank angle (rad) and cylinder volume (m3) at the nodes
-    charge : Charge            at intake valve close; used by Woschni only
+    engine : CylinderEngine      with the law, "hohenberg" or else Woschni's, and a factor on it
+    crank_speed : float          rad/s
+    theta, volume : array (n,)   crank angle, rad, and cylinder volume, m3, at the nodes
+    charge : Charge              at intake valve close; used by Woschni only
 
     References
     ----------

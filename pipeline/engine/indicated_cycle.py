@@ -69,7 +69,11 @@ class CylinderCycle:
 
     @property
     def dipper_torque(self) -> Array:
-        """Drag torque of the oil dipper about both bottom dead centres, N m."""
+        """Drag torque of the oil dipper on the crank, N m, <= 0, at each angle of the cycle.
+
+        Drag of a flow at the speed of the dipper, times a cosine from 1 at bottom dead centre to 0
+        at the immersion angle on either side.
+        """
         engine = self.engine
         if engine.dipper_area == 0.0:
             return np.zeros_like(self.theta)
@@ -82,7 +86,9 @@ class CylinderCycle:
 
     @property
     def friction_torque(self) -> Array:
-        """Constant friction torque, N m: from the friction pressure, or closing the balance.
+        """Friction torque of one cylinder on the crank, N m, <= 0, the same at every angle: that of
+        the friction mean effective pressure or, where none is stated, as much as leaves no mean
+        torque.
 
         Raises
         ------

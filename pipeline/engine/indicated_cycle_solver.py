@@ -45,8 +45,15 @@ class _Steps:
 
 
 def _steps(engine: CylinderEngine, crank_speed: float) -> _Steps:
-    """Steps of the cycle, finer where open valves level the pressure fast, and the engine at their
+    """Integration steps of the cycle, with burning rate, volume, wall and valve areas at their
     nodes.
+
+    Finer where open valves level the pressure fast.
+
+    Raises
+    ------
+    InputError
+        If the valves level it too fast for `_SUB_STEPS_MAX` within a degree of the crank.
     """
     intake, exhaust = intake_valve(engine), exhaust_valve(engine)
     start = ceil(degrees(engine.intake_window[1]) - 1e-9)
@@ -97,13 +104,14 @@ class _Port:
         return self.enthalpy / self.mass if self.mass > 0.0 else self.fresh_enthalpy
 
     def give(self, drawn: float) -> tuple[float, float]:
-        """Let a mass flow into the cylinder.
+        """Take a mass `drawn`, kg, out of the intake into the cylinder: gas pushed back before
+        first, then fresh charge.
 
         Returns
         -------
-        burnt : float       burnt gas in it, kg
-        enthalpy : float    excess over its mass at the enthalpy offered, J: not zero if the gas
-                            pushed back runs out and fresh charge follows
+        burnt : float      burnt gas in it, kg
+        enthalpy : float   its enthalpy less that of the same mass as offered, J: not zero if the
+                           gas pushed back runs out and fresh charge follows
         """
         if self.mass == 0.0:
             return 0.0, 0.0
@@ -148,12 +156,22 @@ def _rates_of(
     steps: _Steps,
     film: FilmCoefficient,
 ) -> Rates:
-    """Function of node number, mass, kg, energy, J, and specific enthalpy of the gas offered by the
-    intake, J/kg, for the flows per rad of the crank: mass through the intake and through the
-    exhaust valve, positive into the cylinder, kg; enthalpy with them, work of the gas, heat lost,
-    J.
+    """Function for the flows of mass and energy of the cylinder per rad of the crank.
+
+    Its arguments are node number, mass, kg, and internal energy, J, of the gas and specific
+    enthalpy of the gas that the intake offers, J/kg. It returns the mass through the intake and
+    through the exhaust valve, positive into the cylinder, kg/rad, the enthalpy with both, the work
+    of the gas and the heat lost, J/rad.
 
     Its inputs are bound to local names, since it is called some 1e4 times per cycle.
+
+    Parameters
+    ----------
+    engine : CylinderEngine   temperatures of the walls, pressures and temperatures of the ports
+    crank_speed : float       rad/s
+    gas : Gas                 law of its energy
+    steps : _Steps            volume and areas at the nodes
+    film : FilmCoefficient    node, pressure, temperature -> W/(m2 K)
     """
     volume, volume_rate = steps.volume.tolist(), steps.volume_rate
     wall, intake_area, exhaust_area = steps.wall, steps.intake, steps.exhaust
@@ -208,11 +226,20 @@ def _step(
     heat: float,
     offered: float,
 ) -> Flows:
-    """Flows over one classical Runge-Kutta step of `length`, rad, with heat released at a constant
-    rate `heat`, J/rad: mass through intake and exhaust valve, kg, enthalpy, work, heat lost, J; see
-    `_rates_of`.
+    """Flows over one step of the classical Runge-Kutta method, the heat released at a constant
+    rate: mass through intake and exhaust valve, kg, positive into the cylinder; enthalpy with both,
+    work of the gas, heat lost, J.
 
     Written out: the loop over the steps takes the time of a cycle.
+
+    Parameters
+    ----------
+    rates : Rates        flows per rad; see `_rates_of`
+    node : int           of the start of the step; the next two are its middle and end
+    length : float       rad
+    content : _Content   gas at the start of the step
+    heat : float         rate of heat release, J/rad
+    offered : float      specific enthalpy of the gas that the intake offers, J/kg
     """
     mass, energy, half = content.mass, content.energy, 0.5 * length
     i1, x1, h1, w1, q1 = rates(node, mass, energy, offered)
@@ -236,10 +263,15 @@ def _step(
 
 
 def _exchange(content: _Content, port: _Port, intake: float, exhaust: float, gas: Gas) -> float:
-    """Update burnt gas and the gas in the intake by masses that passed the valves into the
-    cylinder, kg.
+    """Update the burnt gas in the cylinder, and the gas pushed back into the intake, after a step;
+    returns the enthalpy, J, of the gas drawn in less that of the same mass as offered.
 
-    Returns the excess enthalpy (J) of the gas drawn in over its mass at the enthalpy offered.
+    Parameters
+    ----------
+    content : _Content        gas in the cylinder, before its mass and energy are updated
+    port : _Port              gas pushed back into the intake
+    intake, exhaust : float   mass through each valve into the cylinder, kg; negative: out of it
+    gas : Gas                 law of its energy
     """
     own, over = content.burnt / content.mass, 0.0
     if intake > 0.0:
@@ -270,14 +302,23 @@ def _one_cycle(
     content: _Content,
     port: _Port,
 ) -> tuple[Array, CycleBalance]:
-    """Step `content` and `port` through one cycle.
+    """Integrate the working cycle once; `content` and `port` are changed to their state at its end.
 
     Mass and energy are the unknowns, so both are conserved to round-off whatever the step.
 
+    Parameters
+    ----------
+    engine : CylinderEngine   the engine
+    crank_speed : float       rad/s
+    gas : Gas                 law of its energy
+    steps : _Steps            steps of the cycle
+    content : _Content        gas in the cylinder at its start
+    port : _Port              gas pushed back into the intake
+
     Returns
     -------
-    states : array (2, 720)   mass (kg) and energy (J) at the whole degrees, from `steps.start`
-    balance : CycleBalance
+    states : array (2, 720)   mass, kg, and energy, J, at the whole degrees, from `steps.start`
+    balance : CycleBalance    sums of mass and energy over the cycle
     """
     pressure, temperature = content.state(gas, float(steps.volume[0]))
     charge = Charge(pressure, temperature, float(steps.volume[0]))

@@ -75,17 +75,18 @@ def passages_of(
     harmonics: int,
     like: Array | None = None,
 ) -> Passages:
-    """Mean edge times of a record, averaged over cycles of nearly one speed.
+    """Mean edge times of a record of a trigger wheel, averaged over cycles of nearly one speed.
 
     A wheel on the crank does not distinguish the two turns of a cycle: each run begins in the turn
     in which its half orders are most like those of the first run, or of another record.
 
     Parameters
     ----------
-    runs : sequence of runs    each the edges of `counted`
-    wheel : TriggerWheel       its own edge angles are not used
-    harmonics : int            of the cycle, above which a time is noise
-    like : array, optional     half orders of another record
+    source : str              name of the record, for messages
+    runs : sequence of runs   each the edges of `counted`
+    wheel : TriggerWheel      its own edge angles are not used
+    harmonics : int           highest harmonic of the cycle; what is above in a time is noise
+    like : array, optional    half orders of another record; see `_half_orders`
 
     Raises
     ------
@@ -126,12 +127,17 @@ def passages_of(
 
 
 def _cycles(run: Sequence[Edges], wheel: TriggerWheel) -> list[tuple[Array, Array, Array]]:
-    """Nominal angles, rad, edge numbers and times, s, of the edges of each whole cycle of a run.
+    """Edges of each whole cycle of a run: angles of a wheel without errors, rad, as in the first
+    cycle; numbers of the edges on the wheel; times from the first edge of the cycle, s.
 
-    run : edges of each kind, rising and falling. Both ends of a cycle belong to it; times count
-    from its first edge, angles are as in the first cycle. Edges that are missed or too many have
-    been refused before (`counted`); a cycle whose number of edges differs from that of the first,
-    by round-off at its ends, is left out.
+    Both ends of a cycle belong to it. Edges that are missed or too many have been refused before
+    (`counted`); a cycle whose number of edges differs from that of the first, by round-off at its
+    ends, is left out.
+
+    Parameters
+    ----------
+    run : sequence         edges of each kind, rising and falling
+    wheel : TriggerWheel   of equal pitches
     """
     angle = np.concatenate([wheel.angle(edges.places, edges.falling) for edges in run])
     times = np.concatenate([edges.times for edges in run])
@@ -154,11 +160,23 @@ def _cycles(run: Sequence[Edges], wheel: TriggerWheel) -> list[tuple[Array, Arra
 def _half_orders(
     source: str, cycles: Sequence[tuple[Array, Array, Array]], harmonics: int
 ) -> tuple[Array, Array]:
-    """Half orders of the mean cycle of a run, cosines then sines, rad, and the variance (m,), rad2,
-    of the angle of an edge in each cycle.
+    """Half orders in the times between the two passages of an edge in a cycle, mean of a run:
+    cosines, then sines, rad; and the variance of the angle at which an edge is seen, rad2, in each
+    of the m cycles.
 
-    The same edge passes twice in a cycle. The difference of its two times is free of pitch errors
-    and holds half orders of the torque alone, those above `harmonics` are noise.
+    The difference of the two times of an edge is free of pitch errors and holds half orders of the
+    torque alone; those above `harmonics` are noise.
+
+    Parameters
+    ----------
+    source : str        name of the record, for messages
+    cycles : sequence   of `_cycles`
+    harmonics : int     highest harmonic of the cycle; with n edges in a turn, fewer than n
+
+    Raises
+    ------
+    InputError
+        If the edges of the two turns differ, or are too few for the harmonics.
     """
     angle, edge, _ = cycles[0]
     times = np.array([cycle[2] for cycle in cycles])

@@ -76,12 +76,18 @@ class VoltageTable(WheelTable):
     """share of the amplitude at which the voltage is switched"""
 
     def wheel_shown(self, field: str, shown: ToothPattern) -> TriggerWheel:
-        """Trigger wheel as stated, completed by what the signal shows.
+        """Trigger wheel as stated in the case, completed by what the signal shows.
+
+        Parameters
+        ----------
+        field : str            name of the signal, for messages
+        shown : ToothPattern   teeth seen in the signal
 
         Raises
         ------
         InputError
-            If they contradict each other, by the key.
+            If case and signal contradict each other, by the key; if neither has the number of
+            teeth.
         """
         known = {
             "teeth": shown.teeth, "missing_teeth": shown.missing_teeth,
@@ -123,9 +129,9 @@ class Crossings:
         """Whether the middles of the teeth are at the rising crossings, as with a pick-up of
         reversed polarity.
 
-        The crossings at the middles of teeth divide the gaps of the wheel in two: the others do
-        not. Without a gap, or a crossing in it, the steep ones are at the teeth; of equally steep
-        ones those with less jitter.
+        The crossings at the middles of teeth divide the gaps of the wheel in two, those of the
+        other kind do not. Without a gap, or a crossing in it, the crossings of the steep kind are
+        at the teeth; of equally steep ones those with less jitter.
         """
         middles = middles_by_gaps(self.times[~self.rising], self.times[self.rising])
         if middles:
@@ -187,8 +193,12 @@ class Swing:
         return Crossings(times, rising, slopes)
 
     def upright(self, threshold: float) -> Swing:
-        """The voltage with its polarity such that the middles of the teeth are at falling
-        crossings.
+        """Voltage with the polarity with which the middles of the teeth are at falling crossings;
+        unchanged where the crossings are too few to show it.
+
+        Parameters
+        ----------
+        threshold : float   of half the swing, exceeded on both sides of a crossing
         """
         crossings = self.crossings(threshold)
         if crossings.times.size < CROSSINGS_MIN or not crossings.mirrored:
@@ -238,9 +248,14 @@ def swing_of(field: str, time: ArrayLike, voltage: ArrayLike) -> Swing:
 
 def _base(value: Array, half: float) -> float:
     """Voltage without a tooth, V, from the middle between the rails: a rail of a rectified wave,
-    the median of any other; half : half the distance of the rails, V.
+    the median of any other, 0 where that is near a rail.
 
     The median of a squared wave is at a rail as well; it crosses any level at once.
+
+    Parameters
+    ----------
+    value : array (n,)   V, from the middle between the rails
+    half : float         half the distance of the rails, V
     """
     near = [float((np.abs(value - rail) < NEAR_RAIL * 2.0 * half).mean()) for rail in (-half, half)]
     if max(near) > HALF_WAVE and min(near) < HALF_WAVE_OTHER * max(near):
@@ -250,8 +265,11 @@ def _base(value: Array, half: float) -> float:
 
 
 def _without_drift(volts: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Voltage (n,) without its drift, V, and which samples (n,) are in blocks of the record in
-    which teeth pass.
+    """Voltage (n,) less its drift, V, and which samples (n,) are in blocks of the record in which
+    teeth pass.
+
+    The drift is a polynomial through the middles between the rails of these blocks; it is left in
+    where it is small against swing and scatter.
     """
     edges = np.linspace(0, volts.size, BLOCKS + 1).astype(int)
     rails = np.array([np.quantile(volts[a:b], RAILS) for a, b in pairwise(edges)])
@@ -269,9 +287,16 @@ def _without_drift(volts: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def _noise(value: Array, half: float) -> float:
-    """Standard deviation of white noise, V, by fourth differences of samples between the rails.
+    """Standard deviation, V, of white noise in a voltage, from fourth differences of samples
+    between the rails.
 
-    A clipped voltage has no noise at its rails; a squared one is nowhere between them.
+    A clipped voltage has no noise at its rails; a squared one is nowhere between them: all samples
+    are then used.
+
+    Parameters
+    ----------
+    value : array (n,)   V, from the middle between the rails
+    half : float         half the distance of the rails, V
     """
     between = np.convolve(np.abs(value) > INSIDE * half, np.ones(5), "valid") < 0.5
     fourth = np.abs(np.diff(value, 4))
@@ -288,11 +313,17 @@ def _even(time: Array) -> Array:
 def _lines(
     time: Array, value: Array, noise: float, before: NDArray[np.intp], after: NDArray[np.intp]
 ) -> tuple[Array, Array]:
-    """Times (k,), s, and slopes (k,), V/s, at which straight lines through the flanks are zero;
-    before, after : samples (k,) at both ends of each flank.
+    """Times (k,), s, and slopes (k,), V/s, at which straight lines through k flanks of a voltage
+    cross zero.
 
     A line is that of least squares through the samples that noise may bring to zero; where they are
     fewer than three, through the two beside the first change of sign.
+
+    Parameters
+    ----------
+    time, value : arrays (n,)     s; V, less the switching level
+    noise : float                 standard deviation, V
+    before, after : arrays (k,)   indices of the samples at both ends of each flank
     """
     if before.size == 0:
         return np.zeros(0), np.zeros(0)
@@ -341,8 +372,13 @@ def crossings_of(field: str, swing: Swing, threshold: float) -> Crossings:
 
 
 def _relative_speed(time: Array, middles: Array) -> Array:
-    """Speed over its mean at times (n,), s, by a spline through the times of the tooth middles
-    (m,), s.
+    """Speed of the wheel over its mean (n,), by a cubic spline of the places of the teeth over
+    their times.
+
+    Parameters
+    ----------
+    time : array (n,)      at which it is wanted, s
+    middles : array (m,)   times of the middles of the teeth, s
     """
     middles = np.delete(middles, extra_teeth(middles))
     intervals = np.diff(middles)
@@ -354,7 +390,7 @@ def _relative_speed(time: Array, middles: Array) -> Array:
 
 
 def _enough(field: str, crossings: Crossings) -> Crossings:
-    """The crossings; InputError if they are too few for a wheel."""
+    """The crossings themselves; InputError, naming `field`, if they are too few for a wheel."""
     if crossings.times.size < CROSSINGS_MIN:
         limit = f"{CROSSINGS_MIN} or more; check channel, record and engine.threshold"
         raise InputError(field, f"{crossings.times.size} crossings", limit)
@@ -380,15 +416,19 @@ class PickupRun:
 def passage(
     field: str, crossings: Crossings, base: float, wheel: TriggerWheel, extra: int
 ) -> PickupRun:
-    """Edges of one run past the pick-up, falling crossings as the first kind, with the positions of
-    their teeth.
+    """Edges of one run past the pick-up, with the positions of their teeth: of the falling
+    crossings, then of the rising ones.
 
     The falling crossings, which are steep, are counted. Rising ones in the gap of the wheel are
     left out, and all of them where they jitter more.
 
     Parameters
     ----------
-    base : float   V, of `Swing`: the middle of a tooth is where the flank reaches it
+    field : str             name of the signal, for messages
+    crossings : Crossings   of the run
+    base : float            V, of `Swing`: the middle of a tooth is where the flank reaches it
+    wheel : TriggerWheel    with its number of teeth
+    extra : int             additional teeth between two others, 0 or 1; the first one is the origin
 
     Raises
     ------
@@ -423,14 +463,16 @@ def passage(
 def speed_from_voltage(
     path: str | Path, table: VoltageTable, calibrator: Calibrator | None = None
 ) -> SpeedTrace:
-    """Crank speed from a CSV file of time and voltage.
+    """Crank speed from a CSV file of time and voltage of a pick-up.
 
-    Every voltage column, or each of those that `column` names, is a run, or several between which
-    the crank stood still.
+    Every voltage column, or each of those that `column` of the table names, is a run, or several
+    between which the crank stood still.
 
     Parameters
     ----------
-    calibrator : Calibrator   None: a wheel without pitch errors
+    path : path               of the file
+    table : VoltageTable      wheel, threshold, filter of the speed
+    calibrator : Calibrator   of the pitch errors; None: a wheel without pitch errors
 
     Raises
     ------
@@ -447,7 +489,17 @@ def speed_from_voltage(
 
 
 def _signals(path: str | Path, column: str) -> tuple[str, Array, dict[str, Array]]:
-    """Name of a file, times, s, and voltages, V, by column."""
+    """Name of a CSV file, times (n,), s, and voltages (n,), V, by column.
+
+    Parameters
+    ----------
+    column : str   beginning of the headers of the columns to read; "": all of voltage
+
+    Raises
+    ------
+    InputError
+        If there is not one column of time, or none of voltage.
+    """
     text = trace_text(Path(path), "time_s,voltage_V")
     times, volts = columns_of(text.header, "time"), columns_of(text.header, "voltage", column)
     if len(times) != 1 or not volts:
@@ -464,12 +516,15 @@ def _signals(path: str | Path, column: str) -> tuple[str, Array, dict[str, Array
 def edges_of_signals(
     source: str, time: ArrayLike, signals: Mapping[str, Array], table: VoltageTable
 ) -> tuple[EdgeRecord, Recording]:
-    """Edges in the voltages of a record, and what they show of the wheel.
+    """Edges of a trigger wheel in the voltages of a record, with the wheel, and what the record
+    shows of the wheel.
 
     Parameters
     ----------
-    time : array (n,)             s
-    signals : mapping to (n,)     V, by name
+    source : str                name of the record, for messages
+    time : array (n,)           s
+    signals : mapping to (n,)   V, by name
+    table : VoltageTable        wheel and threshold as stated
 
     Raises
     ------
@@ -513,7 +568,7 @@ def _runs(crossings: Crossings) -> list[Crossings]:
 
 
 def _common(patterns: Sequence[tuple[str, ToothPattern]]) -> ToothPattern:
-    """Tooth pattern that all runs show; InputError if two differ.
+    """Tooth pattern that all runs show, of pairs of run name and pattern; InputError if two differ.
 
     A run without a recurring mark agrees with any.
     """

@@ -86,8 +86,10 @@ class PitchErrors:
 
     @property
     def of_edges(self) -> Array:
-        """Covariance (2 e, 2 e) of the angles by which edges are seen too late in the mean of the
-        measured cycles, in the first turn and the second, noise and pitch errors together, rad2."""
+        """Covariance (2 e, 2 e), rad2, of the angles by which the e edges are seen too late in the
+        mean of the measured cycles, in the first turn and then in the second: noise and remaining
+        pitch errors together.
+        """
         twice = np.tile(self.covariance, (2, 2))
         twice[np.diag_indices_from(twice)] += self.noise**2
         if not self.shared.size:
@@ -186,8 +188,17 @@ class _Times:
         inertia: Inertia,
         harmonics: int,
     ) -> _Times:
-        """Passing times of a passage; `lean`: place of its speed in the range, `measured`: of the
-        first record.
+        """Passing times of one passage of the wheel, prepared for integration from edge to edge by
+        Gauss quadrature.
+
+        Parameters
+        ----------
+        passage : Passage   mean edge times of a cycle
+        noise : float       of an edge of one cycle, rad
+        lean : float        place of its speed in the range of speeds, about the middle of the range
+        measured : bool     whether it is of the first record
+        inertia : Inertia   of crank and running gear, kg m2
+        harmonics : int     h, of the work over the crank angle
         """
         nodes, weights = np.polynomial.legendre.leggauss(_GAUSS_NODES)
         half = 0.5 * np.diff(passage.angle)[:, None]
@@ -212,9 +223,17 @@ class _Times:
         return np.asarray(self.passage.times * (self.passage.mean_speed / self.noise))
 
     def predicted(self, state: _State, k: int) -> tuple[Array, Array, Array] | None:
-        """Times of the edges (n,), and their derivatives by the unknowns of the passage, t_0, E, m
-        (n, 3), and by the common ones, work, change and errors (n, 4 h + e); times in units of
-        their noise. None where the crank would nearly stand still.
+        """Predicted times of the n edges of a passage, and their derivatives, all in units of the
+        noise of a time: times (n,); by its own unknowns, start t_0, mean energy E and mean torque
+        m, (n, 3); by the common unknowns, work, change of work with speed, and pitch errors, (n, 4
+        h + e).
+
+        None where the energy, and with it the speed, would nearly vanish.
+
+        Parameters
+        ----------
+        state : _State   unknowns at which the times are predicted
+        k : int          index of the passage in `state.own`
         """
         passage, work = self.passage, state.work + self.lean * state.change
         span = passage.angle - passage.angle[0]
@@ -281,8 +300,9 @@ class _State:
         )
 
     def change_ratio(self, marks: NDArray[np.bool_]) -> float:
-        """Change of the work with the speed over the work itself: rms of the waves marked (2 h,),
-        noise deducted; 0 where noise alone explains it.
+        """Change of the work over the range of speed as a share of the work, over the waves marked
+        (2 h,): root of the ratio of their sums of squares, noise deducted; 0 where noise alone
+        explains the change, or there is no work.
         """
         size = self.work.size
         noise = np.diag(self.covariance)[size : 2 * size][marks].sum()
@@ -300,8 +320,14 @@ class _Prior:
 
     @classmethod
     def of(cls, state: _State, tolerance: float, change: Array) -> _Prior:
-        """Prior of the unknowns: errors by their tolerance, rad; work free; change by its standard
-        deviation (2 h,), J, fixed at 0 where that is.
+        """Prior of the common unknowns: nothing is known of the work, the change has zero mean and
+        a standard deviation, as have the pitch errors.
+
+        Parameters
+        ----------
+        state : _State          with the energy as the unit of work and change
+        tolerance : float       standard deviation of a pitch error, rad
+        change : array (2 h,)   standard deviation of the change of each wave, J; 0: fixed at zero
         """
         energy = float(np.mean(state.own[:, 1]))
         size, edges = state.work.size, state.errors.size
@@ -335,8 +361,15 @@ class _Reduced(NamedTuple):
 
     @classmethod
     def of(cls, part: _Times, state: _State, k: int, prior: _Prior) -> _Reduced | None:
-        """Equations of passage number k, linear at a state; None where the crank would nearly stand
-        still.
+        """Linear equations for the unknowns from the edge times of one passage, its own unknowns
+        eliminated; None where the crank would nearly stand still.
+
+        Parameters
+        ----------
+        part : _Times    the passage
+        state : _State   at which the times are linearised
+        k : int          index of the passage in `state.own`
+        prior : _Prior   which common unknowns are free, and their units
         """
         predicted = part.predicted(state, k)
         if predicted is None:
@@ -365,11 +398,20 @@ class _Reduced(NamedTuple):
 
 
 def _solved(parts: Sequence[_Times], state: _State, tolerance: float, change: Array) -> _State:
-    """Most probable state, by Gauss-Newton steps.
+    """Most probable work, change and pitch errors for the edge times of several passages, by
+    Gauss-Newton steps.
 
     Parameters
     ----------
+    parts : sequence        passing times of each passage
+    state : _State          first values
+    tolerance : float       standard deviation of a pitch error, rad
     change : array (2 h,)   J, standard deviation of the change of each wave; 0: none
+
+    Raises
+    ------
+    CamError
+        If the steps do not converge, or the edges do not determine the harmonics.
     """
     prior = _Prior.of(state, tolerance, change)
     rows = _reduced(parts, state, prior)
@@ -408,8 +450,16 @@ def _reduced(parts: Sequence[_Times], state: _State, prior: _Prior) -> list[_Red
 def _with_covariance(
     state: _State, parts: Sequence[_Times], rows: Sequence[_Reduced], prior: _Prior, inverse: Array
 ) -> _State:
-    """Solved state with the covariance of its unknowns, the misfit over the noise, and the
-    covariance with the noise of each time; `inverse`: of the normal matrix.
+    """Solved state with the covariance of its unknowns, the misfit, rms of what is left of the
+    times over the noise, and the covariance of the unknowns with the noise of each time.
+
+    Parameters
+    ----------
+    state : _State     solved
+    parts : sequence   passing times of each passage
+    rows : sequence    their linear equations at the state
+    prior : _Prior     of the common unknowns
+    inverse : array    of the normal matrix of the free common unknowns, in their units
     """
     freedom = sum(part.passage.angle.size - 3 for part in parts) - inverse.shape[0]
     freedom += float(prior.precision @ np.diag(inverse))  # an unknown left at its prior is none

@@ -105,6 +105,7 @@ class PressureTable(CrankDrive, _PressureFile):
     """measured brake power at the speed of the first load case, in place of its torque"""
 
     def __post_init__(self) -> None:
+        """Refuse keys that exclude or need one another; see the class."""
         super().__post_init__()
         if self.brake_torque is not None and self.brake_power is not None:
             power = shown(self.brake_power, "kW")
@@ -152,6 +153,9 @@ class PressureTrace:
     offset: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse values that are not finite, and fewer than 12 angles; the arrays become
+        read-only.
+        """
         cycles = finite(f"{self.source} pressure", self.cycles)
         if cycles.ndim != 2 or cycles.shape[1] < 12:
             raise InputError(f"{self.source} pressure", cycles.shape, "(cycles, 12 angles or more)")
@@ -190,7 +194,9 @@ class PressureTrace:
         )
 
     def turned(self, offset: float) -> PressureTrace:
-        """Trace with its angles later by `offset`, rad; by Fourier series."""
+        """Trace shifted to later crank angles by `offset`, rad: p(theta - offset); by Fourier
+        series.
+        """
         if offset == 0.0:
             return self
         order = np.arange(self.cycles.shape[1] // 2 + 1) * (2.0 * pi / CYCLE_ANGLE)
@@ -223,8 +229,8 @@ class PressureTrace:
         return self
 
     def scale(self, engine: CrankDrive, intake_pressure: float) -> float:
-        """Rise of the pressure in compression over that of a polytropic from intake pressure (Pa),
-        -.
+        """Ratio of the rise of the mean pressure in compression, over `COMPRESSION_WINDOW`, to that
+        of a polytropic from intake pressure, Pa, at bottom dead centre; 1 where both agree.
         """
         low, high = COMPRESSION_WINDOW
         ends = np.interp([low, high], self.theta, self.mean)
@@ -234,12 +240,19 @@ class PressureTrace:
         return float((ends[1] - ends[0]) / expected)
 
     def guard_scale(self, engine: CrankDrive, intake_pressure: float) -> None:
-        """Refuse pressures whose rise in compression does not agree with the engine.
+        """Refuse pressures whose rise in compression does not agree with the geometry of the
+        engine; see `scale`.
+
+        Parameters
+        ----------
+        engine : CrankDrive       cylinder volume over crank angle
+        intake_pressure : float   absolute, Pa
 
         Raises
         ------
         InputError
-            With the unit that agrees, if one does.
+            If the ratio is not within 1/`SCALE_MAX` to `SCALE_MAX`; names the unit that agrees, if
+            one does.
         """
         scale = self.scale(engine, intake_pressure)
         if 1.0 / SCALE_MAX <= scale <= SCALE_MAX:
@@ -254,7 +267,9 @@ class PressureTrace:
 
 
 def _unit_hint(peak: float) -> str:
-    """Unit in which a peak (Pa) out of range would be in range, for the message."""
+    """End of a message: the unit in which a peak pressure, read as `peak`, Pa, would be in the
+    usual range; "" where none would.
+    """
     typical = (4e5, 2e7)
     for factor, words in ((1e5, "bar"), (1e6, "MPa"), (1e-5, "Pa"), (1e3, "kPa"), (1e-6, "Pa")):
         if typical[0] <= peak * factor <= typical[1]:
@@ -406,8 +421,17 @@ def pressure_from_csv(
 
 
 def _bare_angle(units: tuple[str, str]) -> tuple[int, float]:
-    """Column number, 0, of the angle in a file without a header, and the factor of its
-    unit to rad.
+    """Index of the angle column, 0, of a file without a header, and the factor from its unit to
+    rad.
+
+    Parameters
+    ----------
+    units : tuple of str   stated units of angle and pressure
+
+    Raises
+    ------
+    InputError
+        If the unit of the angle is not known.
     """
     factor = ANGLE_UNITS.get(units[0])
     if factor is None:
@@ -424,10 +448,22 @@ def _cycles(
     labels: Sequence[str],
     gap_max: float,
 ) -> list[Trace]:
-    """Trace of each cycle and column of a file; cycles may stand one below the other.
+    """Pressure trace of each cycle and column of a file; cycles may also stand one below the other.
 
-    written : angles (n,) in the unit of the file, factor : to rad; values (n, k), Pa; labels :
-    headers of the columns.
+    Parameters
+    ----------
+    name : str               of the file
+    lines : sequence (n,)    line of each row in the file
+    written : array (n,)     crank angles in the unit of the file
+    factor : float           from this unit to rad
+    values : array (n, k)    pressures, Pa, of k columns
+    labels : sequence (k,)   headers of the columns
+    gap_max : float          maximum gap between rows, rad
+
+    Raises
+    ------
+    InputError
+        If the angles are not in order, a cycle is not 720 deg long, or a gap is too wide.
     """
     angle = _unwrapped(written * factor)
     guard_order(name, lines, angle / factor, "crank angle")
@@ -473,10 +509,19 @@ def _unwrapped(angle: Array) -> Array:
 def torque_from_pressure(
     trace: PressureTrace, engine: PressureTable, crank_speed: float, brake: float = 0.0
 ) -> Torque:
-    """Engine torque from the mean of the measured cycles, common to all cylinders.
+    """Engine torque, by component, from the mean of the measured pressure cycles, common to all
+    cylinders.
 
-    Components are the gas, the inertia of the reciprocating masses at constant speed, and
-    friction: of the friction pressure, or what closes the balance with the brake torque (N m).
+    Components are the gas, the inertia of the reciprocating masses at constant speed, and friction:
+    of the friction mean effective pressure or, without one, what closes the balance with the brake
+    torque.
+
+    Parameters
+    ----------
+    trace : PressureTrace    of one cylinder, Pa, absolute
+    engine : PressureTable   crank drive and firing offsets
+    crank_speed : float      rad/s
+    brake : float            mean brake torque of the engine, N m; 0: it drives nothing
 
     Raises
     ------

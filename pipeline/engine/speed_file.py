@@ -99,6 +99,9 @@ class WheelTable(Part):
     """crank, connecting rod and piston, for their inertia in the pitch errors of the wheel"""
 
     def __post_init__(self) -> None:
+        """Refuse a wheel with too many missing teeth, and a reference record that lacks running
+        gear or pitch tolerance.
+        """
         super().__post_init__()
         _ = self.wheel  # refuses too many missing teeth
         reference = self.reference
@@ -164,11 +167,20 @@ class SpeedTable(WheelTable):
 def edges_from_csv(
     path: str | Path, wheel: TriggerWheel, both_edges: bool = True, column: str = ""
 ) -> EdgeRecord:
-    """Edges of each run in a file: a column of their times per run, or a logic level over time.
+    """Edges of a trigger wheel in each run of a file: a column of their times per run, or a logic
+    level over time.
 
-    Columns of levels, 0 and 1, are those named `column`, else ``PriLevel``, the primary trigger in
-    the composite log of an engine control, else the only one. Of a wheel with several gaps the
-    record shows the teeth between them.
+    Columns of levels, 0 and 1, are those whose header begins with `column`, else ``PriLevel``, the
+    primary trigger in the composite log of an engine control, else the only one. Of a wheel with
+    several gaps the record shows the teeth between them.
+
+    Parameters
+    ----------
+    path : path            of the file
+    wheel : TriggerWheel   as stated
+    both_edges : bool      in a file of times, whether every second edge is a falling one; of
+                           levels, whether falling edges are used as well
+    column : str           beginning of the headers of the columns to read; "": see above
 
     Raises
     ------
@@ -197,8 +209,15 @@ def _longest(times: Array) -> float:
 def _counted(
     field: str, run: Array, wheel: TriggerWheel, both: bool
 ) -> tuple[tuple[Edges, ...], TriggerWheel]:
-    """Edges of a run, and the wheel, completed by the rows of teeth between its gaps where it has
-    several.
+    """Edges of a run with their places on the wheel, and the wheel; where the run shows several
+    gaps in a turn, the wheel has the rows of teeth between them.
+
+    Parameters
+    ----------
+    field : str            name of the run, for messages
+    run : array (n,)       times of the edges, s
+    wheel : TriggerWheel   as stated
+    both : bool            whether every second edge is a falling one
     """
     if wheel.missing_teeth and not wheel.rows and (np.diff(run) > 0.0).all():
         kinds = (run[::2], run[1::2]) if both else (run,)
@@ -211,7 +230,13 @@ def _counted(
 
 
 def _times(text: TraceText, column: str) -> dict[str, Array]:
-    """Times of edges (n,), s, of each run by its header."""
+    """Times of edges (n,), s, from each column of time, a run each, by its header.
+
+    Parameters
+    ----------
+    text : TraceText   the file
+    column : str       beginning of the headers of the columns to read; "": all of time
+    """
     wanted = columns_of(text.header, "time", column)
     if not wanted:
         limit = f"a column of time with its unit ({', '.join(QUANTITY_UNITS['time'])})"
@@ -246,8 +271,13 @@ def _level_columns(text: TraceText, column: str) -> list[int]:
 
 
 def _changes(text: TraceText, levels: Sequence[int]) -> dict[str, Array]:
-    """Times (n,), s, at which each logic level changes, by its header; the first change is a rising
-    one.
+    """Times (n,), s, at which each logic level of a file changes, by header of the level; from its
+    first rising change on.
+
+    Parameters
+    ----------
+    text : TraceText    the file, with one column of time
+    levels : sequence   indices of the columns of the levels
     """
     header = text.header
     times = columns_of(header, "time")
@@ -281,18 +311,19 @@ def speed_from_csv(
     """Crank speed from a file of tooth times, or of speed per tooth over crank angle.
 
     A file with a column of crank angle has speeds, a column per run; any other has edges; see
-    `edges_from_csv`. Without a gap the cycle begins with the record; the turn with the
+    `edges_from_csv`. Without a gap in the wheel the cycle begins with the record; the turn with the
     expansion follows from the speed.
 
     Parameters
     ----------
-    wheel : TriggerWheel
-    band : Filter
+    path : path               of the file
+    wheel : TriggerWheel      of which edges are the edges; not used with speeds
+    band : Filter             of the speed
     both_edges : bool         times: every second edge is a falling one
     column : str              beginning of the headers of the columns to read
     unit : str                speeds: the unit of columns without one
     averaged_over : float     speeds: rad over which each is a mean
-    calibrator : Calibrator   None: a wheel without pitch errors
+    calibrator : Calibrator   of the pitch errors; None: a wheel without pitch errors
 
     Raises
     ------
@@ -324,11 +355,14 @@ def speed_of_record(
     calibrator: Calibrator | None,
     read: Callable[[Path], EdgeRecord],
 ) -> SpeedTrace:
-    """Crank speed from edge times, with the expansion in the second turn of each cycle.
+    """Crank speed over the cycle from the edge times of a record, with the expansion in the second
+    turn of each cycle.
 
     Parameters
     ----------
-    calibrator : Calibrator   None: a wheel without pitch errors
+    record : EdgeRecord       name, runs and wheel
+    band : Filter             of the speed
+    calibrator : Calibrator   of the pitch errors; None: a wheel without pitch errors
     read : function           edges of a second record in a file of the same form
 
     Raises
@@ -347,7 +381,21 @@ def speed_of_record(
 
 
 def _speed_table(text: TraceText, column: str, unit: str) -> tuple[Array, Array]:
-    """Angles (n,), rad, and speeds (m, n), rad/s, of one cycle."""
+    """Crank angles (n,), rad, and speeds (m, n), rad/s, of one cycle, from m columns of a file.
+
+    Parameters
+    ----------
+    text : TraceText   the file
+    column : str       beginning of the headers of the columns to read; "": all of speed, which have
+                       to be alike
+    unit : str         of columns without a unit in the header; "": these are not read
+
+    Raises
+    ------
+    InputError
+        If the unit is not known, no column has a speed, or the angles are not in order over one
+        cycle.
+    """
     name, header = text.name, text.header
     at, factor = angle_column(name, header)
     wanted = columns_of(header, "speed", column)
@@ -373,8 +421,19 @@ def _speed_table(text: TraceText, column: str, unit: str) -> tuple[Array, Array]
 
 
 def _without_unit(name: str, header: Sequence[str], column: str) -> list[int]:
-    """Numbers of the columns without a unit: those named `column`, else all, which have to be alike
-    but for numbers.
+    """Indices, from 0, of the columns of a file without a unit in the header: those whose header
+    begins with `column`, else all.
+
+    Parameters
+    ----------
+    name : str          of the file, for messages
+    header : sequence   of each column
+    column : str        beginning of the headers wanted; "": all
+
+    Raises
+    ------
+    InputError
+        If `column` is "" and the headers differ in more than numbers.
     """
     bare = [at for at, head in enumerate(header) if not has_unit(head)]
     named = named_columns(header, column, bare)

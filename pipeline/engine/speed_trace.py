@@ -72,7 +72,9 @@ class Filter(Part):
 
     @property
     def weights(self) -> Array:
-        """Factor (last + 1,) of the filter on harmonics 0 to `last` of the cycle."""
+        """Factors (last + 1,) by which the low-pass filter multiplies harmonics 0 to `last` of the
+        cycle: 1, then a cosine flank to 0 centred on the bandwidth.
+        """
         share = np.arange(self.last + 1) / self.harmonics
         if self.taper == 0.0:
             return np.ones_like(share)
@@ -111,6 +113,9 @@ class SpeedTrace:
     recording: Recording | None = None
 
     def __post_init__(self) -> None:
+        """Refuse speeds that are not finite or out of the range of engines; the arrays become
+        read-only.
+        """
         speeds = finite(f"{self.source} speed", self.speeds)
         low, high = SPEED_RANGE
         if not low <= float(speeds.min()) <= float(speeds.max()) <= high:
@@ -236,24 +241,26 @@ def speed_from_edges(
     band: Filter,
     errors: PitchErrors | None = None,
 ) -> SpeedTrace:
-    """Band-limited crank speed from edge times.
+    """Band-limited crank speed over the cycle from edge times.
 
-    The slowness 1/omega is a band-limited series over the cycle whose integral from edge to edge
-    of one kind is the time between them, by least squares. Neither the width of a tooth nor the
-    length of an interval, a gap included, distorts the speed.
+    The slowness 1/omega is a band-limited series over the cycle whose integral from edge to edge of
+    one kind is the time between them, by least squares. Neither the width of a tooth nor the length
+    of an interval, a gap included, distorts the speed.
 
     Parameters
     ----------
-    runs : sequence of runs    each the edges of `counted`
-    wheel : TriggerWheel
-    band : Filter
-    errors : PitchErrors       corrected; what remains of them is in the error bar; None: a wheel
-                               without errors
+    source : str              name of the record
+    runs : sequence of runs   each the edges of `counted`
+    wheel : TriggerWheel      angles of the edges
+    band : Filter             of the slowness
+    errors : PitchErrors      corrected; what remains of them is in the error bar; None: a wheel
+                              without errors
 
     Raises
     ------
     InputError
-        If no run holds a whole cycle, or the teeth are too few for the filter.
+        If no run holds a whole cycle, the teeth are too few for the filter, or the slowness is not
+        positive.
     """
     if errors is not None:
         wheel = errors.corrected(wheel)
@@ -285,21 +292,23 @@ def speed_from_teeth(
     width: float = 0.0,
     tolerance: float = 0.0,
 ) -> SpeedTrace:
-    """Band-limited crank speed from values at crank angles.
+    """Band-limited crank speed over the cycle from speeds at crank angles, by least squares.
 
     Parameters
     ----------
-    angle : array (n,)        rad, over one cycle
-    speeds : array (m, n)     rad/s, a row per cycle or run
-    band : Filter
-    width : float             rad, over which each value is a mean; 0: a point
-    tolerance : float         rad, standard deviation of the place of an edge, if each value is a
-                              pitch over its time
+    source : str            name of the record
+    angle : array (n,)      rad, over one cycle
+    speeds : array (m, n)   rad/s, a row per cycle or run
+    band : Filter           of the speed
+    width : float           rad, over which each value is a mean; 0: a point
+    tolerance : float       rad, standard deviation of the place of an edge, if each value is a
+                            pitch over its time
 
     Raises
     ------
     InputError
-        If a speed is not positive, or the values are too few for the filter.
+        If a speed is not positive, the width is above 60 deg, or the values are too few for the
+        filter.
     """
     at, values = finite(source, angle), positive(f"{source} speed", speeds, "rad/s")
     if not 0.0 <= width <= np.radians(60.0):
@@ -325,7 +334,15 @@ def speed_from_teeth(
 
 
 def _guard_unknowns(source: str, matrix: Array, band: Filter) -> None:
-    """Refuse a filter with too many harmonics for the intervals of a cycle."""
+    """Refuse a filter whose harmonics have more unknowns than `SHARE_MAX` of the intervals of a
+    cycle.
+
+    Parameters
+    ----------
+    source : str            name of the record, for the message
+    matrix : array (n, u)   from u unknowns to n intervals
+    band : Filter           with its harmonics
+    """
     if matrix.shape[1] > SHARE_MAX * matrix.shape[0]:
         most = int((0.5 * SHARE_MAX * matrix.shape[0] - 0.5) / (1.0 + band.taper))
         limit = f"<= {max(most, 1)} for {matrix.shape[0]} intervals in a cycle"
@@ -335,9 +352,21 @@ def _guard_unknowns(source: str, matrix: Array, band: Filter) -> None:
 def _cycles_of(
     source: str, runs: Sequence[Sequence[Edges]], wheel: TriggerWheel
 ) -> tuple[Array, Array, NDArray[np.intp], Array]:
-    """Start and end of each interval between two edges of one kind in the cycle, rad, (n,) each;
-    numbers of these edges in both turns (2, n); durations in each whole cycle of the runs, s, (m,
-    n).
+    """Intervals between edges of one kind in the whole cycles of a record: start and end, rad, (n,)
+    each; numbers of the two edges, in both turns, (2, n); durations, s, (m, n), a row per cycle.
+
+    Cycles whose intervals differ from those of the first are left out.
+
+    Parameters
+    ----------
+    source : str              name of the record, for messages
+    runs : sequence of runs   each the edges of `counted`
+    wheel : TriggerWheel      angles of the edges
+
+    Raises
+    ------
+    InputError
+        If no run holds a whole cycle.
     """
     durations: list[Array] = []
     spans: tuple[Array, Array] | None = None

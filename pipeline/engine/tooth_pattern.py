@@ -60,7 +60,9 @@ class Recording:
 
 
 def tooth_pattern(times: Array) -> ToothPattern:
-    """Most frequent tooth pattern in the times (s) of edges of one kind."""
+    """Most frequent tooth pattern of a wheel, pitches of a turn with missing or additional teeth,
+    seen in the times (n,), s, of edges of one kind.
+    """
     intervals = np.diff(times)
     extra = extra_teeth(times)
     share = intervals / local_median(intervals)
@@ -81,8 +83,15 @@ def tooth_pattern(times: Array) -> ToothPattern:
 
 
 def _gaps(intervals: Array, missing: int) -> NDArray[np.intp]:
-    """Numbers of the intervals that are gaps of `missing` teeth: those with which the speed changes
-    least from interval to interval, by dynamic programming.
+    """Indices of the intervals that are gaps of `missing` teeth.
+
+    Of all choices that for which the speed, pitch over time, changes least from interval to
+    interval; by dynamic programming.
+
+    Parameters
+    ----------
+    intervals : array (n,)   times between edges of one kind, s
+    missing : int            teeth left out at a gap
     """
     slowness = np.log(intervals)[:, None] - np.array([0.0, np.log1p(missing)])
     change = np.abs(slowness[1:, :, None] - slowness[:-1, None, :])  # to either from either
@@ -99,8 +108,14 @@ def _gaps(intervals: Array, missing: int) -> NDArray[np.intp]:
 
 
 def _missing(intervals: Array, gaps: NDArray[np.intp], most: int) -> int:
-    """Number of teeth left out at each gap, up to `most`, with which the speed changes least from
+    """Number of teeth left out at each gap for which the speed, pitch over time, changes least from
     interval to interval.
+
+    Parameters
+    ----------
+    intervals : array (n,)   times between edges of one kind, s
+    gaps : array             indices of those that are gaps
+    most : int               greatest number tried
     """
     pitches = np.ones((most, intervals.size))
     pitches[:, gaps] += np.arange(1, most + 1)[:, None]
@@ -109,8 +124,12 @@ def _missing(intervals: Array, gaps: NDArray[np.intp], most: int) -> int:
 
 
 def _recurring(between: NDArray[np.intp]) -> tuple[int, ...]:
-    """Numbers of teeth in the rows between several gaps of a turn, the longest row first; () where
-    they do not recur or there is one gap.
+    """Numbers of teeth in the rows between the several gaps of a turn, the longest row first; empty
+    where they do not recur or a turn has one gap.
+
+    Parameters
+    ----------
+    between : array   numbers of teeth between the gaps of a record, in order
     """
     for count in range(1, between.size - 1):
         if (between[count:] == between[:-count]).all():
@@ -157,7 +176,9 @@ def regular(intervals: Array) -> NDArray[np.bool_]:
 
 
 def extra_teeth(times: Array) -> NDArray[np.intp]:
-    """Indices of additional teeth between two at the usual distance."""
+    """Indices of the edges of additional teeth, which stand between two teeth at the usual
+    distance, in the times (n,), s, of edges of one kind.
+    """
     intervals = np.diff(times)
     share = intervals / local_median(intervals)
     short, both = share < EVEN[0], share[:-1] + share[1:]
@@ -166,7 +187,9 @@ def extra_teeth(times: Array) -> NDArray[np.intp]:
 
 
 def runs_of(times: Array) -> list[slice[int, int, None]]:
-    """Slices of the times of a record, s, one per run between pauses of the crank."""
+    """Slices of the edge times of a record, s, one for each run between pauses of the crank,
+    intervals above `PAUSE` times the median.
+    """
     intervals = np.diff(times)
     ends = np.flatnonzero(intervals > PAUSE * np.median(intervals)) + 1
     bounds = [0, *(int(end) for end in ends), times.size]

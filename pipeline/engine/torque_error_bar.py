@@ -40,8 +40,13 @@ class SlopeNoise:
 
     @classmethod
     def of(cls, slope: Array, freedom: float) -> SlopeNoise:
-        """Noise by a linear map (n, observations) of independent unit noise to the slope; freedom :
-        degrees of freedom of the estimated noise.
+        """Noise of the slope domega/dtheta from that of the observations.
+
+        Parameters
+        ----------
+        slope : array (n, observations)   linear map from independent unit noises of the
+                                          observations to the slope at n angles
+        freedom : float                   degrees of freedom of the estimated noise
         """
         gain = np.sqrt((slope**2).sum(axis=1))
         unit = slope / gain[:, None]
@@ -79,13 +84,16 @@ class SlopeNoise:
         return np.asarray(self._factor((count - 1) * self.dimensions) * error * self.gain)
 
     def _factor(self, freedom: float) -> float:
-        """Half-width over standard error of a band that holds a whole closed curve at 95 %, by the
-        degrees of freedom; infinite: known noise.
+        """Half-width, over the standard error, of a band that holds a whole closed curve at 95 %.
+
+        Parameters
+        ----------
+        freedom : float   degrees of freedom of the estimated noise; infinite: known noise
 
         References
         ----------
-        Sun and Loader, Annals of Statistics 22 (1994) 1328, eq. 3.1, t instead of normal; the
-        curve is closed, so the term of its ends is absent.
+        Sun and Loader, Annals of Statistics 22 (1994) 1328, eq. 3.1, t instead of normal; the curve
+        is closed, so the term of its ends is absent.
         """
         share = pi * (1.0 - CONFIDENCE) / self.path
         if np.isinf(freedom):

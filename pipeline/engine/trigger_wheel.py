@@ -59,6 +59,9 @@ class TriggerWheel(Part):
     falling: Array | None = None
 
     def __post_init__(self) -> None:
+        """Refuse more missing teeth than a quarter of the pitches, and rows that do not add up to
+        them; the arrays become read-only.
+        """
         super().__post_init__()
         if self.missing_teeth > self.teeth // 4:
             limit = f"<= {self.teeth // 4}, a quarter of engine.teeth"
@@ -104,8 +107,12 @@ class TriggerWheel(Part):
         return replace(self, rising=None, falling=None)
 
     def displaced(self, errors: Array) -> TriggerWheel:
-        """The wheel of equal pitches with its edges later by angles (rad): rising edges (n - m,)
-        first, then falling ones."""
+        """Wheel of equal pitches with its edges displaced by pitch errors, rad, positive: later.
+
+        Parameters
+        ----------
+        errors : array   of the rising edges (n - m,), then of the falling ones, if any
+        """
         at = self.places * self.pitch
         rising, falling = errors[: self.present], errors[self.present :]
         between = at[: falling.size] + self.tooth_share * self.pitch
@@ -116,7 +123,14 @@ class TriggerWheel(Part):
         )
 
     def angle(self, place: Array, falling: bool) -> Array:
-        """Crank angle (rad) of edges at places of teeth, counted from the reference."""
+        """Crank angle of edges, rad (...), at places of teeth, in pitches, counted from the
+        reference tooth over all turns.
+
+        Parameters
+        ----------
+        place : array (...)   whole numbers, gaps included
+        falling : bool        falling edges of the teeth; else the rising ones
+        """
         turn, tooth = np.divmod(place, self.teeth)
         known = self.falling if falling else self.rising
         at = tooth * self.pitch + (self.tooth_share * self.pitch if falling else 0.0)
@@ -174,8 +188,15 @@ def counted(field: str, times: ArrayLike, wheel: TriggerWheel, both: bool) -> tu
 
 
 def _guard_kinds(field: str, times: Array, gaps: NDArray[np.bool_]) -> None:
-    """Refuse edges whose gaps, of the intervals between rising ones (n,), are before falling ones:
-    one before was missed or is too many, or the first is a falling one."""
+    """Refuse edges whose gaps lie before falling edges: one before was missed or is too many, or
+    the first edge is a falling one.
+
+    Parameters
+    ----------
+    field : str         name of the run, for the message
+    times : array       of all edges, s, rising and falling in turn
+    gaps : array (n,)   which intervals between rising edges are gaps
+    """
     rising, falling = times[::2], times[1::2]
     late = falling[: gaps.size] - rising[:-1] > 0.5 * np.diff(rising)
     if (gaps & late).any():
@@ -185,10 +206,17 @@ def _guard_kinds(field: str, times: Array, gaps: NDArray[np.bool_]) -> None:
 
 
 def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
-    """Tooth positions (n,) of edges of one kind by their `times` (s), gaps counted.
+    """Tooth positions (n,), in pitches from the reference tooth, of edges of one kind, gaps
+    counted.
 
     The first edge is that of the tooth with which the speed changes least from interval to
     interval, so that a gap may pass at another speed than its neighbours.
+
+    Parameters
+    ----------
+    field : str            name of the run, for messages
+    times : array (n,)     of the edges, s
+    wheel : TriggerWheel   with its gaps
 
     Raises
     ------
@@ -217,12 +245,16 @@ def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
 
 
 def _is_steady(slowness: Array, cycle: int) -> bool:
-    """Whether no interval stands out from its neighbours; slowness: logarithm of the time of a
-    pitch (n,).
+    """Whether no interval between teeth stands out from its neighbours, as it would if an edge were
+    missed.
 
     Where the speed changes much within a pitch, an interval is compared with those at the same
-    place in other cycles, of `cycle` intervals; what then stands out in both turns of a cycle is a
-    fault of the wheel.
+    place in other cycles; what then stands out in both turns of a cycle is a fault of the wheel.
+
+    Parameters
+    ----------
+    slowness : array (n,)   logarithm of the time of a pitch in each interval
+    cycle : int             intervals of a cycle, two turns
     """
     if all(_regular(_off_neighbours(slowness, reach)).all() for reach in (1, 2)):
         return True
@@ -247,10 +279,16 @@ def _off_neighbours(values: Array, reach: int) -> Array:
 
 
 def _fits_gap(slowness: Array, gaps: NDArray[np.intp], cycle: int, missing: int) -> bool:
-    """Whether the gaps have the stated number of missing teeth rather than one more or less, at the
-    place in the cycle where the speed changes least.
+    """Whether the gaps have the stated number of missing teeth rather than one more or less, judged
+    at the place in the cycle where the speed changes least.
 
-    slowness : logarithm of the time of a pitch (n,); gaps : numbers of the intervals that are gaps.
+    Parameters
+    ----------
+    slowness : array (n,)   logarithm of the time of a pitch in each interval, with the stated
+                            number
+    gaps : array            indices of the intervals that are gaps
+    cycle : int             intervals of a cycle, two turns
+    missing : int           stated number of teeth left out at a gap
     """
     off, places = _off_neighbours(slowness, 1)[gaps], np.mod(gaps, cycle)
     usual = [float(np.median(off[places == place])) for place in np.unique(places)]
@@ -259,8 +297,14 @@ def _fits_gap(slowness: Array, gaps: NDArray[np.intp], cycle: int, missing: int)
 
 
 def _refuse(field: str, times: Array, wheel: TriggerWheel) -> NoReturn:
-    """InputError for times (n,), s, that are not those of the wheel, by the first interval that
-    shows it.
+    """Raise InputError for edge times that do not fit the wheel, naming the first interval that
+    shows it and what is wrong there.
+
+    Parameters
+    ----------
+    field : str            name of the run
+    times : array (n,)     of edges of one kind, s
+    wheel : TriggerWheel   as stated
     """
     intervals = np.diff(times)
     share = intervals / local_median(intervals)
@@ -288,7 +332,9 @@ def _refuse(field: str, times: Array, wheel: TriggerWheel) -> NoReturn:
 
 
 def local_median(intervals: Array) -> Array:
-    """Running median (n,) of `NEIGHBOURS` intervals, shifted inward near the ends, s."""
+    """Running median (n,), s, of `NEIGHBOURS` intervals (n,), s, about each one; near the ends that
+    of the first or last ones.
+    """
     if intervals.size <= NEIGHBOURS:
         return np.full(intervals.size, float(np.median(intervals)))
     medians = np.median(np.lib.stride_tricks.sliding_window_view(intervals, NEIGHBOURS), axis=1)

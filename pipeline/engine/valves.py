@@ -36,7 +36,9 @@ class Valve:
     table: tuple[LiftPoint, ...] = ()
 
     def lift(self, theta: ArrayLike, derivative: int = 0) -> Array:
-        """Valve lift (m), or its derivative (m/rad), at crank angles (...)."""
+        """Valve lift (...), m, at crank angles (...), rad, or its derivative by the crank angle,
+        m/rad, where `derivative` is 1.
+        """
         past = np.mod(np.asarray(theta, dtype=float) - self.opens, CYCLE_ANGLE)
         duration = self.closes - self.opens
         is_open = past < duration
@@ -118,7 +120,9 @@ def rocker_of(engine: CylinderEngine) -> RockerLinkage:
 
 
 def tappet_force(engine: CylinderEngine, valve: Valve, theta: ArrayLike) -> Array:
-    """Force of the rocker on the cam while the valve is open, else zero, N."""
+    """Force of the valve spring on the cam, through the rocker, at crank angles (...), rad, while
+    the valve is open, else zero, N.
+    """
     lift = valve.lift(theta)
     spring = engine.valve_spring_rate * lift + engine.valve_spring_preload
     rocker = rocker_of(engine)
@@ -126,7 +130,8 @@ def tappet_force(engine: CylinderEngine, valve: Valve, theta: ArrayLike) -> Arra
 
 
 def valve_train_torque(engine: CylinderEngine, theta: ArrayLike) -> Array:
-    """Torque of both valve springs on the crank, positive when they drive it, N m.
+    """Torque of the springs of both valves on the crank, N m, at crank angles (...), rad, positive
+    when they drive it.
 
     Without friction the rocker ratio cancels: it raises the force on the cam by as much as it
     reduces the cam lift.

@@ -155,7 +155,14 @@ def _between(rows: tuple[int, ...]) -> str:
 
 
 def _alike(record: EdgeRecord, second: EdgeRecord) -> tuple[EdgeRecord, EdgeRecord]:
-    """Two records with the kinds of edges that both have; another wheel is refused."""
+    """Two records of one wheel, both with only the kinds of edges, rising or falling, that both
+    have.
+
+    Raises
+    ------
+    InputError
+        If the wheel of the second record has another number of teeth or other gaps.
+    """
     value, limit = (
         f"{wheel.teeth} teeth, {wheel.missing_teeth} missing{_between(wheel.rows)}"
         for _, _, wheel in (second, record)

@@ -118,8 +118,17 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
 
 
 def edge_load(machine: Machine, guide: Guide, temperature: float) -> float | None:
-    """Line load of a guide, N/m, at which its edge pressure reaches the yield strength at a
-    temperature, K; None where either is not known or no load in range reaches it.
+    """Line load of a guide, N/m, at which the pressure of the stem at the edge of its bore reaches
+    the yield strength of the guide.
+
+    None where the strength is not known, the guide has no clearance, or no line load between
+    `_LINE_LOADS` reaches it.
+
+    Parameters
+    ----------
+    machine : Machine     with the stem in the guide
+    guide : Guide         one of its guides
+    temperature : float   of the guide, K, at which the strength holds
     """
     strength, peak = guide.material.yield_strength_at(temperature), edge_pressure_of(machine, guide)
     if not strength > 0.0 or guide.clearance <= 0.0:
@@ -135,10 +144,17 @@ def edge_load(machine: Machine, guide: Guide, temperature: float) -> float | Non
 
 
 def softening(machine: Machine, guide: Guide, temperature: float) -> tuple[float, float]:
-    """Pressure limit, then line load at yield, of a guide at a temperature, K, each over that at
-    room temperature.
+    """Shares of the limits of a guide that are left at a temperature, relative to room temperature:
+    of its pressure limit, then of the line load at which its edge yields, see `edge_load`.
 
-    1 where they are not known at the temperature: the check is then not evaluated.
+    A share is 1 where the limit is not known at either temperature: the check is then not
+    evaluated.
+
+    Parameters
+    ----------
+    machine : Machine     with the stem in the guide
+    guide : Guide         one of its guides
+    temperature : float   of the guide, K
     """
     cold, hot = (edge_load(machine, guide, each) for each in (ROOM, temperature))
     stated, left = guide.pressure_limit, guide.pressure_limit_at(temperature)
@@ -147,10 +163,13 @@ def softening(machine: Machine, guide: Guide, temperature: float) -> tuple[float
 
 
 def greatest_cycles(case: Case) -> LoadCycles:
-    """Upper bound of the load cycles in the target life over all lifts within the limits.
+    """Upper bound, over all lifts within the limits of a case, of the load cycles of cam and
+    follower in the target life.
 
-    The roller centre moves by at most the greatest pitch radius over the cosine of the greatest
-    pressure angle per cam angle.
+    A cycle of the follower is a pass of its most loaded point through the contact. Per radian of
+    the cam the roller centre moves by at most r/cos(alpha): r, prime radius with the greatest
+    allowed travel, or twice the prime radius where no check limits the travel; alpha, greatest
+    allowed pressure angle.
     """
     turns, smoothing = life_turns(machines(case)), case.smoothing
     travel = min(travel_limits(case).values(), default=None)
@@ -175,7 +194,9 @@ class Surge(NamedTuple):
 
 
 def surge_of(solved: Solution) -> Surge | None:
-    """Surge of the spring of a solved cam, over the speed range; None without a spring design."""
+    """Forces, N, that surge of the hardest spring adds over the speed range of a solved cam; None
+    without a spring design or a speed sweep.
+    """
     design, sweep = solved.machine.spring.design, solved.hardest_spring
     if design is None or sweep is None:
         return None
@@ -216,11 +237,12 @@ class TopCam(LoadedCam):
 
 
 def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
-    """Normal force, N, and contact pressure, Pa, at which checks without a closed form reach their
-    limits, by id.
+    """Normal force, N, and contact pressure, Pa, at which checks without a closed form would reach
+    their limits: by group, `NORMAL_FORCE` or `PRESSURE`, and within it by check.
 
-    Extrapolated by a power of the load from their utilisation on a solved cam: they depend on the
-    whole turn, on the unbalance or on the stress below the surface.
+    Extrapolated from a solved cam: with its greatest force or pressure x and the utilisation u of a
+    check that grows with x^p, the limit is x / u^(1/p). These checks depend on the whole turn, on
+    the unbalance or on the stress below the surface.
     """
     force = max(float(cycle.loads.normal_force.max()) for cycle in solved.cycles)
     pressure = max(float(cycle.surface.p0.max()) for cycle in solved.cycles)
@@ -256,11 +278,15 @@ def _travel_limit(case: Case, surge: Surge | None = None) -> dict[str, float]:
 
 
 def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
-    """Greatest lift, m, that each check at maximum lift allows, by id; a check that every lift, or
-    none, passes is left out.
+    """Greatest lift, m, that each check at maximum lift allows, by id; a check that passes or fails
+    at every lift in range is left out.
 
-    Where rate or preload is a variable, the checks of the spring are left out. Without a surge,
-    which depends on the lift, stress and fatigue are a lower bound.
+    The checks of the spring are left out where its rate or preload is a variable of the synthesis.
+
+    Parameters
+    ----------
+    surge : Surge   forces that surge adds to the spring, of a solved cam; None: none, the limits by
+                    stress and fatigue are then too high
     """
     states = machines(case)
     numbers, last = numbers_of(case, states), surge or Surge(1.0, 0.0, 0.0, 0.0)
@@ -277,7 +303,19 @@ def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
 
 
 def _travel(one: Declaration, how: Measured, numbers: Numbers, last: Surge) -> float | None:
-    """Maximum lift, m, at which a check is at its limit; None where there is none."""
+    """Maximum lift, m, at which the demand of a check at maximum lift equals its limit, by root
+    finding.
+
+    None where a number that the check needs is not known, or where it does not change from passed
+    to failed between the least and greatest lift tried, or the reach of the spring.
+
+    Parameters
+    ----------
+    one : Declaration   the check
+    how : Measured      its measure
+    numbers : Numbers   of the machine, SI
+    last : Surge        forces that surge adds to the spring, N
+    """
     measure, limit = one.measure, how.allowed(numbers).value
     lacks = any(numbers.get(key) is None for key in how.needed)
     if measure is None or limit is None or lacks:

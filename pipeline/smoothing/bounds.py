@@ -53,10 +53,11 @@ class Bound:
 
 
 def bounds_of(ratings: Ratings) -> dict[str, Bound]:
-    """Bounds of a synthesis by check.
+    """Bounds of the constraints of a synthesis in drawing units, by the name of the constraint,
+    with slope and relaxation; see `Bound`.
 
-    The slope of the contact pressure is that of a utilisation proportional to the load; see
-    `prices`.
+    Constraints that the ratings do not limit are left out. The slope of the contact pressure is
+    that of a utilisation proportional to the load; see `prices`.
     """
     bounds = {}
     for each in CONSTRAINTS:
@@ -75,7 +76,16 @@ def _times(key: str, ratings: Ratings, factor: float) -> Ratings:
 
 
 def _of_row(row: AnyLimit, ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
-    """Bound of a constraint by the row of its limit; `value`: the limit, SI."""
+    """Bound of a constraint whose limit is a row of the limits of the case: in the unit of the row,
+    with its slope.
+
+    Parameters
+    ----------
+    row : AnyLimit        row of the table of limits
+    ratings : Ratings     of the synthesis, which name the check that sets the limit
+    one : AnyConstraint   the constraint
+    value : float         its limit, SI
+    """
     unit = row.quantity.unit or "-"
     shown, factor = in_unit(value, unit), min(one.kept.factor_max, one.kept.value_max / value)
     is_fixed = ratings.by.get(one.key) == machine_shaft_gap.id  # no limit of the case moves it
@@ -84,8 +94,14 @@ def _of_row(row: AnyLimit, ratings: Ratings, one: AnyConstraint, value: float) -
 
 
 def _of_part(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
-    """Bound of a constraint on a part, in the unit and words of the check that sets it; `value`:
-    the bound, SI.
+    """Bound of a constraint that a part of the machine limits, in the unit and words of the check
+    that sets it.
+
+    Parameters
+    ----------
+    ratings : Ratings     of the synthesis, which name that check
+    one : AnyConstraint   the constraint
+    value : float         its bound, SI
     """
     declared, rule = DECLARED[ratings.by.get(one.key, one.check)], one.kept
     row, shown = declared.limit, in_unit(value, rule.unit)
@@ -108,8 +124,11 @@ def _guide_gap(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
 
 
 def _bearing_life(ratings: Ratings, one: AnyConstraint, _: float) -> Bound | None:
-    """Bound of the bearing life as one on the dynamic rating, N: at the same fatigue load limit
-    life grows with its cube. None without a rating.
+    """Bound of the life of the roller bearing, stated as one on its dynamic load rating, N; None
+    where the rating is not known.
+
+    At the same fatigue load limit the life grows with the cube of the rating. The third argument,
+    the life, is not used.
     """
     rating = ratings.numbers.get(_RATING)
     if rating is None:
@@ -118,7 +137,9 @@ def _bearing_life(ratings: Ratings, one: AnyConstraint, _: float) -> Bound | Non
 
 
 def _with_rating(ratings: Ratings, factor: float) -> Ratings:
-    """Ratings with the dynamic rating of the roller bearing, and the life by it, times a factor."""
+    """Ratings with the dynamic load rating of the roller bearing times a factor, and the bound of
+    its life times the cube of the factor.
+    """
     rated = ratings.numbers | {_RATING: ratings.numbers[_RATING] * factor}
     with_life = roller_life.id in ratings.bounds
     life = ratings.times(roller_life.id, factor**BALL_LIFE_EXPONENT) if with_life else ratings
@@ -126,8 +147,17 @@ def _with_rating(ratings: Ratings, factor: float) -> Ratings:
 
 
 def _concave_radius(ratings: Ratings, one: AnyConstraint, value: float) -> Bound | None:
-    """Bound of the concave radius as one on the tool radius R: the utilisation -kappa (a R - r)
-    grows with R. None where the roller is no smaller.
+    """Bound of the concave radius of the contour, stated as one on the tool radius R, m.
+
+    With kappa the curvature of the contour and a = `TOOL_ALLOWANCE`, the utilisation -kappa (a R -
+    r) grows with R, r: radius of the roller. None where the roller is no smaller than a R: the
+    limit then never binds.
+
+    Parameters
+    ----------
+    ratings : Ratings     with the radius of the roller
+    one : AnyConstraint   the constraint
+    value : float         a R, m
     """
     room = value - float(ratings.numbers["follower.surface"])
     if room <= 0.0:

@@ -43,10 +43,17 @@ from camwright.pipeline.smoothing.scenario import (
 
 
 def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
-    """Lift and three derivatives, m/rad^k, from the stored energy and its derivatives, J/rad^k.
+    """Lift and three derivatives by the cam angle, m/rad^k, of a follower whose spring stores a
+    given energy.
 
-    F = sqrt(P^2 + 2 k E), s = 2 E / (F + P), and E' = F s' differentiated; P: preload, weight and
-    mean external force.
+    With the force F = sqrt(P^2 + 2 k E) of the spring: s = 2 E / (F + P), and the derivatives from
+    E' = F s'. P: preload with weight and mean external force, N; k: spring rate, N/m. A spring that
+    is not linear has the law of its shape.
+
+    Parameters
+    ----------
+    energy : arrays (...)         E, E', E'', E''', above that at zero lift, J/rad^k
+    variables : DesignVariables   k, P and shape of the spring
     """
     level, first, second, third = energy
     if variables.shape is not None:
@@ -63,7 +70,10 @@ def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
 
 
 def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: SpringShape) -> Jet:
-    """As `lift_jet`, of a spring that is not linear: E' = F s', F = P + k rho(s) differentiated."""
+    """Lift and three derivatives by the cam angle of a spring that is not linear; see `lift_jet`.
+
+    F = P + k rho(s), rho: travel of the spring by its shape, m; E' = F s' is differentiated.
+    """
     level, first, second, third = energy
     lift = shaped_deflection(level, variables.rate, variables.closing, shape)
     law = rise(shape, lift)
@@ -116,8 +126,9 @@ class ScenarioCam(LoadedCam):
 
     @cached_property
     def spin_mean(self) -> Array:
-        """Mean roller speed, rad/s: share of the speed from the last solved cam; before there is
-        one, by the prime circle.
+        """Mean speed of the roller about its pin over the turn, rad/s: cam speed times the share
+        that the last solved cam has, or, before there is a solved cam, the ratio of prime circle to
+        roller without slip.
         """
         rolling, path = self.fix.rolling[..., :1], roller_of(self.motion)  # one value
         prime = path.prime_radius[..., :1]
@@ -126,8 +137,11 @@ class ScenarioCam(LoadedCam):
 
     @property
     def direction(self) -> Array:
-        """Sign of the follower motion, -1 to 1: averaged over the cell of a cam angle in which it
-        reverses, so that it is differentiable; see `Scenario`.
+        """Direction of the follower, from -1, falling, to 1, rising.
+
+        In the cell of a cam angle, see `Scenario`, in which the follower reverses, the direction is
+        the mean over the cell, s' over its change within half of it, so that it can be
+        differentiated.
         """
         sharp, cell = super().direction, self.scenario.cell
         if not np.any(cell):
@@ -245,8 +259,14 @@ class Mean(NamedTuple):
         return self._slopes(self.means).T
 
     def hessian(self, weights: Array) -> Array:
-        """Second derivatives (m, m), by the means, of the sum of the utilisations
-        weighted by (r,).
+        """Second derivatives (m, m), by the m means over the turn, of the sum of the utilisations
+        with given weights.
+
+        Central differences of the first derivatives.
+
+        Parameters
+        ----------
+        weights : array (r,)   of the utilisations
         """
         means = self.means
         steps = np.diag(
@@ -272,10 +292,10 @@ _SECOND_STEP = 1e-5  # of a mean: step of the second derivatives
 
 
 def duty_shares(scenario: Scenario) -> Array | None:
-    """Duty of each stacked scenario (r, s), a row per tolerance corner with zeros for the scenarios
-    of others.
+    """Shares of the operating time (r, s): one row per tolerance corner, one column per stacked
+    scenario, zero for the scenarios of other corners.
 
-    None where the case states no duty: each scenario counts for the whole life.
+    None where the case states no duty: each scenario then counts for the whole life.
     """
     if scenario.duty is None:
         return None
@@ -284,13 +304,15 @@ def duty_shares(scenario: Scenario) -> Array | None:
 
 
 def by_duty(terms: Array, scenario: Scenario, power: float = 1.0) -> Mean:
-    """Utilisation by duty-weighted damage or wear over the load cases.
+    """Utilisation from damage or wear, added over the load cases by their shares of the operating
+    time.
 
     Parameters
     ----------
-    terms : array (..., n)   whose mean over the turn is the damage of a load case that runs all of
-                             the life, over the limit
+    terms : array (..., n)   whose mean over the turn is damage over its limit, were the load case
+                             to run all of the life
     scenario : Scenario      stacked
+    power : float            to which the summed means are raised
 
     References
     ----------
@@ -373,7 +395,9 @@ def kept(declared: Declaration) -> Constraint[LoadedCam]:
 
 
 def kept_strokes(declared: Declaration) -> tuple[Constraint[LoadedCam], ...]:
-    """Constraints of a check's further strokes that have limits of their own."""
+    """Constraints of a check that judges several strokes of the follower, of all but the first:
+    each stroke has its own measure and limit.
+    """
     constraint, strokes = (
         kept(declared),
         () if declared.measured is None else declared.measured.strokes,
@@ -390,7 +414,10 @@ def kept_strokes(declared: Declaration) -> tuple[Constraint[LoadedCam], ...]:
 
 
 def kept_loads(declared: Declaration) -> Constraint[ScenarioCam]:
-    """Constraint of a check on loads, reduced over turn and load cases; see `kept`."""
+    """Constraint of a synthesis from a check on the loads, reduced over turn and load cases as the
+    check is: at each angle, mean over the turn, or sum of damage by the duty of the load cases; see
+    `kept`.
+    """
     of_cam, how = kept(declared), declared.measured
 
     def utilisation(cam: ScenarioCam, limit: float) -> Array | Mean | None:

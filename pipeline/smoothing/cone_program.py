@@ -136,8 +136,13 @@ class Cones:
         self._linear.append(_Block.of(matrix, bound))
 
     def rows_at_most(self, entries: ArrayLike, columns: NDArray[np.intp], bound: ArrayLike) -> None:
-        """Add the constraints: sum over w of entries (m, w) times x[columns (m, w)] <=
-        bound (m,).
+        """Add m linear constraints with w unknowns each: sum over w of entries x[columns] <= bound.
+
+        Parameters
+        ----------
+        entries : array (m, w)   coefficients
+        columns : array (m, w)   indices of the unknowns
+        bound : array (m,)       right-hand sides
         """
         rows = np.broadcast_to(np.arange(len(columns))[:, None], columns.shape)
         values = np.broadcast_to(np.asarray(entries, dtype=float), columns.shape)
@@ -147,8 +152,14 @@ class Cones:
     def norm_at_most(
         self, slopes: Array, level: Array, variable: int | None, ceiling: float = 0.0
     ) -> None:
-        """Add the cone |level + slopes @ x| <= ceiling + x[variable]; slopes (m, w) of the first
-        unknowns, level (m,). variable None: the ceiling alone.
+        """Add the second-order cone |level + slopes @ x[:w]| <= ceiling + x[variable].
+
+        Parameters
+        ----------
+        slopes : array (m, w)    by the first w unknowns
+        level : array (m,)       constant part
+        variable : int or None   index of the unknown that bounds the norm; None: the ceiling alone
+        ceiling : float          constant bound
         """
         rows, columns = np.nonzero(slopes)
         values = -slopes[rows, columns]
@@ -162,7 +173,13 @@ class Cones:
     def square_at_most(
         self, matrix: scipy.sparse.csr_array, room: scipy.sparse.csr_array, level: float
     ) -> None:
-        """Add the cones (matrix @ x)^2 <= level + room @ x, row by row; both matrices (m, size)."""
+        """Add m cones, one per row: (matrix @ x)^2 <= level + room @ x.
+
+        Parameters
+        ----------
+        matrix, room : sparse arrays (m, size)   by all unknowns
+        level : float                            the same in each row
+        """
         rows = matrix.shape[0]
         stacked = scipy.sparse.vstack([-room, -room, -2.0 * matrix], format="csr")
         side = np.concatenate([np.full(rows, level + 1.0), np.full(rows, level - 1.0),
@@ -171,8 +188,10 @@ class Cones:
         self._cones.append((_Block.of(stacked[order], side[order]), 3))
 
     def solved(self) -> tuple[Array, Array, float] | None:
-        """Optimum: x (size,), multipliers of the linear constraints in the order added, least cost;
-        None where the solver finds none.
+        """Optimum of the program: x (size,), multipliers of the linear constraints in the order
+        added, least cost; None where the solver finds none.
+
+        Solved with unscaled data first, then with the equilibration of the solver.
         """
         blocks = [*self._linear, *(block for block, _ in self._cones)]
         linear = sum(block.side.size for block in self._linear)
@@ -215,16 +234,20 @@ def solved(
     ripple_weight: float = 1.0,
     reach: Reach | None = None,
 ) -> ConeSolution | None:
-    """Minimum of w (max weighted |norm| + costs) + x'Hx/2 + h'x + penalty x slacks.
+    """Step of least objective by a cone program: w (max weighted |norm| + costs) + x'Hx/2 + h'x +
+    penalty x slacks.
 
     Parameters
     ----------
-    norms : sequence of Norm   the greatest is minimised; those with a ceiling stay below it
-    rows : sequence of Linear  rows of one limit share one slack: its penalty is exact
+    norms : sequence of Norm                 ripples: the greatest weighted one is minimised, those
+                                             with a ceiling stay below it
+    rows : sequence of Linear                linear models of limits and costs; rows of one limit
+                                             share one slack, whose penalty is exact
     curvature, slope : arrays (n, n), (n,)   H, positive semidefinite, and h
-    box : array (2, n)         least and greatest x
-    penalty : float            of a unit of slack
-    reach : Reach              trust region within the box; None: the box alone
+    box : array (2, n)                       least and greatest x
+    penalty : float                          of a unit of slack
+    ripple_weight : float                    w, 0: feasibility alone
+    reach : Reach or None                    trust region within the box; None: the box alone
 
     Returns
     -------
@@ -250,7 +273,9 @@ def solved(
 
 
 def _exceeds(norm: Norm, solution: ConeSolution) -> bool:
-    """Whether a norm that a program left out is over its bounds after the step."""
+    """Whether a ripple that a cone program left out is, after the step of its solution, above its
+    ceiling or, weighted, above the greatest ripple of the program.
+    """
     value = norm.after(solution.step)
     allowed = solution.slack.get(TORQUE_REDUCTION.id, 0.0) + _NORM_TOLERANCE
     over = norm.ceiling is not None and value > norm.ceiling + allowed
@@ -267,7 +292,9 @@ def _solved(
     ripple_weight: float,
     reach: Reach | None,
 ) -> ConeSolution | None:
-    """The cone program of `solved` with every one of the norms in it."""
+    """Solution of the cone program of `solved`, with the same arguments, with all of `norms` in it;
+    None where the solver finds none.
+    """
     size = slope.size
     costs = list(dict.fromkeys(row.name for row in rows if row.cost))
     names = costs + list(dict.fromkeys(r.name for r in rows if r.elastic and not r.cost))

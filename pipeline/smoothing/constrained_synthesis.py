@@ -66,8 +66,14 @@ def approached(problem: Problem) -> State:
 
 
 def started(problem: Problem, ripple_weight: float = 1.0) -> Search:
-    """Search started from the seed of the problem or, without one, from the better of exact energy
-    and optimum of the convex part.
+    """Search for a cam, with its start set: the seed of the problem or, without one, of the energy
+    that balances the torque and the optimum of the convex part that of less merit, which is
+    minimised.
+
+    Parameters
+    ----------
+    ripple_weight : float   of ripple and costs against violated limits in the merit; 0: limits
+                            alone
     """
     search = Search(problem)
     core = convex_start(problem) if problem.seed is None else None
@@ -92,8 +98,14 @@ class _Peaks(NamedTuple):
 
 
 def _beside_peaks(search: Search, state: State) -> Grid:
-    """Cam angles, finer than the points, beside those where a limit is nearly reached; with their
-    splines.
+    """Splines at cam angles between the points of the turn, spaced a `FINEST`-th of theirs, beside
+    each point at which the utilisation of a limit has a peak near 1 or near its maximum over the
+    turn.
+
+    Parameters
+    ----------
+    search : Search   with the points of the turn
+    state : State     with the utilisations at them
     """
     points, step = search.problem.points, search.turn.theta[1]
     near = np.zeros(points, dtype=bool)
@@ -107,8 +119,14 @@ def _beside_peaks(search: Search, state: State) -> Grid:
 
 
 def _between(state: State, peaks: _Peaks) -> Array:
-    """Cam angles between the points, rad, at which the utilisation of a limit has a peak above that
-    at the points by more than a share of the reserve; empty where none has.
+    """Cam angles between the points, rad, to be added to those at which the limits hold: peaks of a
+    utilisation above 1 less half the reserve and above its maximum at the points by a fifth of the
+    reserve. Empty where there is none.
+
+    Parameters
+    ----------
+    state : State    with the utilisations at the points
+    peaks : _Peaks   finer cam angles, with the utilisations there
     """
     angles: list[Array] = []
     for name, value in peaks.uses.items():
@@ -119,8 +137,17 @@ def _between(state: State, peaks: _Peaks) -> Array:
 
 
 def _design(search: Search, descent: Descent, steps: int, peaks: _Peaks) -> Design:
-    """Design of the last state of a search, its energy raised where it is below the least between
-    the points.
+    """Design from the last state of a search, with utilisations, multipliers and Lagrangian.
+
+    Where the energy is below the least allowed between the points, all of it is raised by the
+    difference.
+
+    Parameters
+    ----------
+    search : Search     at its last refinement
+    descent : Descent   the last one, with state, model and program
+    steps : int         of all descents
+    peaks : _Peaks      utilisations between the points, which count as well
     """
     state, theta, points = descent.state, search.turn.theta, search.problem.points
     # Between the points the energy may dip below its least value by their spacing squared.
@@ -155,7 +182,11 @@ def _design(search: Search, descent: Descent, steps: int, peaks: _Peaks) -> Desi
 
 
 def _multipliers(descent: Descent) -> dict[str, float]:
-    """Multiplier of each limit by name: sum over its rows; those next to zero left out."""
+    """Multipliers of the limits, by name, from the last cone program of a descent: decrease of the
+    objective per unit of utilisation, summed over the rows of a limit.
+
+    Those below `_MULTIPLIER_LEAST` are left out; empty where no program was solved.
+    """
     model, program = descent.model, descent.program
     if model is None or program is None:
         return {}

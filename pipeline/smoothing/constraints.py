@@ -62,8 +62,17 @@ def _utilisations(
     ratings: Ratings,
     names: Container[str] | None,
 ) -> Mapping[str, Array | Mean]:
-    """Utilisations by name of those constraints that the ratings bound; `names`: of these alone,
-    None: of all.
+    """Utilisations of the constraints that the ratings limit, by name: (..., n) at the cam angles,
+    or a mean over the turn.
+
+    A constraint that does not apply to the cam is left out.
+
+    Parameters
+    ----------
+    constraints : tuple         functions of the cam and of their limit, SI
+    state : State               cam, unloaded or in a scenario
+    ratings : Ratings           with the limits
+    names : container or None   constraints to evaluate; None: all
     """
     uses: dict[str, Array | Mean] = {}
     for each in constraints:

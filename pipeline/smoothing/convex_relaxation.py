@@ -87,10 +87,11 @@ def convex_start(problem: Problem) -> Core | None:
 
 
 def _program(search: Search) -> Cones:
-    """Cone program of the convex problem.
+    """Cone program for the cam of least ripple without friction and inertia, a convex problem.
 
-    Unknowns: coefficients over their scale, the ripple, and at each point sigma / P, which is at
-    most the spring force over that at zero lift.
+    Unknowns: coefficients of the energy over their scale, greatest ripple, and at each point sigma
+    / P, sigma being at most the spring force and P that at zero lift. Bounds: least and greatest
+    initial energy, travel, pressure angle or width of a flat face, normal force.
     """
     problem, variables, ratings = search.problem, search.problem.variables, search.problem.ratings
     count, points = problem.coefficients, problem.points
@@ -134,8 +135,9 @@ def _program(search: Search) -> Cones:
 
 
 def _ripple(search: Search, program: Cones) -> None:
-    """Add to the cost of a program the greatest weighted ripple and the weighted jerk of the
-    energy, which stands for that of the lift.
+    """Add the objective of the convex problem to its cone program: the greatest weighted ripple of
+    the scenarios, and the weighted square of the third derivative of the energy, which stands for
+    the jerk of the lift.
     """
     problem = search.problem
     count = problem.coefficients

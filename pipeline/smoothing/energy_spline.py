@@ -32,7 +32,9 @@ _LEAST_CURVATURE = 1e-3  # of the greatest E'': of a reversal that is followed
 
 @lru_cache(maxsize=1)
 def _pieces() -> Array:
-    """Powers of the cardinal quintic B-spline on its six parts, (part, rising power)."""
+    """Polynomials (6, 6) of the cardinal quintic B-spline, one row for each of its six knot
+    intervals: coefficients of rising powers of the place within the interval, 0 to 1.
+    """
     spline = scipy.interpolate.BSpline.basis_element(np.arange(DEGREE + 2), extrapolate=False)
     powers = scipy.interpolate.PPoly.from_spline((spline.t, spline.c, spline.k)).c[::-1]
     inside = powers[:, DEGREE:-DEGREE] if powers.shape[1] > DEGREE + 1 else powers
@@ -70,7 +72,9 @@ def basis_matrix(
 def basis_rows(
     theta: ArrayLike, count: int, derivative: int = 0, lobes: int = 1
 ) -> tuple[Array, NDArray[np.intp]]:
-    """Non-zero entries (n, 6) of the rows of `basis_matrix`, with their columns."""
+    """Values of the six B-splines that are not zero at each cam angle (n, 6), and their indices
+    (n, 6): the entries and columns of `basis_matrix`, whose parameters it has.
+    """
     if derivative not in range(DEGREE):
         raise InputError("derivative", derivative, "0, 1, 2, 3 or 4")
     values, columns = _rows(theta, count, (derivative,), lobes)
@@ -80,8 +84,20 @@ def basis_rows(
 def _rows(
     theta: ArrayLike, count: int, derivatives: Sequence[int], lobes: int
 ) -> tuple[Array, NDArray[np.intp]]:
-    """Non-zero entries (d, n, 6) of d derivatives of the B-splines at cam angles (n,), rad, and
-    their columns (n, 6).
+    """Derivatives (d, n, 6), by the cam angle, of the six B-splines that are not zero at each cam
+    angle, and their indices (n, 6).
+
+    Parameters
+    ----------
+    theta : array (n,)       cam angles, rad
+    count : int              splines of a lobe
+    derivatives : sequence   the d orders, 0 to 5
+    lobes : int              equal lobes of the turn
+
+    Raises
+    ------
+    InputError
+        If there are too few splines, or an angle is not finite.
     """
     if not count >= LEAST_COEFFICIENTS:
         raise InputError("smoothing.coefficients", count, f">= {LEAST_COEFFICIENTS}")
@@ -118,7 +134,11 @@ class Grid:
         return cls(theta, columns, entries)
 
     def energy(self, coefficients: Array) -> tuple[Array, ...]:
-        """E, E', E'', E''' at the angles, J/rad^k, each (m,)."""
+        """Stored energy and its derivatives by the cam angle, E, E', E'', E''', J/rad^k, each (m,),
+        from the coefficients (count,), J, of its splines.
+
+        Where the follower reverses, E' has the sign of the side from which the angle is approached.
+        """
         local = coefficients[self.columns]
         parts = [np.sum(entry * local, axis=1) for entry in self.entries]
         if self.side is not None:
@@ -142,15 +162,18 @@ class Grid:
 
 
 def reversals(turn: Grid, coefficients: Array, lobes: int) -> Grid:
-    """Cam angles at which the follower reverses (E' = 0), by Newton's method, each twice, as
-    approached from either side (2 r,).
+    """Splines at the cam angles where the follower reverses (E' = 0), r angles by Newton's method,
+    each twice, as approached from either side (2 r,).
 
     The angles move with the coefficients: E' stays zero, so that the entries are total derivatives,
-    B^(k) - E^(k+1)/E'' B'. Reversals of next to no curvature, as in a dwell, are left out.
+    B^(k) - E^(k+1)/E'' B', with B a spline. Reversals of next to no curvature, as in a dwell, are
+    left out.
 
     Parameters
     ----------
-    turn : Grid   equally spaced cam angles of the turn
+    turn : Grid                     equally spaced cam angles of the turn
+    coefficients : array (count,)   of the energy of a lobe, J
+    lobes : int                     equal lobes of the turn
     """
     slope, energy_d2 = turn.energy(coefficients)[1:3]
     k = np.flatnonzero((slope > 0.0) != (np.roll(slope, -1) > 0.0))
@@ -211,9 +234,14 @@ def fitted_energy(cam_torque: ArrayLike, count: int, lobes: int = 1) -> Array:
 
 
 def lowest(coefficients: Array) -> float:
-    """Minimum of the energy, J: on a grid finer than the knots, refined between its angles.
+    """Minimum of the stored energy over the turn, J, on a grid finer than the knots, refined by
+    Newton's method between its angles.
 
     The angle of one lobe is scaled to a turn, which does not change the minimum.
+
+    Parameters
+    ----------
+    coefficients : array (count,)   of the splines of a lobe, J
     """
     theta = uniform_turn(max(_FIT_ANGLES, 16 * coefficients.size))
     values = basis_matrix(theta, coefficients.size) @ coefficients

@@ -152,10 +152,14 @@ def rank(checks: Sequence[Check], ripple: float) -> Rank:
 def compared(
     problem: Problem, design: Design, solved: Solution, checks: Sequence[Check] = ()
 ) -> Comparison:
-    """Comparison of a solved cam with its synthesis.
+    """Comparison of a cam solved by finite elements with its synthesis by closed forms: new
+    corrections, and by how much they change each utilisation and the objective.
 
     Parameters
     ----------
+    problem : Problem   of which the cam is the optimum
+    design : Design     the synthesis
+    solved : Solution   its cam
     checks : sequence   of the solved cam, judged at the tolerance corners; none: the synthesis is
                         not corrected for corners and error bars
     """
@@ -183,11 +187,19 @@ def compared(
 def judged_over(
     uses: Mapping[str, float], checks: Sequence[Check], known: Mapping[str, float] | None
 ) -> dict[str, float]:
-    """Ratio, by limit, of judged utilisation to that of the corrected synthesis.
+    """Utilisation by which a run judges a check, over that of the corrected synthesis, by check; 1
+    to `_JUDGED_MOST`.
 
-    The check is judged at its worst tolerance corner, at the end of its error bar. Of failed
-    checks and those known before, by which a growing ratio is extrapolated; known None: of all, as
-    the limits conflict.
+    The run judges at the worst tolerance corner and the end of the error bar. A ratio that has
+    grown since the last correction is extrapolated: multiplied by its growth. Of checks that must
+    be met, those that fail and those with a known ratio.
+
+    Parameters
+    ----------
+    uses : mapping            utilisation of the corrected synthesis by limit
+    checks : sequence         of the solved cam
+    known : mapping or None   ratios of the last correction; None, where the limits conflict: all
+                              checks get one
     """
     ratios = {}
     for one in checks:
@@ -208,15 +220,18 @@ def judged_over(
 
 
 def corrected(problem: Problem, design: Design, cams: Sequence[Comparison]) -> Problem:
-    """Problem of the next trial, with mixed corrections, started from the design.
+    """Problem of the next trial, with mixed corrections, started from the design of the last.
 
     The corrections are the convex combination of those of all cams for which the change of the
-    utilisations of the latest cam, over the turn, is least: where several limits alternate, their
-    changes cancel. This is Anderson's mixing without extrapolation.
+    utilisations of the design over the turn, by the corrections of a cam against those applied in
+    its synthesis, is least: where several limits alternate, their changes cancel. This is
+    Anderson's mixing without extrapolation.
 
     Parameters
     ----------
-    cams : sequence   of all trials in order, that of the design last
+    problem : Problem   of the last trial
+    design : Design     its optimum
+    cams : sequence     of all trials in order, that of the design last
 
     References
     ----------
@@ -263,7 +278,13 @@ def shares(changes: Array) -> Array:
 
 
 def _mixed(corrections: Sequence[Correction], weights: Array) -> Correction:
-    """Mean of corrections at equal cam angles, weighted by `weights` (m,)."""
+    """Weighted mean of corrections, at the equal cam angles of the last one with weight.
+
+    Parameters
+    ----------
+    corrections : sequence, m   ratios of finite elements to closed forms
+    weights : array (m,)        of each, summing to 1
+    """
     mean, total = corrections[0], float(weights[0])
     for one, weight in zip(corrections[1:], weights[1:], strict=True):
         total += float(weight)
@@ -272,8 +293,9 @@ def _mixed(corrections: Sequence[Correction], weights: Array) -> Correction:
 
 
 def corrections_of(solved: Solution) -> dict[str, Correction]:
-    """Corrections by load case: results of the finite elements of a solved cam over those of closed
-    forms, with the surge over the speed range.
+    """Corrections of the closed forms by load case, from a solved cam: loads and pressures of the
+    finite elements over those of the closed forms, surge of the spring over the speed range, and
+    strength left in warm guides.
     """
     swept = {sweep.preload: _at_least_force(solved, sweep) for sweep in solved.speed_sweeps}
     guides = zip(GUIDES, solved.machine.guides.both, strict=True)
@@ -294,7 +316,14 @@ def _temperature(solved: Solution, side: Side) -> float:
 
 
 def _at_least_force(solved: Solution, sweep: SpeedSweep) -> Correction:
-    """Correction by surge and elastic stem alone, at the speeds with the least contact forces."""
+    """Correction of the spring force alone, N, by surge with a rigid and with an elastic stem, each
+    at the speed of a sweep with the least contact force.
+
+    Parameters
+    ----------
+    solved : Solution    with the cam
+    sweep : SpeedSweep   contact forces over the speed range, at the preload of a load case
+    """
     cycle = next(each for each in solved.cycles if each.machine.spring.preload == sweep.preload)
 
     def at(force: Array) -> tuple[float, SweptForces]:
@@ -355,8 +384,14 @@ class _Statics(NamedTuple):
 
     @classmethod
     def of(cls, loads: Loads, spacing: float, both: tuple[Array, Array]) -> _Statics:
-        """Magnitudes of the support loads `both` (A, B), and of those by side force and couple each
-        alone.
+        """Magnitudes of the loads of point supports at the guides, N, each (n,): with side force
+        and couple at once, and the sum of those by each alone.
+
+        Parameters
+        ----------
+        loads : Loads            of the follower
+        spacing : float          of the guides, m
+        both : tuple of arrays   load of A and of B by side force and couple at once, N
         """
         side, couple = np.abs(loads.tangential_force), np.abs(loads.end_moment) / spacing
         lever_a, lever_b = levers(loads.overhang, spacing)

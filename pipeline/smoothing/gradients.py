@@ -73,14 +73,17 @@ def differentiated(function: Function, at: Point, freed: bool) -> dict[str, Grad
 def second_derivatives(
     function: Function, at: Point, freed: bool, weights: Mapping[str, Array]
 ) -> Array:
-    """Hessians (q, q, n) of a weighted sum of terms (..., n).
+    """Hessians (q, q, n), at each cam angle, of a weighted sum of the terms of a cam function.
 
-    By E, E', E'', E''', the maximum lift and, where they are free, k, P, r0: q is 5 or 8. Central
-    differences of complex steps.
+    The q arguments are E, E', E'', E''', the maximum lift and, where they are free, k, P, r0: q is
+    5 or 8. Central differences of derivatives by complex step.
 
     Parameters
     ----------
-    weights : mapping   of the terms (...) by name; values without a weight do not count
+    function : Function   arguments -> terms (..., n) by name
+    at : Point            arguments at which it is differentiated
+    freed : bool          whether spring rate k, preload P and prime radius r0 are variables
+    weights : mapping     of the terms (...) by name; values without a weight do not count
     """
 
     def slopes(point: Point, places: Sequence[int]) -> Array:
@@ -116,8 +119,13 @@ def _steps(at: Point, step: complex, freed: bool) -> list[Point]:
 
 
 def _step(at: Point, place: int, step: complex) -> Point:
-    """The arguments with a step added to one of them; place : E to E''' first, then maximum lift,
-    then k, P, r0.
+    """Arguments of a cam function with a step added to one of them.
+
+    Parameters
+    ----------
+    at : Point       the arguments
+    place : int      which one, in the order E to E''', maximum lift, k, P, r0
+    step : complex   in its unit, SI
     """
     orders = len(at.energy)
     if place < orders:

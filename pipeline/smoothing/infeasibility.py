@@ -142,12 +142,14 @@ def _with_margin(problem: Problem, margin: float) -> Problem:
 def _conflicting(
     problem: Problem, names: list[str], *, needed: bool = False
 ) -> tuple[list[str], Problem]:
-    """Names of those of a group of limits that conflict with the others, and the problem without
-    the rest of the group; by halving the group.
+    """Limits of a group that conflict with the other limits, found by halving the group, and the
+    problem in which only these of the group are kept.
 
     Parameters
     ----------
-    needed : bool   whether a cam is known to exist without the group
+    problem : Problem   with all limits that are still in question
+    names : list        the group
+    needed : bool       whether a cam is known to exist without the group; else this is tried first
 
     References
     ----------
@@ -165,7 +167,7 @@ def _conflicting(
 
 
 def _feasible(problem: Problem) -> bool:
-    """Whether a cam keeps all limits.
+    """Whether a synthesis yields a cam within all limits of a problem.
 
     A limit on the ripple is compared with the least ripple: as a constraint it would slow the
     search among the limits that conflict with it.
@@ -178,7 +180,9 @@ def _feasible(problem: Problem) -> bool:
 
 
 def _ripple_over_ceilings(problem: Problem) -> Problem | None:
-    """Problem of the least torque ripple over its ceilings, not kept; None without a ceiling."""
+    """Problem that minimises the greatest ratio of the torque ripple of a scenario to its ceiling,
+    with the ceilings left out of the limits; None without a ceiling.
+    """
     ceilings = [problem.ceiling_of(item) for item in problem.scenarios]
     if all(ceiling is None for ceiling in ceilings):
         return None
@@ -195,8 +199,13 @@ def _ripple_over_ceilings(problem: Problem) -> Problem | None:
 
 
 def _candidates(problem: Problem, conflict: list[str]) -> list[_Candidate]:
-    """Single changes that may make a problem feasible: bound of a limit in conflict, spring rate,
-    preload, prime radius.
+    """Single changes that may make a problem feasible: a looser bound of a limit in conflict, a
+    softer spring, a lower preload, a greater prime radius; of the last three those that are not
+    variables already.
+
+    Parameters
+    ----------
+    conflict : list   names of the limits that conflict
     """
     candidates = [
         _Candidate(
@@ -226,7 +235,7 @@ def _with_ratings(relaxed: bounds.Change) -> Change:
 
 
 def _with_variable(name: str) -> Change:
-    """Change that multiplies a variable of the design by a factor."""
+    """Change of a problem, by a factor, that multiplies one of its design variables, `name`."""
 
     def change(problem: Problem, factor: float) -> Problem:
         value = getattr(problem.variables, name) * factor
@@ -236,8 +245,16 @@ def _with_variable(name: str) -> Change:
 
 
 def _smallest(problem: Problem, tried: _Candidate, margin: float) -> Relaxation | None:
-    """Smallest factor of a change with which a cam keeps all limits, by bisection, times a margin;
-    None where not even the greatest factor does.
+    """Relaxation with the smallest factor of a change for which a cam keeps all limits, found by
+    bisection on a logarithmic scale, times a margin.
+
+    None where the greatest factor is within the margin or does not suffice.
+
+    Parameters
+    ----------
+    problem : Problem    without a feasible cam
+    tried : _Candidate   change, with its direction: a factor f > 1 multiplies the value by f or 1/f
+    margin : float       factor >= 1 on the smallest one
     """
     low, high = 1.0, tried.factor_max
     if high <= margin or not _feasible(tried.change(problem, high**tried.direction)):
@@ -260,11 +277,17 @@ def _smallest(problem: Problem, tried: _Candidate, margin: float) -> Relaxation 
 def _from_catalogue(
     problem: Problem, rollers: Iterable[tuple[str, Problem]], relaxations: list[Relaxation]
 ) -> list[Relaxation]:
-    """First roller of a catalogue with which a cam keeps all limits, as a relaxation; empty without
-    one.
+    """List with the first roller of a catalogue with which a cam keeps all limits, as a relaxation
+    of the normal force; empty without one.
 
-    Rollers rated far below the necessary force are skipped. The threshold is below that force, as a
-    larger roller lowers the pressure angle.
+    Rollers rated below `_ROLLER_FORCE_SHARE` of the necessary force are skipped; the share is below
+    1, as a larger roller lowers the pressure angle.
+
+    Parameters
+    ----------
+    problem : Problem        without a feasible cam
+    rollers : iterable       name and problem with each roller, the smallest first
+    relaxations : sequence   already found; that of the normal force, N, states the necessary one
     """
     force = problem.ratings.bounds.get(NORMAL_FORCE)
     if force is None:

@@ -99,17 +99,19 @@ class Lagrangian:
 def lagrangian_curvature(
     search: Search, state: State, here: Model, model: Model, program: ConeSolution
 ) -> Array:
-    """Hessian (size, size) of the Lagrangian in the scaled unknowns at a state.
+    """Hessian (size, size) of the Lagrangian of a synthesis at a state, by the scaled unknowns:
+    coefficients and free variables.
 
     The norms of the ripples, as functions of their linear residuals, are left out: the cone program
     holds them exactly. So is the second derivative of the maximum lift.
 
     Parameters
     ----------
+    search : Search          the sampled problem
     state : State            after the step of the program
-    here : Model             there
+    here : Model             linear model at this state
     model : Model            of the program; its rows have the multipliers
-    program : ConeSolution
+    program : ConeSolution   with the multipliers
     """
     total = np.zeros((search.size, search.size))
     priced = [
@@ -127,8 +129,14 @@ def lagrangian_curvature(
 def _of_rows(
     search: Search, state: State, summit: Summit, priced: Sequence[tuple[Linear, Array]]
 ) -> Array:
-    """Part of the Hessian (size, size) from limits at single cam angles, each row with its own
-    multiplier.
+    """Part of the Hessian (size, size) of the Lagrangian from limits at single cam angles.
+
+    Parameters
+    ----------
+    search : Search     the sampled problem
+    state : State       at which it is taken
+    summit : Summit     maximum lift there
+    priced : sequence   rows of a limit, with the multiplier (m,) of each row
     """
     total = np.zeros((search.size, search.size))
     for names in search.families(limit.name for limit, _ in priced):
@@ -154,7 +162,16 @@ def _of_rows(
 def _of_means(
     search: Search, state: State, here: Model, priced: Sequence[tuple[Linear, Array]]
 ) -> Array:
-    """Part of the Hessian (size, size) from limits and costs that are means over the turn."""
+    """Part of the Hessian (size, size) of the Lagrangian from limits and costs that are means over
+    the turn.
+
+    Parameters
+    ----------
+    search : Search     the sampled problem
+    state : State       at which it is taken
+    here : Model        linear model there, with the derivatives of means
+    priced : sequence   rows of a limit, with the multiplier (m,) of each row
+    """
     summit = here.summit
     total = np.zeros((search.size, search.size))
     by_name = {name: np.zeros(rows.size) for name, rows in state.means.items()}
@@ -181,8 +198,17 @@ def _of_means(
 def _of_ripples(
     search: Search, state: State, summit: Summit, model: Model, program: ConeSolution
 ) -> Array:
-    """Part of the Hessian (size, size) from the curvature of the delivered torque, weighted by the
-    slope of the ripples with it.
+    """Part of the Hessian (size, size) of the Lagrangian from the curvature of the torque that the
+    cam delivers and, where the phase is free, of the engine torque by the phase; weighted by the
+    derivative of the ripples by the torque.
+
+    Parameters
+    ----------
+    search : Search          the sampled problem
+    state : State            at which it is taken
+    summit : Summit          maximum lift there
+    model : Model            of the program
+    program : ConeSolution   with the multipliers of the ripples
     """
     problem, variables = search.problem, state.variables
     left = search.residual_torque(state)
@@ -221,8 +247,15 @@ def _of_ripples(
 def _assembled(
     search: Search, state: State, summit: Summit, second: Array, points: NDArray[np.intp]
 ) -> Array:
-    """Hessian (size, size) in the scaled unknowns from second derivatives (q, q, m) by the local
-    arguments (E to E''', maximum lift, k, P, r0) at angles `points` (m,) of the grid.
+    """Hessian (size, size) by the scaled unknowns from second derivatives at single cam angles.
+
+    Parameters
+    ----------
+    search : Search            the sampled problem
+    state : State              with the splines
+    summit : Summit            maximum lift, with its derivatives
+    second : array (q, q, m)   by the q local arguments: E to E''', maximum lift, k, P, r0
+    points : array (m,)        indices of the cam angles of the grid
     """
     size, orders = search.size, state.grid.entries.shape[0]
     entries = search.scale * state.grid.entries[:, points]

@@ -85,8 +85,13 @@ class Model(NamedTuple):
     slope: Array
 
     def slopes_of(self, name: str, scenarios: NDArray[np.intp]) -> Array | None:
-        """Derivatives (m, size) of the means of a limit in `scenarios`, which rise; None where the
-        model lacks one.
+        """Derivatives (m, size), by the scaled unknowns, of the means over the turn from which a
+        limit is evaluated; None where the model lacks those of a scenario.
+
+        Parameters
+        ----------
+        name : str          of the limit
+        scenarios : array   ascending indices of the scenarios whose means are wanted
         """
         if name not in self.means:
             return None

@@ -53,7 +53,9 @@ class Starts:
 
     @property
     def sentence(self) -> str:
-        """The agreement in words."""
+        """Sentence on whether the starts agree on the ripple: their number, spread, and how many
+        lead to no cam within all limits.
+        """
         tried, feasible = len(self.ripples), len(self.kept)
         if tried == 1:
             return "one start: other optima are not excluded"
@@ -98,7 +100,7 @@ class Resolution:
 
     @property
     def sentence(self) -> str:
-        """The change in words."""
+        """Sentence on the number of splines and the change of the ripple against fewer."""
         if self.coarser is None and not self.settled:
             return f"{self.coefficients} splines, no more where the limits conflict"
         if self.coarser is None:
@@ -202,8 +204,15 @@ def _best(designs: Sequence[Design]) -> Design | None:
 
 
 def _random(problem: Problem, size: float, random: np.random.Generator) -> Problem:
-    """Problem whose search starts from a smooth random energy of about `size`, J, and random values
-    of the free variables.
+    """Problem whose search starts from a random smooth energy, a Fourier series of random phases
+    and amplitudes falling with 1/order^2, and from random values of the free variables within their
+    ranges.
+
+    Parameters
+    ----------
+    problem : Problem    whose start is replaced
+    size : float         order of magnitude of the energy, J: its range is 0.3 to 1.2 of it
+    random : Generator   of the random numbers
     """
     count = problem.coefficients
     order = np.arange(1, count // 4)
@@ -221,7 +230,14 @@ def _random(problem: Problem, size: float, random: np.random.Generator) -> Probl
 
 
 def refined(coefficients: Array, count: int) -> Array:
-    """Coefficients (count,), J, of an energy on more splines, by least squares."""
+    """Coefficients (count,), J, of the energy of a lobe on another number of splines, by least
+    squares.
+
+    Parameters
+    ----------
+    coefficients : array   on the present splines, J
+    count : int            new number of splines
+    """
     theta = uniform_turn(8 * count)
     level = basis_matrix(theta, count)
     energy = basis_matrix(theta, coefficients.size) @ coefficients

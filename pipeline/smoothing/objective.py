@@ -134,8 +134,8 @@ def harmonics(orders: Iterable[int]) -> Residual:
 
 
 def torque_integral(values: Array) -> Array:
-    """Integral of periodic columns (n, ...) over the cam angle, less its mean; by
-    Fourier series.
+    """Integral over an angle that makes one turn, of zero mean, of periodic columns (n, ...) less
+    their mean; by Fourier series.
     """
     spectrum = np.fft.rfft(values, axis=0)
     order = np.arange(spectrum.shape[0]).reshape(-1, *[1] * (spectrum.ndim - 1))
@@ -149,8 +149,11 @@ def _loss(at: Turning) -> Mean:
 
 
 def _spring_energy(at: Turning) -> Array:
-    """Cost: energy of the spring, F_s^2/(2 k) with that of the preload, over the energy swing of
-    the engine; of a spring that is not linear, the work from zero lift and P^2/(2 k).
+    """Cost (..., n): energy in the spring at each cam angle, with that of the preload, over the
+    energy swing of the engine.
+
+    F_s^2/(2 k), F_s: spring force, k: rate; of a spring that is not linear the work from zero lift
+    plus P^2/(2 k), P: preload.
     """
     rate = at.variables.rate * at.loads.scenario.rate_factor
     if at.variables.shape is not None:
@@ -261,8 +264,14 @@ def residuals(objective: Objective, item: Scenario, values: Array) -> Array:
 
 
 def residuals_slope(objective: Objective, item: Scenario, values: Array) -> Array:
-    """Gradient (n,), 1/(N m), of the norm of `residuals` by the crank torque (n,), N m; zero where
-    the norm is.
+    """Gradient (n,), 1/(N m), of the norm of `residuals` by the crank torque at each of n angles;
+    zero where the norm is zero.
+
+    Parameters
+    ----------
+    objective : Objective   weighted terms
+    item : Scenario         load case
+    values : array (n,)     crank torque, N m
     """
     slope, square = np.zeros_like(values), 0.0
     for each in objective:

@@ -53,11 +53,11 @@ def _edge_use(side: Side, at: ScenarioCam, limit: float) -> Array:
 
 
 def _swept_force(at: ScenarioCam, limit: float) -> Array:
-    """Utilisation of the least contact force in the speed range, 1 where it is `limit` times the
-    least spring force.
+    """Utilisation of the least contact force in the speed range: 1 plus `limit` less the contact
+    force over the least spring force; 1 where the force is `limit` times that.
 
-    At the speed at which the solved cam has the least force, with its surge there; before a solved
-    cam, at the greatest speed without surge.
+    The force is that at the cam speed where the solved cam has its least, with its surge there;
+    before there is a solved cam, that at the greatest speed without surge.
     """
     fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
@@ -69,8 +69,11 @@ def _swept_force(at: ScenarioCam, limit: float) -> Array:
 
 
 def _elastic_contact(at: ScenarioCam, limit: float) -> Array:
-    """Utilisation of the least contact force with an elastic stem, as `_swept_force`, without
-    friction.
+    """Utilisation of the least contact force in the speed range with an elastic stem, without
+    friction; `limit` as in `_swept_force`.
+
+    The force is that at the cam speed where the solved cam has its least with an elastic stem;
+    before there is a solved cam, that at the greatest speed of a rigid stem.
     """
     fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
@@ -80,8 +83,12 @@ def _elastic_contact(at: ScenarioCam, limit: float) -> Array:
 
 
 def _keyway_root(at: ScenarioCam, limit: float) -> Array | None:
-    """Utilisation (..., n) of the keyway root by torque, normal force and wall over the keyway;
-    None without a keyway that closed forms judge.
+    """Utilisation (..., n) of the fatigue strength at the root of the keyway in the cam, by torque,
+    normal force and the wall over the keyway; None without a keyway that closed forms judge.
+
+    Parameters
+    ----------
+    limit : float   required safety factor
     """
     keyway = at.ratings.keyway
     if keyway is None:
@@ -92,11 +99,16 @@ def _keyway_root(at: ScenarioCam, limit: float) -> Array | None:
 
 
 def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
-    """Utilisation of the grease life: equivalent load over the load at which the grease lasts for
-    the target, at the mean roller speed; None without grease.
+    """Utilisation of the grease life of the roller bearing at its mean speed: equivalent load over
+    the load at which the grease lasts for the target; None without grease.
 
-    With a duty: factor on the rating with which the grease lasts over the load cases together, and
-    in each of them the load over the greatest one of the estimate.
+    Where the load cases have a duty, two utilisations: the factor on the load rating with which the
+    grease lasts over all load cases together, and in each of them the load over the greatest for
+    which the life can be estimated.
+
+    Parameters
+    ----------
+    limit : float   dynamic load rating, N
     """
     grease = at.ratings.grease
     if grease is None:

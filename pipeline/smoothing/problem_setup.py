@@ -107,12 +107,13 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
 def roller_problems(
     case: Case, torques: Mapping[str, Torque], original: Problem
 ) -> Iterator[tuple[str, Problem]]:
-    """Name and problem of each catalogue roller that fits the case, the smallest first.
-
-    None in place of a flat face.
+    """Name and synthesis problem of each roller of the catalogue that fits a case, the smallest
+    first; none where the case has a flat face.
 
     Parameters
     ----------
+    case : Case          whose roller is replaced
+    torques : mapping    engine torque by load case
     original : Problem   of the case; its corrections are applied to the alternatives
 
     Raises
@@ -144,8 +145,13 @@ def _objective(case: Case) -> Objective:
 
 
 def _scenarios(case: Case, machine: Machine) -> list[Scenario]:
-    """Nominal scenario of a load case and, where the case asks for them, those of the tolerance
-    corners and of the ends of speed and load.
+    """Scenarios of a synthesis from one load case: the nominal one and, where the case wants them,
+    those of the tolerance corners and of the ends of speed and load.
+
+    Parameters
+    ----------
+    case : Case         with tolerances and smoothing
+    machine : Machine   in the load case
     """
     points, torque = _points(case), machine.torque
     values = np.zeros(points)  # at rest the engine has no torque
@@ -170,10 +176,17 @@ def _scenarios(case: Case, machine: Machine) -> list[Scenario]:
 
 
 def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
-    """Scenarios at the ends of the stated range of speed and load of a load case, none above the
-    over-speed; each weighted.
+    """Scenarios at the four combinations of the ends of the stated ranges of speed and load of a
+    load case, with the robust weight of the case.
 
-    The load is a factor on the intake pressure of a cylinder model, else on the engine torque.
+    The speed is at most the over-speed. The load is a factor on the intake pressure of a cylinder
+    model, else on the engine torque.
+
+    Parameters
+    ----------
+    case : Case          with the ranges, as factors
+    state : LoadCase     the load case
+    nominal : Scenario   of this load case
     """
     smoothing, engine, most = case.smoothing, case.engine, case.limits[OVERSPEED]
     modelled = engine if isinstance(engine, CylinderEngine) and state.torque is None else None
@@ -203,8 +216,14 @@ def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
 
 
 def _corners(case: Case, nominal: Scenario, machine: Machine) -> list[Scenario]:
-    """Scenarios at all combinations of the tolerances of spring rate, preload and friction; those
-    of mass and phase one at a time.
+    """Scenarios of a load case at its tolerance corners: all combinations of the ends of spring
+    rate, preload and friction, then mass and phase one at a time.
+
+    Parameters
+    ----------
+    case : Case          with the tolerances
+    nominal : Scenario   of the load case
+    machine : Machine    in it, with the range of the friction
     """
     spring, tolerances, friction = case.spring, case.tolerances, machine.friction
     # Both guides share their lubrication.

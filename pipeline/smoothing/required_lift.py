@@ -41,14 +41,16 @@ def required_torque(case: Case, torque: Torque, smoother: Smoother) -> Array:
 
 
 def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
-    """Lift whose spring stores and returns the work of the required torque.
+    """Lift whose spring stores and returns the work of the torque that the cam has to deliver.
 
-    With the spring the weight and the mean external force store work; the rest of the external
-    force is none of the lift alone.
+    With the spring the weight and the mean external force store work; the varying part of the
+    external force does not enter the lift.
 
     Parameters
     ----------
-    torque : Torque   of the design load case
+    case : Case           with spring and gear ratio
+    torque : Torque       of the design load case
+    smoother : Smoother   of this torque
 
     Raises
     ------

@@ -141,8 +141,10 @@ class Search:
         return self.problem.coefficients + len(self.problem.freed)
 
     def _exact(self) -> Array:
-        """Coefficients, J, of the energy that balances the torque of the scenario of greatest
-        weight within travel and pressure angle; see `exact_start`.
+        """Coefficients of the energy, J, that balances the torque of the scenario of greatest
+        weight, within the limits of travel and pressure angle, or face width; see `exact_start`.
+
+        Shifted as a whole where its minimum is above the greatest initial energy allowed.
         """
         problem, variables = self.problem, self.problem.variables
         first = max(problem.scenarios, key=lambda item: item.weight)
@@ -172,9 +174,14 @@ class Search:
         return float(lift_jet(self._peaks(coefficients).energy(coefficients), variables).lift[0])
 
     def _peaks(self, coefficients: Array) -> Grid:
-        """Splines at the cam angles of the peaks of the lift near its maximum, the highest first.
+        """Splines at the cam angles of the local maxima of the energy, so of the lift, that are
+        within `_PEAKS` of its range below the maximum; the highest first.
 
-        Refined between the points. Of equal lobes the peaks of one.
+        Refined between the points by a parabola and Newton's method; of equal lobes those of one.
+
+        Parameters
+        ----------
+        coefficients : array   of the energy of a lobe, J
         """
         if self._last is not None and self._last[0] is coefficients:
             return self._last[1]
@@ -241,8 +248,8 @@ class Search:
         return bool(self.problem.freed)
 
     def stack(self, grid: Grid, variables: DesignVariables) -> Scenario:
-        """All scenarios as one (s, n), with torques and corrections at the angles of a grid,
-        advanced by the phase.
+        """All scenarios as one, (s, n), with torques and corrections at the cam angles (n,) of a
+        grid advanced by the phase of the cam.
         """
         phase = float(variables.phase)
         if grid is not self.grid:
@@ -252,8 +259,15 @@ class Search:
         return self._stacks[phase]
 
     def _angles(self, coefficients: Array, variables: DesignVariables) -> tuple[Grid, Scenario]:
-        """Splines and stacked scenarios at the angles of the limits; where loads jump at a
-        reversal, its angle is added, from either side.
+        """Splines and stacked scenarios at the cam angles at which the limits hold.
+
+        Where loads jump at a reversal of the follower, its angle is added, from either side, and
+        the points beside it stand for their cell; see `Scenario`.
+
+        Parameters
+        ----------
+        coefficients : array          of the energy of a lobe, J
+        variables : DesignVariables   with the phase
         """
         stack = self.stack(self.grid, variables)
         if not self._jumps:
@@ -274,8 +288,14 @@ class Search:
     def function(
         self, names: frozenset[str], state: State, take: Callable[[Array], Array]
     ) -> Function:
-        """Function of jet, maximum lift and variables that gives the limits `names` by name: of
-        shape, or of loads and costs in the scenarios that `take` selects from the stacked arrays.
+        """Function of energy and derivatives, maximum lift and variables that gives the
+        utilisations of some limits, or costs, by name, for differentiation.
+
+        Parameters
+        ----------
+        names : frozenset   limits of the shape alone, or limits of the loads and costs
+        state : State       with the stacked scenarios
+        take : callable     selects scenarios and angles from a stacked array
         """
         if names <= SHAPE_LIMITS:
             return self.shape(names)
@@ -343,8 +363,14 @@ class Search:
     def utilisations(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
-        """Utilisation of each limit by name: the greatest over the scenarios at each angle of a
-        uniform grid (n,); (1,) for a mean over the turn.
+        """Utilisation of each limit by name, greatest over the scenarios: (n,) at the cam angles of
+        a uniform grid; (1,) for a limit on a mean over the turn.
+
+        Parameters
+        ----------
+        coefficients : array          of the energy of a lobe, J
+        variables : DesignVariables   with which it is a cam
+        grid : Grid                   n equal cam angles
         """
         loads = self._loaded(coefficients, variables, grid, self.stack(grid, variables))
         pointwise, means = self._uses(loads, variables, grid.theta.size)
@@ -354,8 +380,14 @@ class Search:
     def pointwise(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
-        """Utilisation of each limit at single angles by name: the greatest over the scenarios at
-        the cam angles of a grid (n,).
+        """Utilisation (n,) of each limit at single cam angles by name, greatest over the scenarios;
+        limits on means over the turn and costs are left out.
+
+        Parameters
+        ----------
+        coefficients : array          of the energy of a lobe, J
+        variables : DesignVariables   with which it is a cam
+        grid : Grid                   n cam angles
         """
         loads = self._loaded(coefficients, variables, grid, self.stack(grid, variables))
         values, _ = self._uses(loads, variables, 0)
@@ -377,8 +409,15 @@ class Search:
     def _uses(
         self, loads: ScenarioCam, variables: DesignVariables, points: int
     ) -> tuple[dict[str, Array], dict[str, Mean]]:
-        """Utilisations and costs by name: of single angles (s, n) at a grid; then those that are
-        means over the first `points` angles, none with 0.
+        """Utilisations and costs by name: those at single cam angles, (s, n) or (1, n); then those
+        of means over the turn.
+
+        Parameters
+        ----------
+        loads : ScenarioCam           cam in s stacked scenarios at n angles
+        variables : DesignVariables   of the cam
+        points : int                  the first angles, which are equally spaced and give the means;
+                                      0: no means
         """
         shape = self.shape()(loads.jet, np.nan, variables)  # the maximum lift does not matter
         charged = self._charged(self.costs, self._weights, loads, variables)
@@ -396,8 +435,13 @@ class Search:
         return pointwise, means
 
     def state(self, coefficients: Array, variables: DesignVariables) -> State:
-        """State of the search: ripples, costs and utilisations at coefficients, J, and
-        variables.
+        """State of the search for given unknowns: ripples, costs, jerk, and utilisations of all
+        limits.
+
+        Parameters
+        ----------
+        coefficients : array          of the energy of a lobe, J
+        variables : DesignVariables   spring, prime radius, phase
         """
         problem = self.problem
         grid, stack = self._angles(coefficients, variables)
@@ -440,8 +484,8 @@ class Search:
         )
 
     def residual_torque(self, state: State) -> Array:
-        """Crank torque that is left with the cam (w, n), N m, in each scenario whose
-        ripple counts.
+        """Engine torque less the torque that the cam delivers (w, n), at the crank, N m, in each of
+        the w scenarios whose ripple is minimised or limited.
         """
         coefficients, variables = state.coefficients, state.variables
         jet = lift_jet(self.turn.energy(coefficients), variables)
@@ -450,8 +494,8 @@ class Search:
         return self._engine(variables) - cam / self.problem.gear_ratio
 
     def _engine(self, variables: DesignVariables) -> Array:
-        """Engine torque of the weighted scenarios at the points of the turn (w, n), N m, by the
-        phase of the cam.
+        """Engine torque (w, n), N m, at the points of the turn, of the scenarios whose ripple is
+        minimised or limited, advanced by the phase of the cam.
         """
         phase = float(variables.phase)
         if phase not in self._engines:
@@ -461,8 +505,9 @@ class Search:
         return self._engines[phase]
 
     def near(self, state: State) -> dict[str, NDArray[np.bool_]]:
-        """Which utilisations at single angles, by limit (s, n), are near their limit and not far
-        below that of another scenario at the same angle.
+        """By limit or cost, which of its utilisations (s, n), scenario by cam angle, enter the
+        linear model: near the limit, of a cost near its maximum, and not far below that of another
+        scenario at the same angle.
         """
         rows = {}
         for name, value in state.pointwise.items():
@@ -472,7 +517,9 @@ class Search:
         return rows
 
     def near_means(self, state: State) -> dict[str, NDArray[np.bool_]]:
-        """Which utilisations from means, by limit (r,), are near their limit."""
+        """By limit or cost, which of its utilisations (r,) from means over the turn enter the
+        linear model: near the limit, of a cost near its maximum.
+        """
         rows = {}
         for name, value in state.means.items():
             level = self.level(name, value)
@@ -507,8 +554,13 @@ class Search:
         return np.flatnonzero(greatest | (state.excess >= most - _RIPPLE_BEHIND))
 
     def norms(self, state: State, summit: Summit, wanted: NDArray[np.intp]) -> list[Norm]:
-        """Models of the ripples of some scenarios, `wanted` being their numbers among the weighted
-        ones.
+        """Linear models of the ripples of some scenarios, as cones.
+
+        Parameters
+        ----------
+        state : State     at which they are linearised
+        summit : Summit   maximum lift there
+        wanted : array    indices of the scenarios among the weighted ones
         """
         problem, variables = self.problem, state.variables
         at = self.point(state, summit.lift, self.every)
@@ -536,8 +588,13 @@ class Search:
         return norms
 
     def _dense(self, local: Array, shared: Array, state: State, summit: Summit) -> Array:
-        """Derivatives (n, size), by the scaled unknowns, of values at the points of the turn;
-        local, shared: see `Gradient`.
+        """Derivatives (n, size), by the scaled unknowns, of values at the n points of the turn.
+
+        Parameters
+        ----------
+        local, shared : arrays   derivatives by the local and the shared arguments; see `Gradient`
+        state : State            at which they are taken
+        summit : Summit          maximum lift there, with its derivatives
         """
         entries, columns = self._entries(self.every, local, shared, state, summit)
         dense = np.zeros((self.every.size, self.size))
@@ -569,7 +626,9 @@ class Search:
         return shared.T @ matrix[:, used], used.astype(np.intp)
 
     def shared_columns(self, state: State, summit: Summit) -> Array:
-        """Derivatives (q, size) of the maximum lift and of k, P, r0 by the scaled unknowns."""
+        """Derivatives (q, size), by the scaled unknowns, of the arguments that all cam angles
+        share: the maximum lift and, where some variable is free, k, P, r0; q is 1 or 4.
+        """
         freed = self.problem.freed
         matrix = np.zeros((1 + (len(FREED) if freed else 0), self.size))
         np.add.at(matrix[0], summit.columns, self.scale * summit.entries)
@@ -584,8 +643,13 @@ class Search:
     def rows(
         self, state: State, summit: Summit, wanted: Mapping[str, NDArray[np.bool_]]
     ) -> list[Linear]:
-        """Linear models of limits at single angles; `wanted`: by limit, which scenarios and angles
-        (s, n).
+        """Linear models of limits and costs at single cam angles.
+
+        Parameters
+        ----------
+        state : State      at which they are linearised
+        summit : Summit    maximum lift there
+        wanted : mapping   by limit, which scenarios and angles (s, n)
         """
         models = []
         for names in self.families(name for name, rows in wanted.items() if rows.any()):
@@ -615,8 +679,14 @@ class Search:
     def means(
         self, state: State, summit: Summit, wanted: Mapping[str, NDArray[np.bool_]]
     ) -> tuple[list[Linear], dict[str, tuple[NDArray[np.intp], Array]]]:
-        """Linear models of utilisations from means, and the derivatives of the means, see
-        `Model.means`; `wanted`: by limit, which utilisations (r,).
+        """Linear models of limits and costs that are means over the turn; then, by limit, scenarios
+        and derivatives of the means, see `Model`.
+
+        Parameters
+        ----------
+        state : State      at which they are linearised
+        summit : Summit    maximum lift there
+        wanted : mapping   by limit, which of its r utilisations (r,)
         """
         models, slopes = list[Linear](), {}
         for names in self.families(name for name, rows in wanted.items() if rows.any()):
@@ -652,8 +722,13 @@ class Search:
         return self._means_slopes(gradient, state, summit)
 
     def _means_slopes(self, gradient: Gradient, state: State, summit: Summit) -> Array:
-        """Derivatives (m, size), by the scaled unknowns, of the means over the turn of terms (m,
-        n).
+        """Derivatives (m, size), by the scaled unknowns, of the means over the turn of m terms.
+
+        Parameters
+        ----------
+        gradient : Gradient   derivatives of the terms (m, n) by their local and shared arguments
+        state : State         at which they are taken
+        summit : Summit       maximum lift there, with its derivatives
         """
         slopes = np.zeros((gradient.terms.shape[0], self.size))
         for each, local in zip(slopes, np.moveaxis(gradient.local, 1, 0), strict=True):
@@ -679,10 +754,15 @@ class Search:
         )
 
     def new_reversals(self, state: State, there: State) -> NDArray[np.intp]:
-        """Numbers of the points at which the follower moves the other way in another state, by a
-        stroke that the first one does not have.
+        """Indices of the points at which the follower moves the other way after a step, in a stroke
+        that it did not have before.
 
-        Points that an existing reversal has passed in moving do not count.
+        Points that an existing reversal has passed in moving do not count; empty where loads do not
+        jump at a reversal.
+
+        Parameters
+        ----------
+        state, there : State   before and after the step
         """
         sides = [self.turn.energy(each.coefficients)[1] > 0.0 for each in (state, there)]
         flipped = np.flatnonzero(sides[0] != sides[1])
@@ -698,7 +778,14 @@ class Search:
         return np.concatenate([*new, np.zeros(0, dtype=np.intp)]) % self.every.size
 
     def kept_sides(self, state: State, points: NDArray[np.intp]) -> list[Linear]:
-        """Linear rows by which a step keeps the sign of the slope of the lift at some points."""
+        """Linear rows by which a step keeps the direction of the follower, the sign of E', at some
+        points.
+
+        Parameters
+        ----------
+        state : State    before the step
+        points : array   indices of the points
+        """
         if not points.size:
             return []
         slope = self.turn.energy(state.coefficients)[1]
@@ -714,8 +801,9 @@ class Search:
         ]  # fmt: skip
 
     def _least_energy(self, state: State) -> list[Linear]:
-        """Linear rows of the least energy at each point near it, and of the greatest initial
-        energy, where it is bounded.
+        """Linear rows that keep the energy above its least value, at each point that a step could
+        bring there, and, where it is bounded, the energy at its minimum below the greatest initial
+        energy.
         """
         low, high = self.problem.energy
         energy = self.turn.energy(state.coefficients)[0]
@@ -736,7 +824,13 @@ class Search:
         return models
 
     def after(self, state: State, step: Array) -> tuple[Array, DesignVariables]:
-        """Coefficients, J, and variables after a step in the scaled unknowns."""
+        """Coefficients of the energy, J, and variables after a step from a state.
+
+        Parameters
+        ----------
+        state : State          before the step
+        step : array (size,)   in the scaled unknowns: coefficients, then free variables
+        """
         count, variables = self.problem.coefficients, state.variables
         for name, part in zip(self.problem.freed, step[count:], strict=True):
             value = getattr(variables, name) + _unit(name, variables) * float(part)
@@ -744,7 +838,13 @@ class Search:
         return state.coefficients + self.scale * step[:count], variables
 
     def box(self, state: State, trust: float) -> Array:
-        """Least and greatest step within trust region and ranges, (2, size)."""
+        """Least and greatest step (2, size) in the scaled unknowns, within the trust region and, of
+        the free variables, their ranges.
+
+        Parameters
+        ----------
+        trust : float   size of the trust region, in scaled unknowns
+        """
         count = self.problem.coefficients
         low, high = np.full(self.size, -trust), np.full(self.size, trust)
         for number, (name, (least, greatest)) in enumerate(self.problem.freed.items()):

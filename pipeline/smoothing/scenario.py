@@ -77,8 +77,12 @@ class Ratings:
         return replace(self, bounds={**self.bounds, key: self.bounds[key] * factor})
 
     def least(self, limits: Mapping[str, Mapping[str, float]]) -> Ratings:
-        """Ratings with, by key, the lowest of the limits of several checks; a key without a limit
-        is dropped.
+        """Ratings with the lowest limit of each constraint, and the check that sets it; a
+        constraint in `limits` that no check limits is dropped.
+
+        Parameters
+        ----------
+        limits : mapping   limit, SI, by constraint and, within it, by check
         """
         by = {key: min(each, key=lambda name: each[name]) for key, each in limits.items() if each}
         least = {key: float(limits[key][name]) for key, name in by.items()}
@@ -87,7 +91,10 @@ class Ratings:
 
     @property
     def kinds(self) -> frozenset[str]:
-        """Words of the checks that the follower has; see `FollowerKind`."""
+        """Words for the kind of follower by which checks and constraints are selected: of a roller
+        "roller", "round"; of a face "face", and on an arm "swung_face", of a curved one "round" as
+        well. See `FollowerKind`.
+        """
         if self.numbers.get("follower.face.width") is None:
             return frozenset({"roller", "round"})
         shapes = {"radius": {"round", "swung_face"}, "offset": {"swung_face"}}
@@ -107,7 +114,9 @@ class Ratings:
 
     @property
     def slope_max(self) -> float | None:
-        """Lift per radian at the edge of the face of a stem, m; None: of no such face."""
+        """Greatest ds/dtheta at which the contact stays on the flat face of a stem, m: half the
+        allowed width less the offset; None for any other follower.
+        """
         width = self.bounds.get(face_width.id)
         if width is None or self.numbers.get("follower.arm.length") is not None:
             return None
@@ -181,7 +190,9 @@ class Correction:
         return Correction(*(of([getattr(one, name) for one in every]) for name in names))
 
     def towards(self, other: Correction, share: float) -> Correction:
-        """Linear interpolation towards another correction, at its angles."""
+        """Correction between this one, at `share` 0, and another, at 1: linear interpolation, at
+        the cam angles of the other.
+        """
         if share == 1.0:
             return other
         resampled = self.at(uniform_turn(other.contact.size))
@@ -241,7 +252,9 @@ class Scenario:
         return replace(self, numbers=self.numbers | numbers)
 
     def torque_at(self, phase: float) -> tuple[Array, Array]:
-        """Engine torque, N m, and derivative, N m/rad, advanced by a cam angle `phase`, rad."""
+        """Engine torque (n,), N m, with the cam advanced by a cam angle `phase`, rad, and its
+        derivative by the phase, N m/rad; by Fourier series.
+        """
         spectrum = np.fft.rfft(self.torque)
         order = 1j * np.arange(spectrum.size)
         if self.torque.size % 2 == 0:
@@ -255,10 +268,16 @@ _NUMBERS = ("rate_factor", "preload_factor", "spring_mass", "nominal", "swept", 
 
 
 def stacked(scenarios: Sequence[Scenario], theta: Array, cell: Value = 0.0) -> Scenario:
-    """Several scenarios as one: numbers (s, 1), corrections (s, n) at cam angles (n,), rad.
+    """Several scenarios as one, for evaluation at once: numbers (s, 1), corrections (s, n).
 
-    cell: cam angle, rad, for which each stands, one or (n,). All have the same external force, and
-    the same numbers: one that is not known in all of them, such as a maximum friction, is left out.
+    All have the external force of the first. Numbers of the machine that are not known in all of
+    them, such as a maximum friction, are left out.
+
+    Parameters
+    ----------
+    scenarios : sequence    the s scenarios
+    theta : array (n,)      cam angles, rad
+    cell : float or array   range of cam angle, rad, for which each angle stands, one or (n,)
     """
     # The corners of a load case share its correction.
     around = np.arange(scenarios[0].external.size) * (FULL_TURN / scenarios[0].external.size)

@@ -188,8 +188,9 @@ def _of_phase(design: Design, of: str) -> MachinePriceRecord:
 
 
 def _changed(number: MachineNumber, case: Case) -> tuple[Case, float]:
-    """Case with a number changed by a small share, and that share; negative where the number is at
-    its upper bound.
+    """Case with a number of the machine increased by the share `_PRICE_STEP` of itself, and the
+    share; the number is decreased, and the share negative, where the case does not allow the
+    increase.
     """
     step = _PRICE_STEP * number.value(case)
     try:
@@ -274,9 +275,10 @@ def prices(design: Design, problem: Problem) -> list[PriceRecord]:
 
 
 def limits_in_use(design: Design) -> tuple[Array, dict[str, Array]]:
-    """Ascending cam angles (n,), rad, with the utilisation of each limit there, by check.
+    """Ascending cam angles (n,), rad, and the utilisation (n,) of each limit at them by check, the
+    check of greatest utilisation first.
 
-    The greatest first. A limit on a mean over the turn has the same utilisation at every angle.
+    A limit on a mean over the turn has the same utilisation at every angle.
     """
     theta = next(iter(design.strip.values()))[0]
     angles = np.mod(theta + float(design.variables.phase), FULL_TURN)
@@ -292,8 +294,12 @@ def _before(problem: Problem) -> float:
 
 
 def _load_share(design: Design, problem: Problem, name: str) -> float:
-    """Part N / F_lim of the utilisation of the contact pressure, mean over the angles at which it
-    is active; 1 at none.
+    """Share of the load, N / F_lim, in the utilisation of the contact pressure, the rest being that
+    of the curvature: mean over the cam angles at which the limit binds; 1 where it never binds.
+
+    Parameters
+    ----------
+    name : str   of the limit in `Design.strip`
     """
     theta, use = design.strip[name]
     binds = _binding(use)
@@ -305,8 +311,15 @@ def _load_share(design: Design, problem: Problem, name: str) -> float:
 
 
 def _sentence(known: Bound, price: float, of: str) -> str:
-    """Sentence on what one more, or one less, of a bound takes off the objective `of`;
-    price: N m.
+    """Sentence on how much a change of a bound by one unit in its relaxing direction takes off the
+    objective.
+
+    Parameters
+    ----------
+    known : Bound   in its drawing unit
+    price : float   decrease of the objective, N m, per unit of the bound; negative: a lower bound
+                    decreases it
+    of : str        words for the objective
     """
     shown = "" if known.unit == "-" else f" {known.unit}"
     if price < 0.0:
@@ -322,8 +335,13 @@ def _binding(use: Array) -> NDArray[np.bool_]:
 
 
 def _ranges_record(theta: Array, use: Array) -> list[tuple[float, float]]:
-    """First and last cam angle, deg, of each range in which a limit is active; none for a mean over
-    the turn.
+    """First and last cam angle, deg, of each range in which a limit binds; none for a limit on a
+    mean over the turn.
+
+    Parameters
+    ----------
+    theta : array (n,)   ascending cam angles, rad
+    use : array (n,)     utilisation at them
     """
     tight = _binding(use)
     if not tight.any() or np.ptp(use) == 0.0:

@@ -178,7 +178,9 @@ def smoothed(torque: ArrayLike, smoother: Smoother) -> Array:
 
 
 def _moving_average(smoother: Smoother, order: Array) -> Array:
-    """Transfer factor of a moving average of `points` values by harmonic order of the cycle."""
+    """Transfer factor of a centred moving average of `points` values by harmonic order of the cycle
+    (...); 0 above half the rate of the values.
+    """
     step = 2.0 * np.pi / smoother.period.angle
     phase = order * step * smoother.spacing  # from one point to the next
     reach = smoother.points // 2
@@ -211,7 +213,9 @@ def _gaussian(smoother: Smoother, order: Array) -> Array:
 
 
 def _harmonic(smoother: Smoother, order: Array) -> Array:
-    """Transfer factor by harmonic order: 1 up to the last harmonic, then a cosine taper to 0."""
+    """Transfer factor (...) of a low-pass filter by harmonic order of the cycle: 1 below and 0
+    above the cut-off h = `harmonics`, with a cosine flank between h (1 - taper) and h (1 + taper).
+    """
     share = order / smoother.harmonics
     if smoother.taper == 0:
         return np.where(share <= 1.0 + 1e-12, 1.0, 0.0)

@@ -99,10 +99,14 @@ def best_attempt(attempts: Sequence[Attempt]) -> int:
 
 
 def _end(attempts: Sequence[Attempt], room: int, cause: str) -> Next | Stop:
-    """Stop where the latest trial is the best or none is left; else the smoother of the best one,
-    as last trial.
+    """End of the trials: stop where the latest trial is the best or none is left; else the smoother
+    of the best trial, repeated as the last one.
 
-    room : trials left; cause : reason of the end, in words.
+    Parameters
+    ----------
+    attempts : sequence   the trials, at least one
+    room : int            trials left
+    cause : str           reason of the end, in words
     """
     best = best_attempt(attempts)
     latest, chosen = attempts[-1], attempts[best]
@@ -117,8 +121,14 @@ def _end(attempts: Sequence[Attempt], room: int, cause: str) -> Next | Stop:
 
 
 def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
-    """Reason of the end in words: cause, then each binding check with its utilisation at trial 1
-    and now.
+    """Reason of the end in words: the cause, then each check that binds in the latest trial with
+    its utilisation at trial 1 and now.
+
+    Parameters
+    ----------
+    attempts : sequence   all trials
+    latest : Attempt      the last of them
+    cause : str           first part of the reason
     """
     first = {check.id: check for check in attempts[0].checks}
     by_id = {check.id: check for check in latest.checks}
@@ -140,8 +150,8 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
 
 
 def _reached(attempts: Sequence[Attempt]) -> str:
-    """Why no smoother passes, in words: torque reduction lost at once, or the other checks fail up
-    to the widest one that keeps it.
+    """Sentence on why no smoother passes: every trial loses the torque reduction, or the other
+    checks fail with all smoothers that keep it, and which tried one is the best.
     """
     if not any(keeps_torque(item.checks) for item in attempts):
         failed = any(c.status == "fail" for c in attempts[0].checks if c.id == TORQUE_REDUCTION.id)

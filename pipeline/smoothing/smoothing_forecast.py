@@ -38,8 +38,9 @@ def keeps_torque(checks: Sequence[Check]) -> bool:
 
 
 def score(checks: Sequence[Check]) -> Score:
-    """Score of checks, the least is best: whether the torque reduction is lost, number of failing
-    checks, their worst utilisation, number without data.
+    """Score by which trials are ordered, the least is best: whether the torque reduction is lost;
+    number of failed required checks; their greatest utilisation; number of required checks without
+    data.
 
     A failed check is worse than any number of missing data.
     """
@@ -113,10 +114,16 @@ def _score(
     known: Sequence[tuple[Attempt, Mapping[str, Check]]],
     candidate: Mapping[str, Check],
 ) -> Score:
-    """Score of the forecast checks of a smoother, each that of the nearest trial corrected by the
-    change of the forecast.
+    """Score, see `score`, of the forecast checks of a smoother that was not tried.
 
-    known : trials with the forecasts of their own smoothers.
+    Each check is that of the solved trial of nearest strength, its demand changed by the difference
+    of the forecasts for the two smoothers. The worst score where the smoother has no forecast.
+
+    Parameters
+    ----------
+    smoother : Smoother   to be scored
+    known : sequence      trials with the forecast checks of their smoothers, by id
+    candidate : mapping   forecast checks of the smoother, by id; empty: it has no cam
     """
     if not candidate:
         return (True, sys.maxsize, math.inf, sys.maxsize)
@@ -129,10 +136,17 @@ def _score(
 
 
 def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, Check]) -> Check:
-    """Check of a trial, its demand changed by the difference of the forecasts of `candidate` and of
-    the trial (`own`); unchanged without a forecast.
+    """Check of a solved trial, its demand changed by the difference of two forecasts; unchanged
+    without a forecast.
 
-    The demand at its tolerance corner changes in proportion.
+    The demand at its tolerance corner changes in proportion, and the margin of the forecast is
+    added; without a demand in one of the three the check has none.
+
+    Parameters
+    ----------
+    check : Check         of the trial
+    candidate : mapping   forecast checks of the new smoother, by id
+    own : mapping         forecast checks of the smoother of the trial, by id
     """
     there, here = candidate.get(check.id), own.get(check.id)
     if there is None or here is None:
@@ -145,8 +159,8 @@ def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, C
 
 
 def _with_margin(check: Check) -> Check:
-    """Check with its demand moved towards, or beyond, its limit by a share `MARGIN` of
-    the limit.
+    """Check with its demand made worse by the share `MARGIN` of the magnitude of the limit;
+    unchanged without demand or limit.
     """
     if check.demand is None or check.limit is None:
         return check
@@ -155,8 +169,8 @@ def _with_margin(check: Check) -> Check:
 
 
 def _moved(check: Check, by: float) -> Check:
-    """Check with its demand increased by `by`, SI, and that at its tolerance corner in
-    proportion.
+    """Check with `by`, SI, added to its demand; that at its tolerance corner changes by `by` times
+    the ratio of both magnitudes.
     """
     demand, corner = float(check.demand or 0.0), check.corner_demand
     if corner is not None:

@@ -97,7 +97,12 @@ class Problem:
         return scale_of(self.scenarios, self.gear_ratio, self.variables.prime_radius)
 
     def ceiling_of(self, item: Scenario) -> float | None:
-        """Greatest allowed residual ripple of a scenario over the engine's; None: no limit."""
+        """Greatest allowed standard deviation of the torque that is left in a scenario, over that
+        of its engine torque; None without a limit.
+
+        1 less the required torque reduction, less the reserve, over the ratio by which a run judges
+        it worse, see `judged`.
+        """
         if item.torque_reduction is None or TORQUE_REDUCTION.id in self.left_out:
             return None
         judged = self.judged.get(TORQUE_REDUCTION.id, 1.0)
@@ -179,7 +184,9 @@ class Design:
         return all(value <= 1.0 for value in self.utilisation.values())
 
     def lift(self, samples: int = 1440) -> Lift:
-        """Lift at `samples` equally spaced cam angles."""
+        """Lift of the cam, m, at `samples` equally spaced cam angles of a turn from 0, with the
+        phase of the design.
+        """
         theta = uniform_turn(samples) - float(self.variables.phase)
         splines = basis_matrix(theta, self.coefficients.size, lobes=self.lobes)
         energy = np.maximum(splines @ self.coefficients, 0.0)
@@ -218,8 +225,13 @@ def ripple_of(problem: Problem, item: Scenario, values: Array) -> Array:
 
 
 def torque_slope(item: Scenario, values: Array) -> Array:
-    """Gradient (n,), 1/(N m), of the norm of `torque_ripple` by the crank torque (n,), N m; zero
-    where the norm is.
+    """Gradient (n,), 1/(N m), of the relative torque ripple, the norm of `torque_ripple`, by the
+    crank torque at each of n angles; zero where the ripple is zero.
+
+    Parameters
+    ----------
+    item : Scenario       with the engine torque to which the ripple is relative
+    values : array (n,)   crank torque left, N m
     """
     level = torque_ripple(item, values)
     size = float(np.linalg.norm(level))

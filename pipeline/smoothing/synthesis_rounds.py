@@ -70,15 +70,18 @@ def rounds(
     guided: Callable[[Design], Solution] | None = None,
     progress: Progress = SILENT,
 ) -> Iterator[Round]:
-    """Endless rounds of synthesis; the caller compares each solved cam, and stops.
+    """Endless rounds of synthesis; the caller compares each solved cam with its synthesis, which
+    corrects the next, and stops.
 
     Parameters
     ----------
-    starts : int        of the first search
-    late : bool         raise the number of splines once, with the first correction or where more
-                        splines may remove what exceeds a limit; else in the first search
-    guided : callable   preview of the first design, by which it is corrected at once: guides of
-                        finite length, Hertz contact; None: it is not
+    problem : Problem     of the case
+    starts : int          of the first search
+    late : bool           raise the number of splines once, with the first correction or where more
+                          splines may remove what exceeds a limit; else in the first search
+    guided : callable     design -> its preview, with guides of finite length and Hertz contact,
+                          which corrects the first design at once; None: it is not corrected
+    progress : Progress   told each stage
     """
     rising = late and problem.convergence is not None
     comparisons: list[Comparison] = []

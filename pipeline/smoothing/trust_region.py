@@ -208,10 +208,18 @@ def descended(
 def _nearer(
     search: Search, state: State, step: Array, there: State, penalty: float, ripple_weight: float
 ) -> State:
-    """State of the least merit among the end of a step, its middle, and the minimum of the parabola
-    through their merits.
+    """State of least merit among the end of a step, its middle, and the minimum of the parabola
+    through the merits at start, middle and end.
 
     Where the curvature of the model is too small, steps overshoot to and fro across a valley.
+
+    Parameters
+    ----------
+    search : Search         the sampled problem
+    state, there : State    before and after the step
+    step : array (size,)    in the scaled unknowns
+    penalty : float         of a unit of violation in the merit
+    ripple_weight : float   of ripple and costs in the merit
     """
     middle = search.state(*search.after(state, 0.5 * step))
     merits = [each.merit(penalty, ripple_weight) for each in (state, middle, there)]
@@ -235,8 +243,15 @@ def _stuck(search: Search, state: State, model: Model, share: float) -> bool:
 
 
 def _corrected(search: Search, model: Model, program: ConeSolution, there: State) -> Model:
-    """The model with the levels that its rows have after the step, less their linear change: a
-    second-order correction of the step.
+    """Linear model with its limits corrected to second order: their levels are the utilisations
+    after the step, less the linear change along it.
+
+    Parameters
+    ----------
+    search : Search          the sampled problem
+    model : Model            at the start of the step
+    program : ConeSolution   with the step
+    there : State            after the step
     """
     limits = []
     for each in model.limits:
@@ -277,11 +292,20 @@ def _convex(curvature: Array) -> Array:
 def _program(
     search: Search, state: State, model: Model, trust: float, penalty: float, ripple_weight: float
 ) -> tuple[ConeSolution | None, State, Model]:
-    """Solution of the cone program within a trust region (None: not solved), the state after its
-    step, and the model with the rows added.
+    """Step of a descent within a trust region: solution of the cone program (None: not solved),
+    state after its step, and model with the rows that were added.
 
     Rows outside the model that the state after the step violates more than those in it are added,
     and the program is solved again.
+
+    Parameters
+    ----------
+    search : Search         the sampled problem
+    state : State           before the step
+    model : Model           linear model there
+    trust : float           size of the trust region, in scaled unknowns
+    penalty : float         of a unit of violation
+    ripple_weight : float   of ripple and costs in the objective
     """
     # The box alone does not bound short waves, which a speed ripple does not contain.
     reach, box = Reach(search.root_hessian, trust), search.box(state, trust)
@@ -311,8 +335,15 @@ def _program(
 def _missing(
     search: Search, state: State, model: Model, program: ConeSolution, there: State
 ) -> Mapping[str, NDArray[np.bool_]]:
-    """Rows to be added to the model, by limit (s, n): violated at the state `there`, after the step
-    of the program, by more than any row of the model, the worst scenario of each angle.
+    """Rows to be added to a linear model, by limit (s, n): where the state after the step exceeds a
+    limit by more than at any row in the model; of each cam angle the worst scenario.
+
+    Parameters
+    ----------
+    search : Search          the sampled problem
+    state, there : State     before and after the step
+    model : Model            with the rows so far
+    program : ConeSolution   with the excess it allows, by limit
     """
     missing = {}
     for name, value in there.pointwise.items():
@@ -333,9 +364,15 @@ def _missing(
 
 
 def _missing_ripples(model: Model, program: ConeSolution, there: State) -> NDArray[np.intp]:
-    """Numbers of the scenarios whose ripple is to be added to the model: the one of greatest ripple
-    at the state `there`, after the step, and the one furthest above its ceiling, each only where it
-    is above what the program and the modelled ones have.
+    """Indices, among the weighted scenarios, of those whose ripple is to be added to a linear
+    model: that of the greatest ripple after the step, and that furthest above its ceiling, each
+    only where it is above what the program foresees and the scenarios in the model have.
+
+    Parameters
+    ----------
+    model : Model            with the ripples so far
+    program : ConeSolution   with its ripple and the excess it allows over a ceiling
+    there : State            after the step
     """
     modelled = [norm.number for norm in model.norms]
     allowed = (program.ripple, program.slack.get(TORQUE_REDUCTION.id, 0.0))

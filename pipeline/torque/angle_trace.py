@@ -58,6 +58,7 @@ class Trace:
     closure: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse values that are not finite or absurdly large; the arrays become read-only."""
         freeze(self, angle=self.angle, values=finite(f"{self.source}, {self.column}", self.values))
         wild = np.abs(self.values) > VALUE_MAX
         if wild.any():
@@ -179,13 +180,18 @@ def one_period(
     period: float = FOUR_STROKE.angle,
     gap_max: float = GAP_MAX,
 ) -> Trace:
-    """Trace of one column over one period, its angles having been checked for order and span.
+    """Trace of one column of a file over one period, its angles having been checked for order and
+    span.
 
     Parameters
     ----------
+    name : str              of the file
+    quantity : str          "torque", "pressure" or "speed"
+    column : str            header of the column
     lines : sequence (n,)   line of each row in the file
     angle : array (n,)      rad; a row at the end of the period is averaged with the first
     values : array (n,)     SI
+    period : float          rad
     gap_max : float         rad, maximum gap between rows
 
     Raises
@@ -220,7 +226,15 @@ def _seam(angle: Array, values: Array, period: float) -> float:
 
 
 def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> None:
-    """Refuse too few rows, and angles that do not increase, in the unit of the file."""
+    """Refuse a file with too few rows, or with angles that do not increase.
+
+    Parameters
+    ----------
+    name : str              of the file
+    lines : sequence (n,)   line of each row in the file
+    angle : array (n,)      in the unit of the file
+    header : str            of the column of angles
+    """
     if angle.size < ROWS_MIN:
         raise InputError(name, f"{angle.size} rows", f"{ROWS_MIN} rows or more")
     steps = np.diff(angle)
@@ -235,7 +249,17 @@ def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> N
 def guard_span(
     name: str, angle: Array, factor: float, period: float, gap_max: float = GAP_MAX
 ) -> None:
-    """Refuse a trace that does not span one period; the message hints at a wrong unit."""
+    """Refuse a trace whose angles do not span one period; the message hints at a wrong unit or
+    number of cycles.
+
+    Parameters
+    ----------
+    name : str           of the file
+    angle : array (n,)   rad
+    factor : float       from the unit of the file to rad
+    period : float       rad
+    gap_max : float      maximum gap between rows, so between last row and end of the period, rad
+    """
     spacing = median(np.diff(angle))
     span = float(angle[-1] - angle[0])
     excess = span - period
@@ -265,7 +289,14 @@ def _gap_limit(spacing: float, gap_max: float) -> float:
 
 
 def _guard_gaps(trace: Trace, lines: Sequence[int], gap_max: float) -> None:
-    """Refuse a trace with a gap too wide to interpolate."""
+    """Refuse a trace with a gap between rows too wide to interpolate.
+
+    Parameters
+    ----------
+    trace : Trace           of one period
+    lines : sequence (n,)   line of each row in the file
+    gap_max : float         maximum gap, rad
+    """
     limit = _gap_limit(median(trace.spacing), gap_max)
     widest = int(np.argmax(trace.spacing))
     if trace.spacing[widest] > limit:

@@ -36,7 +36,14 @@ class MachineTorque(Part):
 
 
 def require_marks(marks: tuple[Mark, ...], cycle: float) -> None:
-    """Refuse marks that are too many, out of order or beyond the cycle (rad)."""
+    """Refuse marks of parts of a cycle that are too many, not in ascending order, or outside the
+    cycle.
+
+    Parameters
+    ----------
+    marks : tuple of Mark   with their angles, rad
+    cycle : float           shaft angle of the cycle, rad
+    """
     if len(marks) > MARKS_MAX:
         raise InputError("torque.marks", f"{len(marks)} tables", f"at most {MARKS_MAX}")
     last = -1.0

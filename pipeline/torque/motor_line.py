@@ -49,6 +49,9 @@ class MotorLine:
     points: tuple[MotorPoint, ...]
 
     def __post_init__(self) -> None:
+        """Refuse fewer or more points than allowed, speeds that do not increase, and a torque that
+        does not fall to the last point.
+        """
         least, most = POINTS
         if not least <= len(self.points) <= most:
             limit = f"from {least} to {most} points"
@@ -63,7 +66,9 @@ class MotorLine:
             raise InputError("crankshaft.motor_line.torque", shown(last.torque, "N m"), limit)
 
     def torque(self, speed: ArrayLike) -> Array:
-        """Torque of the motor, N m, at speeds (...), rad/s."""
+        """Torque of the motor (...), N m, at speeds (...), rad/s: linear between the points, and
+        beyond the ends as in the first and last interval.
+        """
         omega = np.asarray(speed, dtype=float)
         place = self._place(omega)
         rest = omega - self._speeds[place]

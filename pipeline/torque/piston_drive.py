@@ -69,6 +69,9 @@ class PistonDrive(Part):
     """piston, piston rod and crosshead with the small end of the connecting rod"""
 
     def __post_init__(self) -> None:
+        """Refuse a connecting rod that is not longer than crank radius plus pin offset, and a
+        piston rod not thinner than the bore.
+        """
         super().__post_init__()
         least = self.crank_radius + abs(self.pin_offset)
         if not self.rod_length > least:

@@ -66,6 +66,9 @@ class Press(MachineTorque):
     }
 
     def __post_init__(self) -> None:
+        """Refuse a connecting rod that is too short, a force that is missing or stated twice, and a
+        working travel beyond the stroke.
+        """
         super().__post_init__()
         least = self.eccentric_radius + abs(self.pin_offset)
         if not self.rod_length > least:
@@ -160,7 +163,10 @@ class PressTorque:
         return readonly(weight - pressed)
 
     def _work_until(self, crank: Array) -> Array:
-        """Work of the force from the upper dead centre to crank angles (n,), increasing, J."""
+        """Work of the press force, J, since the upper dead centre at the angle `top_angle` of the
+        linkage, up to crank angles (n,), rad, increasing, counted from `press.phase`; negative
+        before it.
+        """
         linkage = self.press.linkage
         turns, past = np.divmod(crank - linkage.top_angle, FULL_TURN)
         height = np.clip(linkage.stroke - linkage.travel(crank), 0.0, linkage.stroke)

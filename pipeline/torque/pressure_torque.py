@@ -39,6 +39,9 @@ class PressureCylinder(PistonDrive):
     """column of the pressure on the crank side of a double-acting piston"""
 
     def __post_init__(self) -> None:
+        """Refuse a double-acting piston without the pressure of its crank side, and one beside a
+        single-acting piston.
+        """
         super().__post_init__()
         if self.double_acting != bool(self.crank_side_column):
             limit = "given for a double-acting piston, and for no other"
@@ -68,6 +71,7 @@ class PressureTorqueFile(MachineTorque):
     """one cylinder; several may differ"""
 
     def __post_init__(self) -> None:
+        """Refuse a cycle that is no whole number of turns, and a wrong number of cylinders."""
         super().__post_init__()
         turns = self.cycle / FULL_TURN
         if abs(turns - round(turns)) > _WHOLE * turns or turns < 0.5:
@@ -126,8 +130,14 @@ class PressureTorque:
 
 
 def _lagging(trace: Trace, theta: Array, lag: float) -> Array:
-    """Values of a trace at equal shaft angles (n,), rad, that come later by the angle
-    `lag`, rad.
+    """Values (n,) of a trace at equal shaft angles theta less `lag`, so that they come later by
+    that angle; by periodic cubic splines.
+
+    Parameters
+    ----------
+    trace : Trace        over one period
+    theta : array (n,)   equal shaft angles of the period from 0, rad
+    lag : float          rad
     """
     values = trace.kept_uniform(theta.size)
     if lag == 0.0:

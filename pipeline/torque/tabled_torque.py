@@ -68,6 +68,9 @@ class TabledTorque:
     role: Role = "drive"
 
     def __post_init__(self) -> None:
+        """Refuse a constant torque, and one that does not close or has too few rows; see
+        `require_cycle`.
+        """
         if not float(np.ptp(self.trace.values)) > 0.0:
             text = f"constant, {float(self.trace.values[0]):.6g} N m"
             limit = "a torque that varies over the cycle"
@@ -89,11 +92,12 @@ class TabledTorque:
 
 
 def require_cycle(trace: Trace, unit: str) -> None:
-    """Refuse values that vary and do not close, or are too few for their harmonics.
+    """Refuse values over a cycle that do not close at its ends, or are too few for their harmonics.
 
     Parameters
     ----------
-    unit : str   of the values, SI
+    trace : Trace   over one cycle
+    unit : str      of the values, SI, for the message
 
     Raises
     ------
@@ -120,8 +124,8 @@ def _change_halved(trace: Trace) -> float:
 
 
 def _halved(trace: Trace) -> dict[str, Array]:
-    """Change of the work about its mean with every other row left out, over its swing, as an array
-    by name for the disk cache.
+    """Greatest change of the integral of a trace about its mean when every other row is left out,
+    over the range of the integral; as an array named "change" for the disk cache.
     """
     count = 4 * trace.angle.size
     whole = _swing(trace, count)

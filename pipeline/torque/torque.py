@@ -51,6 +51,9 @@ class Torque(Displayed):
     span: float = FOUR_STROKE.angle
 
     def __post_init__(self) -> None:
+        """Refuse angles that are not uniform over the span, and components that are none, not
+        finite or of another size; the arrays become read-only.
+        """
         theta = finite("torque.theta", self.theta)
         if theta.ndim != 1 or theta.size < 12:
             raise InputError("torque.theta", f"{theta.shape} angles", "(12 or more,)")
@@ -104,7 +107,9 @@ class Torque(Displayed):
         return replace(self, components={**self.components, "load": known + load})
 
     def resampled(self, n: int) -> Torque:
-        """Torque at `n` angles: a subset of its samples, or periodic cubic splines through them."""
+        """Torque at `n` equal angles: a subset of its samples where these are a multiple of n, else
+        by periodic cubic splines through them.
+        """
         if n == self.theta.size:
             return self
         step, rest = divmod(self.theta.size, n)
@@ -126,9 +131,15 @@ class Torque(Displayed):
 
 
 def over_cam_turn(torque: Torque, period: Period) -> Torque:
-    """Torque at equal cam angles of a cam turn, from that over a machine cycle.
+    """Torque at equal shaft angles over the span of a cam turn, repeated from that over a machine
+    cycle.
 
     Every module that draws, solves or smooths a cam takes the torque from here.
+
+    Parameters
+    ----------
+    torque : Torque   over the cycle of the machine
+    period : Period   number of cycles in a cam turn
 
     Raises
     ------
@@ -194,8 +205,15 @@ def all_cylinders(
     offsets: tuple[float, ...],
     span: float = FOUR_STROKE.angle,
 ) -> dict[str, Array]:
-    """Torque components (n,), N m, of all cylinders from those of one, each shifted by the phase
-    offset of a cylinder, rad.
+    """Torque components (n,), N m, of all cylinders, each the sum of that of one cylinder shifted
+    by the offsets.
+
+    Parameters
+    ----------
+    parts : mapping      components of one cylinder (n,), N m, by name
+    theta : array (n,)   equal shaft angles, rad
+    offsets : tuple      angles by which the cylinders come later, rad
+    span : float         of the cycle, rad
     """
     if offsets == (0.0,):
         return dict(parts)

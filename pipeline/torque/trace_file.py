@@ -164,13 +164,14 @@ class TraceText:
 def trace_text(
     path: Path, example: str, *, headed: bool = True, one_column: bool = False
 ) -> TraceText:
-    """Header and rows of a trace file.
+    """Header and rows of a text file of columns.
 
     The units may stand in a second line of the header, and the header in a comment above the rows.
 
     Parameters
     ----------
-    example : str       a header for such a file, in the message to who has none
+    path : path         of the file
+    example : str       header of such a file, shown in the message where it has none
     headed : bool       whether the first line is a header; without, blanks may separate columns,
                         which are called column 1, column 2, ...
     one_column : bool   whether a file of one column, without any delimiter, is accepted
@@ -202,7 +203,14 @@ def trace_text(
 
 
 def _units_below(header: Sequence[str], second: Sequence[str]) -> list[str]:
-    """Units of the columns from a second line of the header; empty if that line has none."""
+    """Units of the columns of a file from the second line of its header; empty if that line is none
+    of units.
+
+    Parameters
+    ----------
+    header : sequence   cells of the first line
+    second : sequence   cells of the second line
+    """
     units = [re.sub(r"^[\[({](.*)[\])}]$", r"\1", cell) for cell in second]
     known = ANGLE_UNITS, *QUANTITY_UNITS.values()
     if len(units) != len(header) or any(_is_number(unit) for unit in units):
@@ -232,9 +240,21 @@ def _is_number(cell: str) -> bool:
 def _delimiter(
     name: str, lines: Sequence[tuple[int, str]], *, blanks: bool, one_column: bool
 ) -> str:
-    """Character that separates the columns: the first of semicolon, tab and comma in the header.
+    """Character that separates the columns of a file: the first of semicolon, tab and comma that is
+    in the header.
 
-    blanks : blanks may separate them; one_column : a file of one column needs none.
+    Parameters
+    ----------
+    name : str          of the file, for the message
+    lines : sequence    (number, text) of each line, that of the header first
+    blanks : bool       whether blanks separate the columns where none of the three is in the header
+    one_column : bool   whether a file of one column is accepted; then ";", as a decimal comma is no
+                        delimiter
+
+    Raises
+    ------
+    InputError
+        If nothing separates columns.
     """
     number, head = lines[0]
     for mark in ";\t,":
@@ -273,7 +293,9 @@ def _text_lines(path: Path) -> list[tuple[int, str]]:
 
 
 def _bytes(path: Path) -> bytes:
-    """Bytes of a file; one that is no file or too large is refused unread."""
+    """Content of a file; InputError for a path that is no regular file, cannot be read or is above
+    `SIZE_MAX`, which is not read.
+    """
     try:
         if path.is_dir():
             raise InputError(path.name, "a folder", "a file")
@@ -309,8 +331,16 @@ def _cells(line: str, delimiter: str) -> list[str]:
 
 
 def unit_factor(header: str, units: Mapping[str, float]) -> float | None:
-    """Factor to SI of the unit at the end of a header: the text in its brackets, else the shortest
-    ending that is a unit, so that `M_Nm` is a moment in N m."""
+    """Factor to SI of the unit at the end of the header of a column; None where it ends with none.
+
+    The unit is the text in its brackets, else the shortest ending that is a unit, so that `M_Nm` is
+    a moment in N m. Upper and lower case count only where a unit would else be ambiguous.
+
+    Parameters
+    ----------
+    header : str      of a column, as "torque [Nm]"
+    units : mapping   factor to SI by unit
+    """
     bracketed = re.search(r"[\[({](.*)[\])}]\s*$", header)
     if bracketed:
         endings = [bracketed.group(1)]
@@ -432,7 +462,20 @@ def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, f
 def angle_column(
     name: str, header: Sequence[str], part: Literal["crank", "cam"] = "crank"
 ) -> tuple[int, float]:
-    """Number of the column of the angle of crank or cam, and the factor of its unit to rad."""
+    """Index of the column of the angle of crank or cam in a file, and the factor from its unit to
+    rad.
+
+    Parameters
+    ----------
+    name : str          of the file, for the message
+    header : sequence   of each column
+    part : str          "crank" or "cam"
+
+    Raises
+    ------
+    InputError
+        If there is not one such column.
+    """
     factors = _with_unit(header, ANGLE_UNITS)
     columns = list(factors)
     if len(columns) > 1 or part == "cam":
@@ -449,8 +492,19 @@ def angle_column(
 def value_column(
     name: str, header: Sequence[str], quantity: str, column: str | None
 ) -> tuple[int, float]:
-    """Number of the column of a quantity, and the factor of its unit to SI; column : beginning of
-    its header, None where one column has the quantity.
+    """Index of the column of a quantity in a file, and the factor from its unit to SI.
+
+    Parameters
+    ----------
+    name : str             of the file, for the message
+    header : sequence      of each column
+    quantity : str         key of `QUANTITY_UNITS`, such as "torque"
+    column : str or None   beginning of the header; None: the only column of the quantity
+
+    Raises
+    ------
+    InputError
+        If there is not one such column.
     """
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
     columns = list(factors)

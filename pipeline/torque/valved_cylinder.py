@@ -32,6 +32,7 @@ class _ValvedCylinder(PistonDrive):
     clearance: float
 
     def __post_init__(self) -> None:
+        """Refuse a discharge pressure that is not above that of suction."""
         super().__post_init__()
         if not self.suction_pressure < self.discharge_pressure:
             least = f"> suction_pressure = {shown(self.suction_pressure, 'kPa')}"
@@ -59,7 +60,11 @@ class _ValvedCylinder(PistonDrive):
         return np.where(growing, expanding, compressed)
 
     def pressures(self, theta: ArrayLike) -> tuple[Array, Array]:
-        """Pressures, Pa, on the head side, then on the crank side, at shaft angles (n,), rad."""
+        """Absolute pressures (n,), Pa, on the head side of the piston, then on its crank side, at
+        shaft angles (n,), rad.
+
+        The crank side of a single-acting piston has the back pressure.
+        """
         crank = np.asarray(theta, dtype=float) - self.phase
         swept = np.clip(self.linkage.travel(crank) / self.linkage.stroke, 0.0, 1.0)
         growing = self.linkage.travel_rate(crank) > 0.0
@@ -145,8 +150,15 @@ class PumpCylinder(_ValvedCylinder):
             raise InputError(f"{self.table}.discharge_pressure", pressure, limit)
 
     def _shut(self, pressure: float, ratio: Array) -> Array:
-        """Pressure of a shut volume of liquid, Pa, from that before, by the ratio (n,) of the
-        volume before to that now.
+        """Pressure (n,), Pa, of liquid shut into a volume that changes: p + K ln(V_before / V_now).
+
+        Without a bulk modulus K it is at once infinite, with the sign of the change; unchanged
+        where the volume is.
+
+        Parameters
+        ----------
+        pressure : float     p, before, Pa
+        ratio : array (n,)   V_before / V_now
         """
         with np.errstate(divide="ignore"):  # no clearance: log 0
             strain = np.log(ratio)
