@@ -26,6 +26,7 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, face_of
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
+from camwright.pipeline.follower.pivot_forces import Pressed
 
 _HEAT_PATH = ("conductivity", "specific_heat")
 OF_OIL = ("temperature", "scuffing_temperature", "boundary_temperature")
@@ -68,20 +69,26 @@ def _stated(demand: Demand, _: Solution) -> Demand:
     JAM_INDEX,
     id="self_locking",
     title="Self-locking of the face on its arm",
-    method="greatest moment of the friction of the face about the pivot over that of its normal"
-    " force, friction of the pivot left out, refined between samples",
+    method="greatest moment of the friction of face and pivot about the pivot over that of the"
+    " normal force, both under the contact force alone, refined between samples",
     tier=Tier.SCREENING,
     lift_can_help=True,
     moved_by_tolerance=False,
     needs="swung_face",
-    formula="x <= j; x: greatest M_f/M_n, M_f: moment of the friction of the face about the pivot,"
-    " M_n: of its normal force, j: limits.jam_index; flat face: mu f/q, mu: friction of the face,"
-    " f: its offset, q: distance of the contact from the pivot along it; curved one:"
-    " mu (tan alpha + r/(l cos alpha)), alpha: pressure angle, r: its radius, l: length of the arm;"
-    " f and r negative where the arm swings outwards against the cam",
+    formula="x <= j; x: greatest (M_f + M_p)/M_n, M_f: moment of the friction of the face about the"
+    " pivot, M_p: of the friction in a pivot that is described, under the contact force alone, M_n:"
+    " of the normal force, j: limits.jam_index; flat face: (mu f + rho sqrt(1 + mu^2))/q, mu:"
+    " friction of the face, f: its offset, rho: half of the pin's diameter times the friction of"
+    " the pivot, q: distance of the contact from the pivot along it; curved one: mu (tan alpha"
+    " + r/(l cos alpha)) + rho sqrt(1 + mu^2)/(l cos alpha), alpha: pressure angle, r: its radius,"
+    " l: length of the arm; f and r negative where the arm swings outwards against the cam",
     symbols={"x": STATED},
     reason="At 1 the friction holds what the cam lifts, and cam or arm breaks.",
-    values=("follower.face.friction",),
+    values=(
+        "follower.face.friction",
+        "follower.pivot.bush.friction",
+        "follower.pivot.needle_bearing.friction",
+    ),
     load_cases=NONE,
     levers=levers.GENTLER,
     page="Flat face",
@@ -93,8 +100,9 @@ def _stated(demand: Demand, _: Solution) -> Demand:
     kept=Kept(),
 )
 def self_locking(cam: LoadedCam) -> Array:
-    """Moment of the friction of a face about the pivot over that of its normal force."""
-    return np.asarray(cam.motion.lock)
+    """Moment of the friction of face and pivot about the pivot over that of the normal force."""
+    lock, pivot = np.asarray(cam.motion.lock), cam.pivot
+    return lock if pivot is None else lock + pivot.locking(Pressed.of(cam.motion))
 
 
 def _of_its_source(demand: Demand, solution: Solution) -> Demand:

@@ -200,6 +200,14 @@ class ArmPivot:
         """Lift at a direction of travel, rad, m."""
         return self.length * (_QUARTER_TURN - self.start - self.sense * travel)
 
+    def locking(self, pressed: Pressed) -> Array:
+        """Moment of the friction under a contact force alone over that of its axial force (...).
+
+        Radius of the friction circle times the contact force, over the length times the axial one.
+        """
+        circle = self.friction * self.radius
+        return np.asarray(circle / self.length * _size((pressed.along, pressed.across)))
+
     def balanced(
         self, required: Array, pressed: Pressed, pull: Pull, direction: Value
     ) -> PivotBalance:

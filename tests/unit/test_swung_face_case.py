@@ -1,6 +1,7 @@
 """Cases with a flat or curved face on an arm: keys, refusals, preview, screening, synthesis."""
 
 import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,7 +14,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Jet
 from camwright.pipeline.base.envelope import MechanismSizes
 from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.case_file import parse_case, with_values
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
@@ -23,6 +24,7 @@ from camwright.pipeline.cycle.arm_bodies import swung_bodies
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solved_cam import numbers_of
+from camwright.pipeline.follower.pivot_forces import Pressed, Pull
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.workshop_files import notes_of
 from camwright.pipeline.screening.design_screening import screen_designs
@@ -187,27 +189,66 @@ def test_all_that_judges_a_face_judges_it_on_an_arm(kind):
     assert not {name for name in made if name.startswith(("guide_", "jam_", "roller_"))}
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_self_locking_by_moments_about_the_pivot(kind):
-    """Of the friction along the contour over that of the normal, from points of the contour."""
-    trial = previewed(kind)
-    cam, theta, step = trial.contour, np.linspace(0.0, 2.0 * np.pi, 7201), 1e-5
+def levers(contour):
+    """Moments of a unit normal force and of a unit force against the sliding about the pivot, m.
+
+    From points of the contour at 7201 cam angles; positive outwards, as the arm swings with the
+    cam.
+    """
+    theta, step = np.linspace(0.0, 2.0 * np.pi, 7201), 1e-5
     pivot = 0.110 * np.stack([np.cos(theta), np.sin(theta)])
-    lever = cam.points(theta) - pivot
-    along = cam.points(theta + step) - cam.points(theta - step)
+    lever = contour.points(theta) - pivot
+    along = contour.points(theta + step) - contour.points(theta - step)
     tangent = along / np.hypot(*along)
     # the arm swings outwards clockwise: with the cam
     normal = -(lever[0] * -tangent[0] - lever[1] * tangent[1])
     rubbed = -(lever[0] * -tangent[1] - lever[1] * -tangent[0])
+    return normal, -rubbed
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_self_locking_by_moments_about_the_pivot(kind):
+    """Of the friction along the contour over that of the normal, from points of the contour."""
+    trial = previewed(kind)
+    normal, rubbed = levers(trial.contour)
     (one,) = (each for each in trial.checks if each.id == "self_locking")
-    assert one.demand == pytest.approx(float((-0.05 * rubbed / normal).max()), rel=1e-5)
+    assert one.demand == pytest.approx(float((0.05 * rubbed / normal).max()), rel=1e-5)
+
+
+def with_pivot(kind):
+    """Text of the case with a pivot of 16 mm that is described."""
+    whole = face_text(kind).replace("[follower.face]\n", DESCRIBED, 1)
+    return whole[: whole.index("[scope]")] + whole[whole.index("[lubricant]") :]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_self_locking_counts_the_friction_circle_of_the_pivot(kind):
+    """By hand: the contact force sqrt(1 + mu^2) at the radius 0.3 of 8 mm, beside 0.05 of a face.
+
+    Against a moment on the arm alone the axial force has a pole at an index of 1.
+    """
+    rubbing = {f"follower.pivot.bush.friction{end}": 0.3 for end in ("", "_min", "_max")}
+    case = with_values(parse_case(with_pivot(kind)), rubbing).with_positions(90)
+    trial = preview_case(case, corners=False)
+    normal, rubbed = levers(trial.contour)
+    circle = 0.3 * 0.008 * np.sqrt(1.0 + 0.05**2)
+    (one,) = (each for each in trial.checks if each.id == "self_locking")
+    by_hand = float(((0.05 * rubbed + circle) / normal).max())
+    assert one.demand == pytest.approx(by_hand, rel=1e-5)
+    machine, cam = trial.solution.machine, next(iter(trial.solution.cams.values()))
+    pressed, pivot = Pressed.of(cam.motion), machine.arm_pivot
+    left, none = 1.0 - cam.motion.lock, np.zeros(cam.slope.shape)
+    for used, sign in ((0.999, 1.0), (1.001, -1.0)):
+        friction = used * left / replace(pivot, friction=1.0).locking(pressed)
+        held = replace(pivot, friction=friction).balanced(
+            np.ones(cam.slope.shape), pressed, Pull(none, none), 1.0
+        )
+        np.testing.assert_allclose(sign * held.axial, 1e3 / left, rtol=1e-9)
 
 
 def test_an_arm_and_a_pivot_that_are_described_are_judged_with_a_face():
     """No datum of a roller is missed; pivot and face alone lose work by their friction."""
-    whole = face_text("flat").replace("[follower.face]\n", DESCRIBED, 1)
-    whole = whole[: whole.index("[scope]")] + whole[whole.index("[lubricant]") :]
-    case = parse_case(whole)
+    case = parse_case(with_pivot("flat"))
     trial = preview_case(case.with_positions(90), corners=False)
     assert not failed(trial)
     made = {each.id: each for each in trial.checks}
@@ -222,9 +263,9 @@ def test_an_arm_and_a_pivot_that_are_described_are_judged_with_a_face():
 
 def test_a_flat_face_twists_and_bends_its_arm_where_it_touches():
     """Normal force at its place: torsion by it, bending as of a beam with the load there."""
-    whole = face_text("flat").replace("[follower.face]\n", DESCRIBED, 1)
-    whole = whole[: whole.index("[scope]")] + whole[whole.index("[lubricant]") :]
-    whole = whole.replace('depth = "24 mm"', 'depth = "24 mm"\nplane_offset = "10 mm"', 1)
+    whole = with_pivot("flat").replace(
+        'depth = "24 mm"', 'depth = "24 mm"\nplane_offset = "10 mm"', 1
+    )
     trial = preview_case(parse_case(whole).with_positions(90), corners=False)
     cam, machine = next(iter(trial.solution.cams.values())), trial.solution.machine
     bar, forces = machine.arm_bar, arm_forces(cam)
