@@ -57,7 +57,10 @@ class CaseJudgement(Protocol):
 
 
 def preview_figures(judged: CaseJudgement) -> PreviewJudgement:
-    """Figures of the preview of a case with an engine, its checks as deep as `decided` judges.
+    """Figures of the preview of a changed case by which searches compare designs: ripple, size,
+    mass, loads, verdict, and the checks that fail or lack data.
+
+    The checks are judged as deep as `decided` does.
 
     Raises
     ------
@@ -98,7 +101,7 @@ def preview_figures(judged: CaseJudgement) -> PreviewJudgement:
 
 
 def decided(judged: CaseJudgement) -> tuple[Trial, list[Shortfall]]:
-    """Trial of a case as deep as it is judged, and the blocking checks that fail.
+    """Trial of a changed case, as deep as it was judged, and the blocking checks that fail.
 
     What costs most is judged last, and only where nothing before it fails: the nominal checks;
     those whose limits an infeasible synthesis exceeds, at the tolerance corners; of a feasible one
@@ -145,16 +148,18 @@ def verdict_of(feasible: bool, shortfalls: Collection[Shortfall], left: Collecti
 
 
 def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> DraftJudgement:
-    """Figures of a case by its synthesis alone, without corrections for the guides and without
-    checks.
+    """Figures of a case by its constrained synthesis alone, without corrections for the guides and
+    without checks.
 
     The limit of the ripple is compared with its minimum afterwards: as a constraint it would hide
     the ripple of an infeasible case.
 
     Parameters
     ----------
-    fine : bool   with the splines and cam angles of the case; else with those of a start, whose
-                  fewer splines leave more ripple
+    case : Case         to be judged
+    torques : mapping   engine torque by load case
+    fine : bool         with the splines and cam angles of the case; else with those of a start,
+                        whose fewer splines leave more ripple
     """
     every = problem_of(case, torques)
     problem = replace(every, left_out=frozenset({TORQUE_REDUCTION.id}))

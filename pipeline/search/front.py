@@ -28,10 +28,14 @@ def front(
 
 
 def thinned(places: Sequence[int], figures: Sequence[tuple[float, float]], most: int) -> list[int]:
-    """At most `most` of the points of a front, as indices: its ends, and the others less those
-    whose loss takes the least area.
+    """At most `most` points of a Pareto front, as indices into `figures`: its two ends, and the
+    others less those whose loss costs the front the least area.
 
-    places : indices of the front in `figures`, by increasing first objective.
+    Parameters
+    ----------
+    places : sequence    indices of the points of the front, by increasing first objective
+    figures : sequence   both objectives of every point
+    most : int           number of points to be kept, at least the two ends
     """
     kept = list(places)
     while len(kept) > max(most, 2):

@@ -90,10 +90,13 @@ class Judgement:
     _outcomes: dict[str, dict[Corner, Outcome]] = field(default_factory=dict, init=False)
 
     def check(self, name: str, *, everywhere: bool = False) -> Check | None:
-        """A check by its id, with its worst demand over the tolerance corners; None where it does
-        not apply.
+        """One check of the changed case, with its worst demand over tolerance corners; None where
+        it does not apply.
 
-        everywhere : over all corners; else over those in `worst`.
+        Parameters
+        ----------
+        name : str          id of the check
+        everywhere : bool   over all corners of the case; else over those in `worst`
         """
         declared = DECLARED[name]
         corners = corners_of(self.solved.case) if everywhere else self.worst
@@ -103,8 +106,8 @@ class Judgement:
         return made[0] if made else None
 
     def _outcomes_at(self, declared: Declaration, corners: Sequence[Corner]) -> tuple[Outcome, ...]:
-        """Outcomes of one check at these corners, in their order; a corner already solved is not
-        solved again.
+        """Outcomes of one check at given tolerance corners, in their order; a corner already solved
+        for the check is not solved again.
         """
         known = self._outcomes.setdefault(declared.id, {})
         left = [corner for corner in corners if corner not in known]
@@ -208,9 +211,15 @@ class Judge:
         return change.applied(self.base, self.folder)
 
     def used(self, change: Change, names: Collection[str]) -> dict[str, float]:
-        """Utilisation of each of these checks with a change, at the tolerance corner that governs
-        it, by coarse closed forms; at the nominal where no corner governs, infinite where it cannot
-        be evaluated.
+        """Utilisation of some checks in the changed case, by id, each at the tolerance corner that
+        governs it in the base case, by coarse closed forms.
+
+        At the nominal where no corner governs; infinite where a check cannot be evaluated.
+
+        Parameters
+        ----------
+        change : Change      of the base case
+        names : collection   ids of the checks
 
         Raises
         ------
@@ -266,11 +275,17 @@ class Judge:
         return self._synthesised(self.case(change), corners=True)
 
     def run(self, change: Applicable, tier: Tier, *, corners: bool) -> Judgement:
-        """Judgement of the changed case as a run solves it at a depth: with the cam of the judge's
-        lift or, if it has none, of the case's synthesis or smoothing feedback.
+        """Judgement of the changed case as a run solves it: with the cam of the lift of the judge
+        or, if it has none, of the synthesis or smoothing feedback of the case.
 
         Nothing is read from the disk cache. Without a lift, finite elements are judged at the
         tolerance corners whatever `corners`.
+
+        Parameters
+        ----------
+        change : Applicable   of the base case
+        tier : Tier           depth of the solution
+        corners : bool        whether the checks are judged at the tolerance corners
 
         Raises
         ------
@@ -364,8 +379,17 @@ class Judge:
         return self.base.sha256
 
     def _contour(self, case: Case, *, undercut: bool = False) -> Contour:
-        """Contour of a case by the lift of the judge or its smoother; GeometryError if it is
-        undercut and may not be.
+        """Contour of a case with the lift of the judge or, if it has none, of the smoother of the
+        case.
+
+        Parameters
+        ----------
+        undercut : bool   whether an undercut contour is accepted
+
+        Raises
+        ------
+        GeometryError
+            If the contour is undercut and may not be.
         """
         contour = case.contour(cam_lift(case, self.torques) if self.lift is None else self.lift)
         if not (undercut or is_body(contour)):
@@ -393,7 +417,9 @@ def _named(case: Case, names: Collection[str]) -> tuple[Corner, ...]:
 
 
 def used(check: Check | None) -> float:
-    """Utilisation of a check with its error bar; infinite where unknown."""
+    """Utilisation of a check, of one that is not proven with its error bar added; infinite where
+    unknown.
+    """
     if check is None or check.utilisation is None:
         return math.inf
     bar = 1.0 + (check.error_share or 0.0) if check.not_proven else 1.0

@@ -98,7 +98,14 @@ class Compared:
 def compared(
     case: Case, torques: Mapping[str, Torque], progress: Progress = SILENT
 ) -> Iterator[Compared]:
-    """Results of all smoothers, the constrained synthesis last.
+    """Results of a case with each smoother by a preview, the constrained synthesis last; a smoother
+    without a cam has the reason.
+
+    Parameters
+    ----------
+    case : Case           with an engine
+    torques : mapping     engine torque by load case
+    progress : Progress   told the smoothers
 
     Raises
     ------
@@ -178,8 +185,8 @@ def lines(results: Sequence[Compared]) -> list[str]:
 
 
 def _missing_line(results: Sequence[Compared]) -> list[str]:
-    """Line on the number of required checks without data under all smoothers; none in a list
-    without any.
+    """List with a line on the number of required checks without data under all smoothers; empty
+    where no check lacks data.
     """
     common = len(common_missing(results))
     most = max(len(one.missing) for one in results)
@@ -204,7 +211,9 @@ def _state(one: Compared, columns: int) -> str:
 
 
 def _listed_within(names: Sequence[str], columns: int) -> str:
-    """Names with commas, as many as fit, and the count of the others."""
+    """As many names as fit into `columns` characters, with commas and the count of those left out;
+    the first one shortened where none fits.
+    """
     for shown in range(len(names), 0, -1):
         rest = len(names) - shown
         text = ", ".join(names[:shown]) + (f", +{rest}" if rest else "")

@@ -140,11 +140,15 @@ class CrownDesign(Displayed):
         return max(float(each.moment[0]) for each in solved)
 
     def line(self, crown: Crown, row: int, *, tilted: bool) -> AxialLine:
-        """Pressure over that of plane strain along the line of contact at one load state, of the
-        end with the greater one; by half-spaces.
+        """Axial pressure over that of plane strain along the line of contact in one load state, by
+        half-spaces; of a contact with two ends solved apart, that of the end with the greater
+        pressure.
 
-        row : number of the state in `problem.states`; tilted : under the greatest moment, else
-        aligned.
+        Parameters
+        ----------
+        crown : Crown   of the crowned body
+        row : int       index of the state in `problem.states`
+        tilted : bool   under the greatest moment of the state; else aligned
         """
         states, lines = self.chosen.problem.states, []
         loads = states.curvature[[row]], states.force[[row]]
@@ -182,9 +186,9 @@ class CrownDesign(Displayed):
 
     @property
     def lives(self) -> list[CrownLife]:
-        """Life of each body, as a share of that under plane-strain pressure, without and with the
-        crown: the pressure ratio to the power of the endurance line of its material. Bodies without
-        a line are left out.
+        """Life of each body, without and with the crown, as a share of its life under plane-strain
+        pressure: the greatest pressure ratio to the power -2 k, k being the slope of the endurance
+        line of the material. Bodies without a line are left out.
         """
         straight, crowned = float(self.chosen.straight.max()), self.chosen.ratio
         costs: list[CrownLife] = []
@@ -217,7 +221,9 @@ class CrownDesign(Displayed):
 
     @property
     def text(self) -> str:
-        """The crown as TOML to be pasted: a table `[[added]]`, or in place of the crown stated."""
+        """Crown as TOML text for the case file: a table `[[added]]` to be pasted, or the table that
+        replaces the crown stated; a comment where no crown is needed.
+        """
         shape = self.shape
         if shape is None:
             return f"# No crown is needed: the straight contact keeps the ratio {self.limit:g}.\n"
@@ -248,8 +254,8 @@ class CrownDesign(Displayed):
         return self.chosen.family.crown(load) if np.isfinite(load) else None
 
     def columns(self) -> dict[Column, Array]:
-        """Drop table: y from the middle, m; drop of the crown, of the least and, if known, of the
-        greatest one within the ratio, m.
+        """Columns of the drop table of the workshop, SI: y from the middle, m; drop of the crown,
+        m, of the least crown within the ratio and, if known, of the greatest one.
         """
         crown = self.chosen.crown
         family = self.chosen.family
@@ -339,7 +345,8 @@ def crown(
     tolerance: float = TOLERANCE,
     progress: Progress = SILENT,
 ) -> CrownDesign:
-    """Crown that keeps the axial pressure of a case within a ratio, in the middle of the range.
+    """Crown of one body with which the axial pressure stays within a ratio, in the middle of the
+    range of such crowns.
 
     The ratio is the signed axial pressure over the greatest of plane strain in the same load case,
     at every angle, load case and both ends of the range of tilt of its preview. A crown that the
@@ -347,10 +354,12 @@ def crown(
 
     Parameters
     ----------
-    ratio : float       greatest ratio, > 0
-    on : str            body that is crowned: cam, roller or face; None: the follower
-    kind : str          johns_gohar, lundberg, circular or table, a relief of the ends
-    tolerance : float   of the drop at the ends, m, >= 0, for the sensitivity
+    case : Case           with the ends of both bodies
+    ratio : float         greatest ratio, > 0
+    on : str              body that is crowned: cam, roller or face; None: the follower
+    kind : str            johns_gohar, lundberg, circular or table, a relief of the ends
+    tolerance : float     of the drop at the ends, m, >= 0, for the sensitivity
+    progress : Progress   told each stage
 
     Raises
     ------
@@ -418,7 +427,15 @@ def _require(case: Case, ratio: float, on: str | None, tolerance: float) -> None
 
 
 def _crowned(machine: Machine, on: str | None, shape: Crown) -> tuple[FinitePair, ...]:
-    """Contacts of the bodies with a crown in place of that of one of them."""
+    """Contacts of cam and follower, one or one for each end, with a crown on one body in place of
+    what it has.
+
+    Parameters
+    ----------
+    machine : Machine   with both bodies
+    on : str or None    "cam": the cam is crowned; else the follower
+    shape : Crown       centred on the crowned body
+    """
     offset = machine.follower.axial_offset or 0.0
     middle = np.copysign(machine.stem_offset, offset)
     if on == "cam":
@@ -437,7 +454,13 @@ def _crowned(machine: Machine, on: str | None, shape: Crown) -> tuple[FinitePair
 
 
 def _states(cycles: Sequence[Cycle]) -> tuple[ContactStates, Array]:
-    """States of the greatest pressures of all cycles, and their cam angles, rad."""
+    """Load states of the contact that may have the greatest pressure, of all load cases, and their
+    cam angles, rad.
+
+    Parameters
+    ----------
+    cycles : sequence   solved turn of each load case, whose index is the number of the load case
+    """
     columns: list[Array] = []
     for number, cycle in enumerate(cycles):
         contact, force = cycle.contact, cycle.loads.normal_force

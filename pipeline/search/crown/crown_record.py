@@ -54,7 +54,9 @@ def crown_record(design: CrownDesign) -> CrownDocument:
 
 
 def crown_lines(design: CrownDesign) -> Iterator[str]:
-    """Lines of a crown design: crown, ratios, costs and sensitivity."""
+    """Lines of text on a crown design: crown, greatest pressure ratio and where, pressure at the
+    centre, lives, range of the drop, sensitivity to tilt and to a deviation of the drop.
+    """
     chosen, governing = design.chosen, _governing_record(design)
     shape, (before, after) = design.shape, design.centres
     if shape is None:
@@ -97,7 +99,9 @@ def crown_lines(design: CrownDesign) -> Iterator[str]:
 
 
 def _range_words(design: CrownDesign) -> str:
-    """Range of the drops within the ratio, and whether the tolerance is within it."""
+    """Sentence on the range of drops at the ends of the crowns within the ratio, and whether
+    deviations by the tolerance stay within the ratio.
+    """
     chosen = design.chosen
     low = shown(chosen.family.drop(chosen.lightest), "um", 3)
     high = "more than those tried"

@@ -74,6 +74,7 @@ class ContactStates:
     load_case: IntArray
 
     def __post_init__(self) -> None:
+        """Refuse states without any contact; the arrays become read-only."""
         names = ("curvature", "force", "couple", "tilt", "forced", "p0")
         freeze(self, **{name: getattr(self, name) for name in names})
         if not self.force.size:
@@ -93,12 +94,12 @@ class ContactStates:
 
     @property
     def governing(self) -> IntArray:
-        """Rows of the load states that no other of the same load case exceeds in force, curvature,
-        couple and tilt alike.
+        """Indices of the load states at which the pressure of a load case can be greatest: no other
+        state of the load case is at least as great in force, curvature, couple, tilt and forced
+        tilt alike.
 
-        The pressure grows with each of these: the greatest of a load case is at one of them. Of
-        more than 16 in a load case, 16 evenly between them, and those of the greatest p0, force,
-        couple and forced tilt.
+        The pressure grows with each of these. Of more than `_STATES` in a load case as many, evenly
+        between them, and those of the greatest p0, force, couple and forced tilt.
         """
         chosen = []
         for case in np.unique(self.load_case):
@@ -168,7 +169,7 @@ class CrownFamily:
         return float(self.crown(load).drop(np.array([self.gauge]))[0])
 
     def crown(self, load: float) -> Crown:
-        """Crown of a design load, N/m."""
+        """Crown of the family for a design line load, N/m; straight for 0."""
         if load == 0:
             return Straight()
         if self.kind == "lundberg":
@@ -316,12 +317,15 @@ class NoCrownError(InputError):
 
 
 def least_crown(problem: CrownProblem, ratio: float) -> LeastCrown:
-    """Crown of least drop over all families that keeps the ratio at every state.
+    """Crown of least drop, of all families of a problem, whose pressure ratio is at most `ratio` in
+    every load state.
 
     Raises
     ------
     NoCrownError
         If no crown keeps it, naming the least ratio that one reaches.
+    InputError
+        If the ratio is not positive.
     """
     if not 0 < ratio < np.inf:
         raise InputError("ratio", ratio, "> 0")
@@ -338,11 +342,15 @@ def least_crown(problem: CrownProblem, ratio: float) -> LeastCrown:
 
 
 def middle_crown(least: LeastCrown, ratio: float) -> LeastCrown:
-    """Crown of middle drop among those within the ratio.
+    """Crown of the mean of the least and the greatest drop of the crowns within a pressure ratio.
 
-    The least where none is needed, or the range is no wider than the search is precise.
+    The least crown itself where none is needed, or where the range is no wider than the search is
+    precise. Where the heaviest crown tried is within the ratio, it ends the range.
 
-    Beyond the heaviest one tried the range counts as ended.
+    Parameters
+    ----------
+    least : LeastCrown   crown of least drop, with the range of its family
+    ratio : float        greatest pressure over that of plane strain
     """
     if least.load == 0:
         return least
@@ -375,11 +383,18 @@ def _ladder(problem: CrownProblem, family: CrownFamily) -> list[float]:
 def _of_family(
     problem: CrownProblem, family: CrownFamily, ratio: float, straight: Array
 ) -> LeastCrown:
-    """Crown of least drop of a family within a ratio, or that of the lowest ratio where none is
-    within it.
+    """Crown of least drop of one family within a pressure ratio, or that of the lowest ratio where
+    none is within it.
 
     The search evaluates few load states; after it, those that exceed the ratio at its crown are
     added and it is repeated.
+
+    Parameters
+    ----------
+    problem : CrownProblem   contact and load states
+    family : CrownFamily     crowns of one kind by design load
+    ratio : float            greatest pressure over that of plane strain
+    straight : array         ratio of each state without a crown
     """
     rows, aim = _governing(problem.states, straight), ratio
     while True:
@@ -416,18 +431,20 @@ class _CrownSearch:
         self._values: dict[float, float] = {}
 
     def at(self, load: float) -> float:
-        """Greatest pressure ratio of the rows with the crown of a design load, N/m."""
+        """Greatest pressure ratio, over the load states of the search, with the crown of a design
+        load, N/m; computed once for each load.
+        """
         if load not in self._values:
             crown = self._family.crown(load)
             self._values[load] = float(self._problem.ratios(crown, self._rows).max())
         return self._values[load]
 
     def within(self, ratio: float) -> tuple[float, float]:
-        """Least and greatest design load, N/m, of the crowns within a ratio, about that of the
-        lowest ratio.
+        """Least and greatest design load, N/m, of the crowns whose greatest pressure ratio is at
+        most `ratio`, about the crown of the lowest ratio.
 
-        The greatest is infinite where all loads tried above keep it; where even the lowest ratio is
-        too great, both are its load.
+        The greatest is infinite where all loads tried above keep the ratio; where even the lowest
+        ratio is too great, both are the load of the lowest ratio.
         """
         lowest = min(self._ladder, key=self.at)
         if not self.at(lowest) <= ratio:
@@ -449,8 +466,15 @@ class _CrownSearch:
         return least, np.inf
 
     def _crossing(self, outside: float, within: float, ratio: float) -> float:
-        """Design load, N/m, between one `outside` and one `within` the ratio at which the ratio is
-        reached; it keeps it, and is rounded to three digits where it is the least.
+        """Design load, N/m, at which the greatest pressure ratio reaches `ratio`, on its side that
+        keeps the ratio; the least load of a range is rounded to few digits where the rounded one
+        keeps it.
+
+        Parameters
+        ----------
+        outside : float   load whose crown exceeds the ratio, N/m
+        within : float    load whose crown keeps it, N/m
+        ratio : float     greatest pressure over that of plane strain
         """
 
         def keeps(load: float) -> float | None:

@@ -63,10 +63,17 @@ class SolvedLines:
         most: ArrayLike = np.inf,  # noqa: ARG002 - each is solved by itself
         compliance: ArrayLike = 0.0,
     ) -> Array:
-        """Moment (count,), N m, of contacts tilted by `tilt` (count,), rad.
+        """Moment (count,), N m, that tilts each contact by a given angle.
 
-        One of both supports yields by `compliance`, rad/(N m), times the moment: the least of
-        those given.
+        The support of one body yields to the moment; of the compliances given the least is taken
+        for all.
+
+        Parameters
+        ----------
+        curvature, force : arrays (count,)   1/m; N
+        tilt : array (count,)                rad
+        most : array                         not used: each contact is solved by itself
+        compliance : array                   of the support, rad/(N m)
         """
         moment = np.empty(np.broadcast(curvature, force, tilt).shape)
         yields = float(np.min(compliance))
@@ -77,11 +84,14 @@ class SolvedLines:
     def _solved(
         self, curvature: ArrayLike, force: ArrayLike, yields: float = 0.0, **turned: ArrayLike
     ) -> Iterator[tuple[NDArray[np.intp], LengthContact, Array]]:
-        """Contacts in groups of similar half-width, which share their cells: rows of the group, its
-        contacts, and p0 of plane strain, Pa.
+        """Solve contacts in groups of similar half-width, which share their cells; yields of each
+        group the indices of its contacts, their solution, and p0 of plane strain, Pa.
 
-        yields : compliance of the support, rad/(N m); turned : `moment`, N m, or `tilt`, rad, by
-        name.
+        Parameters
+        ----------
+        curvature, force : arrays (count,)   1/m; N
+        yields : float                       compliance of the support, rad/(N m)
+        turned : array (count,)              either `moment`, N m, or `tilt`, rad, by name
         """
         (name, value), pair = next(iter(turned.items())), self.pair
         kappa, load, turn = np.broadcast_arrays(
@@ -120,8 +130,13 @@ class SignedRange(NamedTuple):
 
 
 def signed_range(lines: SolvedLines, loads: ContactLoads) -> SignedRange:
-    """Stated pressure of contacts over that of plane strain, aligned or at the greatest moment to
-    either side, whichever is worse.
+    """Signed axial pressure of contacts over that of plane strain, the greatest of aligned and at
+    the greatest moment to either side; and this moment, N m.
+
+    Parameters
+    ----------
+    lines : SolvedLines    pair with its crown
+    loads : ContactLoads   curvature, force and tilt of each contact
     """
     moment = greatest_moment(lines, loads)
     sides = (0.0, 1.0) if lines.pair.is_symmetric else (-1.0, 0.0, 1.0)

@@ -80,8 +80,9 @@ class Candidate:
 
     @property
     def with_offset(self) -> Candidate:
-        """The design with the offset at which rise and return have equal pressure angles: the mean
-        of the greatest and least torque over the mean spring force, rounded to 0.1 mm.
+        """Design with the offset of the follower at which rise and return have equal pressure
+        angles: torque at the cam, mean of its greatest and least value, over the mean spring force,
+        rounded to 0.1 mm; at most `_OFFSET_MOST` of the prime radius.
         """
         design = self.design
         task, spring = design.task, design.spring
@@ -116,15 +117,18 @@ def candidates(
     progress: Progress,
     names: Collection[str] | None = None,
 ) -> list[Candidate]:
-    """Screened designs of all catalogue rollers that can bear the force, by closed forms.
+    """Screened designs of all catalogue rollers that can bear the force, over springs and base
+    circles, by closed forms.
 
     Left out are designs larger than `FAR` times the smallest one that is within all limits.
 
     Parameters
     ----------
-    folder : Path   of the torque table, the user's cards and springs
-    file : str      torque table in it
-    names : collection   of the rollers; None: all
+    task : DesignTask     torque, speeds and requirements
+    folder : Path         of the torque table, the user's cards and springs
+    file : str            torque table in it
+    progress : Progress   told the rollers
+    names : collection    of the rollers; None: all
 
     Raises
     ------
@@ -167,8 +171,15 @@ def candidates(
 def _springs(
     task: DesignTask, card: BearingCard, wire: HelicalSpring, catalogue: list[HelicalSpring]
 ) -> list[SpringPoint]:
-    """Springs, wound or of the catalogue, that store the energy to be balanced, their greatest
-    force within the ratings of the roller; over a grid of share of the energy, travel and preload.
+    """Springs, wound or of the catalogue, that store a share of the energy to be balanced, with a
+    greatest force within the ratings of a roller; over a grid of that share, travel and preload.
+
+    Parameters
+    ----------
+    task : DesignTask      energy swing of the torque, share of the ripple to be removed, speed
+    card : BearingCard     of the roller
+    wire : HelicalSpring   whose material the wound springs have
+    catalogue : list       springs of the catalogue
     """
     swing = task.demand.energy_swing
     least = min(task.remove + _REMOVED_MORE, 1.0)
@@ -204,7 +215,9 @@ def _share(task: DesignTask, point: SpringPoint) -> float:
 
 
 def _by_energy(task: DesignTask, springs: Sequence[SpringPoint]) -> Iterator[list[SpringPoint]]:
-    """Springs in groups of nearly equal energy, whose camshafts carry the same torque."""
+    """Springs in groups of nearly equal stored energy, as a share of the energy swing of the task:
+    the camshafts of a group carry the same torque.
+    """
     groups: dict[int, list[SpringPoint]] = {}
     for point in springs:
         groups.setdefault(round(_share(task, point) / _SHARED_SHAFT), []).append(point)
@@ -220,8 +233,18 @@ def _screened(
     file: str,
     largest: float,
 ) -> list[Candidate]:
-    """Designs of a frame with each spring on several base circles, no larger than `largest`, m,
-    with their closed-form checks.
+    """Designs of a frame with each spring on several base circles, judged by the closed forms of
+    the screening.
+
+    Parameters
+    ----------
+    task : DesignTask      the task
+    frame : MachineFrame   parts around the cam
+    springs : list         to be combined with it
+    oils : mapping         kinematic viscosities at 40 and 100 degC by name, mm2/s
+    folder : Path          of the torque table
+    file : str             torque table in it
+    largest : float        greatest size of a design, m
     """
     designs = [
         Machinery(task, frame, spring, float(radius), spring.travel, 0.0, oils=oils)
@@ -238,8 +261,9 @@ def _screened(
 
 
 def _radii(task: DesignTask, frame: MachineFrame, spring: SpringPoint) -> Array:
-    """Prime radii to be tried, m, geometrically from a steep to a flat pressure angle, not below
-    the hub and within the space; empty where none fits.
+    """Prime radii to be tried for a frame and a spring, m, in geometric steps from a steep to a
+    flat pressure angle, rounded up to 0.5 mm, not below the hub and within the space; empty where
+    none fits.
     """
     mean = 0.5 * (spring.preload + spring.greatest)
     slope = _share(task, spring) * task.ratio * task.demand.peak / mean
@@ -254,7 +278,7 @@ def _radii(task: DesignTask, frame: MachineFrame, spring: SpringPoint) -> Array:
 
 
 def _factors(task: DesignTask, designs: list[Machinery]) -> dict[str, Array]:
-    """Values of the designs (m,) by key of the case file, SI, for the screening."""
+    """Values of m designs (m,), by key of the case file, SI, which the screening varies."""
     springs = [each.spring for each in designs]
     windings = ("wire_diameter", "mean_diameter", "coils", "free_length", "end_factor",
                 "shear_modulus", "density", "strength_at_1mm", "strength_exponent")  # fmt: skip
@@ -276,8 +300,13 @@ def _factors(task: DesignTask, designs: list[Machinery]) -> dict[str, Array]:
 
 
 def _judged(designs: list[Machinery], columns: Mapping[str, Column]) -> list[Candidate]:
-    """The designs with their cam radius, ripple, excess of the utilisations and governing check
-    from the columns of the screening; those refused are left out.
+    """Designs with the figures of their screening: cam radius, ripple, excess of the utilisations
+    above 1, and governing check. Those that the screening refuses are left out.
+
+    Parameters
+    ----------
+    designs : list      m designs
+    columns : mapping   result of the screening (m,) by name of column
     """
     used = np.array([
         np.nan_to_num(np.asarray(columns[name], dtype=float), nan=0.0, posinf=99.0)

@@ -105,7 +105,9 @@ class Machinery:
 
     @property
     def other_heat(self) -> float:
-        """Friction heat of gear and camshaft bearings at the greatest speed, W."""
+        """Friction heat, W, of the gear and the bearings of the camshaft at the greatest speed, for
+        the balance of the housing.
+        """
         speed = self.task.speeds[1] / self.task.ratio
         force = 0.5 * (self.spring.preload + self.spring.greatest)
         bearings = _BEARING_FRICTION * force * 0.5 * self.frame.seat.bore
@@ -113,8 +115,9 @@ class Machinery:
 
     @cached_property
     def oil(self) -> tuple[str, float]:
-        """Name and viscosity, m2/s, of the thinnest oil that is viscous enough for the roller
-        bearing at the least speed; of the thickest one where none is.
+        """Name of the oil, and its kinematic viscosity, m2/s, at the temperature of the oil: the
+        thinnest that is viscous enough for the roller bearing at the least speed, `_KAPPA` times
+        the rated viscosity; the thickest one where none is.
         """
         card = self.frame.card
         turns = self.task.speeds[0] / self.task.ratio * self.prime_radius / self.frame.radius
@@ -518,7 +521,15 @@ source = @source@
 
 
 def _requirements(design: Machinery, smoothing: str, positions: int) -> str:
-    """Text of the tables of smoothing, requirements, limits and load cases in the case file."""
+    """Text of the tables of smoothing, requirements, limits and load cases in the case file of a
+    design.
+
+    Parameters
+    ----------
+    design : Machinery   task and cam radius
+    smoothing : str      lines of `[smoothing]`
+    positions : int      cam angles that are solved
+    """
     task = design.task
     room = design.room if task.space is not None else 1e-3 * np.ceil(1.15e3 * design.cam_radius)
     cases = [_load_case("running", task.speed, None, "given")]

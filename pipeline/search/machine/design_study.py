@@ -93,11 +93,14 @@ def points_folder(out: Path) -> Path:
 
 
 def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> DesignDocument:
-    """Case file of a task, front of ripple and size; conflicting limits where none passes.
+    """Design a cam mechanism for a torque: write the case file of the smallest design that passes,
+    and its front of ripple and size; conflicting limits and relaxations where none passes.
 
     Parameters
     ----------
-    out : Path   case file; the points are in the folder of its name, ``CASE_design``
+    task : DesignTask     torque, speeds and requirements
+    out : Path            case file; the points are in the folder of its name, ``CASE_design``
+    progress : Progress   told each stage
 
     Returns
     -------
@@ -179,8 +182,8 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
 
 
 def _without_limit(study: PointStudy, workers: Crew, progress: Progress) -> Exchanged | None:
-    """The smallest design that the search reaches by exchange of parts without the limit of the
-    space; None where none passes.
+    """Smallest design that the search reaches by exchange of parts when the space is not limited,
+    with its exchanges; None where none passes.
     """
     task = study.task
     roomy = replace(study, task=replace(task, space=None))
@@ -194,8 +197,8 @@ def _without_limit(study: PointStudy, workers: Crew, progress: Progress) -> Exch
 
 
 def _within_space(study: PointStudy, point: Solved) -> list[Solved]:
-    """The design solved again with the limit of the space, in a list; empty if it is too large or
-    fails.
+    """Design found without a limit of the space, solved again with the limit; in a list, which is
+    empty if the design is too large or fails.
     """
     space = study.task.space
     if space is None or _SPARE_PRINTED * point.size > space:
@@ -205,9 +208,16 @@ def _within_space(study: PointStudy, point: Solved) -> list[Solved]:
 
 
 def _copied(task: DesignTask, folder: Path, out: Path) -> tuple[str, list[str]]:
-    """Copy the torque table and the user's cards to the folder of the points and beside the case.
+    """Copy the torque table and the user's cards to the folder of the points and beside the case
+    file.
 
     Gives the name of the table, and the names of the files beside the case that are copies.
+
+    Parameters
+    ----------
+    task : DesignTask   with the file of the torque
+    folder : Path       of the points
+    out : Path          case file
 
     Raises
     ------
@@ -253,7 +263,15 @@ def _demand_record(task: DesignTask) -> TorqueRecord:
 
 
 def _record(study: PointStudy, point: Solved, file: str = "") -> DesignPointRecord:
-    """Record of a solved point; `file`: name of its case file, "" where it is not written."""
+    """Record of a solved design for ``design.json``: parts, size, ripple removed and figures of its
+    preview.
+
+    Parameters
+    ----------
+    study : PointStudy   which makes the text of its case
+    point : Solved       the design
+    file : str           name of its case file; "": it is not written
+    """
     design, figures = point.design, point.whole
     spring = design.spring.spring
     name = spring.name or (
@@ -278,8 +296,8 @@ def _record(study: PointStudy, point: Solved, file: str = "") -> DesignPointReco
 
 
 def _drawing(study: PointStudy, point: Solved) -> DesignDrawing:
-    """What the picture of a design shows: contour and roller at the least lift, mm, and the torque
-    left about its mean, N m; with its values to be confirmed.
+    """What the picture of a design shows: contour and roller at the least lift, mm, torque left
+    about its mean, N m, and values to be confirmed.
     """
     case = parse_case(study.text(point.design), study.folder)
     trial = preview_case(case, corners=False, kept=True)
@@ -299,8 +317,8 @@ def _drawing(study: PointStudy, point: Solved) -> DesignDrawing:
 
 
 def _write_points(study: PointStudy, points: Sequence[Solved]) -> list[DesignPointRecord]:
-    """Write a case file per point of the front, in place of earlier ones, and give
-    their records.
+    """Write a case file for each design of the front, ``point_NN.toml``, in place of earlier ones;
+    returns their records.
     """
     for old in study.folder.glob("point_*.toml"):
         old.unlink()
@@ -324,6 +342,12 @@ def _written(point: Solved, name: str, file: str, head: str) -> str:
 def _summary(study: PointStudy, points: Sequence[Solved], smaller: Exchanged | None) -> str:
     """Comment at the head of the case file: ripple removed, size, exchanges of parts, and the
     front.
+
+    Parameters
+    ----------
+    study : PointStudy    the task
+    points : sequence     designs of the front, the chosen one first
+    smaller : Exchanged   exchanges of the chosen one; None: its parts are yet to be exchanged
     """
     best, task = points[0], study.task
     row = _record(study, best)
@@ -345,9 +369,16 @@ def _summary(study: PointStudy, points: Sequence[Solved], smaller: Exchanged | N
 
 
 def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[Solved]) -> list[str]:
-    """Titles of the limits that no design keeps together: of the nearest of the failing `points`;
-    without one, those that govern most screened designs; without these, what excludes every spring
-    and roller.
+    """Titles of the limits that no design keeps together.
+
+    Those of the nearest design that fails; without one, those that govern most screened designs;
+    without these, what excludes every spring and roller.
+
+    Parameters
+    ----------
+    task : DesignTask     the task
+    screened : sequence   all screened designs
+    points : sequence     solved designs that fail, the nearest first
     """
     if points:
         near = points[0]

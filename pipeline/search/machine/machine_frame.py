@@ -114,8 +114,12 @@ class MachineFrame:
         return 1e-3 * ceil(1e3 * (reach + self.seat_thickness) + 3.0)
 
     def mass(self, lift: float, spring: float) -> float:
-        """Moving mass of follower, roller and a third of the spring, kg; maximum lift, m, mass of
-        the spring, kg.
+        """Mass that moves with the follower, kg: roller, pin, fork, stem and a third of the spring.
+
+        Parameters
+        ----------
+        lift : float     maximum lift, m, which sets the length of the stem
+        spring : float   mass of the spring, kg
         """
         solid = 0.25 * pi * STEEL
         disc = solid * (self.card.outer_diameter**2 - self.card.bore**2) * self.card.width
@@ -168,7 +172,13 @@ class MachineFrame:
         return self.radius + 1.8 * (0.5 * self.seat.bore + self.seat.hub_depth)
 
     def rotor_mass(self, cam_radius: float) -> float:
-        """Mass of cam, gear and shaft, kg."""
+        """Mass of the camshaft, kg: cam and gear as solid discs, and a shaft 1.6 times as long as
+        the distance of its bearings.
+
+        Parameters
+        ----------
+        cam_radius : float   greatest radius of the cam, m
+        """
         solid = pi * STEEL
         cam = solid * cam_radius**2 * self.cam_width
         gear = solid * self.gear_radius**2 * self.gear_width
@@ -190,10 +200,18 @@ def cam_width_under(card: BearingCard) -> float:
 def frame_of(
     name: str, card: BearingCard, torque: float, force: float, ratio: float, sizes: Sequence[Seat]
 ) -> MachineFrame | None:
-    """Parts for a roller card, cam torque, N m, and normal force, N, on the smallest shaft seat
-    whose key, shrink fit, bearings and shaft bear them; None where no seat does.
+    """Parts around a cam, sized for a roller: on the smallest shaft seat whose key, shrink fit,
+    bearings and shaft bear the loads, with the smallest standard module whose gear does; None where
+    no seat does.
 
-    name : of the roller card; ratio : shaft turns per cam turn; sizes : seats by increasing size.
+    Parameters
+    ----------
+    name : str           of the roller card
+    card : BearingCard   the roller
+    torque : float       greatest of the cam, N m
+    force : float        greatest normal force, N
+    ratio : float        shaft turns per cam turn
+    sizes : sequence     shaft seats by increasing size
     """
     cam_width = cam_width_under(card)
     width = cam_width - 4e-4
@@ -216,8 +234,8 @@ def frame_of(
 
 
 def _teeth(ratio: float) -> tuple[int, int]:
-    """Numbers of teeth of gear on the camshaft and pinion for a ratio of shaft turns per cam turn;
-    the nearest where no exact one is small enough.
+    """Numbers of teeth of the gear on the camshaft and of its pinion, for a ratio of shaft turns
+    per cam turn; the nearest ratio where no exact one has few enough teeth.
     """
     for pinion in range(_PINION, _TEETH_MOST + 1):
         gear = pinion * ratio

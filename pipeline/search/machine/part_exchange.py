@@ -90,18 +90,25 @@ class Exchanged:
 
 
 def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progress) -> Exchanged:
-    """Design with the smallest parts reachable by single exchanges.
+    """Design with the smallest parts that single exchanges reach from a passing design.
 
-    One part at a time becomes a smaller one of its catalogue: the shaft with key and bearings,
-    the roller, the spring if it is of a catalogue, the stem with its bushes, the module of the
-    gear. The stride along a catalogue doubles while exchanges pass; once one fails it halves with
-    each, down to the next smaller part. A hub that becomes smaller is tried with the base
-    circle less by as much, then with the same one; oil, fork and housing follow from the parts. An
-    exchange that passes is kept; the search ends when the next smaller of every part of the same
-    design has failed, or after `_EXCHANGES_MAX` designs.
+    One part at a time becomes a smaller one of its catalogue: the shaft with key and bearings, the
+    roller, the spring if it is of a catalogue, the stem with its bushes, the module of the gear.
+    The stride along a catalogue doubles while exchanges pass; once one fails it halves with each,
+    down to the next smaller part. A hub that becomes smaller is tried with the base circle less by
+    as much, then with the same one; oil, fork and housing follow from the parts. An exchange that
+    passes is kept; the search ends when the next smaller of every part of the same design has
+    failed, or after `_EXCHANGES_MAX` designs.
 
     Most designs on the way are followed by a smaller one: only the last is judged at the tolerance
     corners. Where it fails there, the search is made again with each judged at them.
+
+    Parameters
+    ----------
+    study : PointStudy    which solves designs
+    point : Solved        the passing design
+    workers : Crew        processes that solve
+    progress : Progress   told the designs
     """
     smallest = _smallest(study, study.at_nominal, point, workers, progress)
     if not smallest.kept:
@@ -119,7 +126,16 @@ def _smallest(
     workers: Crew,
     progress: Progress,
 ) -> Exchanged:
-    """As `exchanged`, by one depth of judgement."""
+    """Design with the smallest parts that single exchanges reach; see `exchanged`.
+
+    Parameters
+    ----------
+    study : PointStudy    the task
+    judged : callable     design -> solved design, to the depth at which it is to pass
+    point : Solved        the passing design
+    workers : Crew        processes that solve
+    progress : Progress   told the designs
+    """
     catalogues, kept = SortedParts.of(study), list[Exchange]()
     failing: dict[str, tuple[Exchange, str]] = {}
     failed = set[str]()
@@ -182,8 +198,9 @@ def _words(each: Exchange) -> ExchangeRecord:
 
 
 def _shaft(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[Exchange]:
-    """Designs with a smaller shaft seat, key and bearings, `stride` below in the catalogue: with
-    the base circle less by what the hub is, then with the same; none where no smaller seat is left.
+    """Exchanges of the shaft seat with key and bearings for one `stride` smaller in the catalogue:
+    with the base circle reduced by as much as the hub, then with the same base circle; none where
+    no smaller seat is left.
     """
     frame = design.frame
     lesser = [each for each in catalogues.seats if each.bore < frame.seat.bore]
@@ -200,7 +217,9 @@ def _shaft(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[
 
 
 def _roller(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[Exchange]:
-    """Design with a smaller roller, `stride` below in the catalogue, and the same base circle."""
+    """Exchange of the roller for one `stride` smaller in the catalogue, with the same base circle
+    of the cam; none where no smaller one is left.
+    """
     frame = design.frame
     order = list(catalogues.rollers)
     if frame.roller not in order or order[0] == frame.roller:
@@ -215,8 +234,8 @@ def _roller(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator
 
 
 def _spring(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator[Exchange]:
-    """Designs with a lighter catalogue spring, `stride` below, of the same energy over the same
-    travel; none for a wound spring.
+    """Exchanges of the catalogue spring for one `stride` lighter that stores the same energy over
+    the same travel; none for a wound spring, or where no lighter one is left.
     """
     point = design.spring
     spring = point.spring
@@ -238,7 +257,9 @@ def _spring(design: Machinery, catalogues: SortedParts, stride: int) -> Iterator
 
 
 def _stem(design: Machinery, _: SortedParts, stride: int) -> Iterator[Exchange]:
-    """Design with a thinner standard stem and its bushes, `stride` below."""
+    """Exchange of the stem and its bushes for a standard diameter `stride` smaller; none where no
+    smaller one is left.
+    """
     frame = design.frame
     lesser = [1e-3 * each for each in STEMS if 1e-3 * each < frame.stem - _EQUAL_LENGTHS]
     if lesser:
@@ -248,8 +269,8 @@ def _stem(design: Machinery, _: SortedParts, stride: int) -> Iterator[Exchange]:
 
 
 def _module(design: Machinery, _: SortedParts, stride: int) -> Iterator[Exchange]:
-    """Design with a smaller standard module, `stride` below, whose gear still has a rim about the
-    shaft.
+    """Exchange of the module of the gear for a standard one `stride` smaller whose gear still has a
+    rim about the shaft; none where no such one is left.
     """
     frame = design.frame
     rim = _RIM * frame.seat.bore

@@ -100,8 +100,8 @@ class Bracket:
         return self.passing <= max(WIDTH, 2.0 * self.failing + _EQUAL_CHANGES) or self.lever.whole
 
     def inner(self) -> float:
-        """Change to be tried next, between the failing and the passing one: just below, at or just
-        above the one that the draft needs, else the middle.
+        """Change of the option to be tried next, between the failing and the passing one, in
+        logarithms: just below, at or just above the one that the design needs, else the middle.
         """
         for change in (self.needed - self.stride, self.needed, self.needed + _STRIDE):
             if self.failing + _EQUAL_CHANGES < change < self.passing - _EQUAL_CHANGES:
@@ -129,8 +129,13 @@ class _Search:
         return self.failing.get(lever.name, 0.0) > min(change, lever.greatest) - _EQUAL_CHANGES
 
     def bracket(self, lever: Lever, change: float) -> Bracket | None:
-        """Bracket whose passing end is a change, at most the greatest, tried by one more search;
-        None where no design passes.
+        """Search a design with an option changed; bracket of the change between a failing and this
+        passing one, or None where no design passes.
+
+        Parameters
+        ----------
+        lever : Lever    the option
+        change : float   logarithm of its value over that of the task; at most the greatest is taken
         """
         self.progress.advance(self.tried, max(_USUAL, self.tried + 1))
         self.tried += 1
@@ -158,8 +163,13 @@ class _Search:
         return bracket
 
     def smallest(self, lever: Lever, failing: float) -> Bracket | None:
-        """Bracket with a change of an option that passes, half of which fails, by doubling from
-        `failing`, a change that fails; None: not even the greatest change passes.
+        """Bracket of a change of an option that passes, half of which fails, by doubling; None
+        where not even the greatest change passes.
+
+        Parameters
+        ----------
+        lever : Lever     the option
+        failing : float   change that is known to fail, logarithm of a ratio
         """
         change = lever.greatest if lever.whole else 2.0 * max(failing, WIDTH)
         while not self.fails(lever, change):
@@ -186,18 +196,22 @@ def relaxations(
     progress: Progress,
     room: float = inf,
 ) -> list[RelaxationRecord]:
-    """Relaxations of single options with their command lines, the smallest first.
+    """Relaxations of single options of the command with which a design passes, with their command
+    lines, the smallest first.
 
-    With each the command passes, and does not at `fails_at`, half of the change or more. With the
-    first that is nearer to the value of the task by `WIDTH` at most, and no other option passes
-    with a change by that ratio. Every option is looser than that of the task.
+    With each the command passes, and does not at `fails_at`, half of the change or more. The first
+    is narrowed until its passing and failing change differ by `WIDTH` at most; no other option
+    passes with a change by the failing ratio. Every option is looser than that of the task.
 
     Parameters
     ----------
-    study : PointStudy      with whose task no design passes
-    nearest : Solved   the design that fails by the least
-    out : Path         case file of the command
-    room : float       space, m, in which a design passes by exchanges of parts; infinite: not known
+    study : PointStudy    with whose task no design passes
+    nearest : Solved      the design that fails by the least; None: not known
+    out : Path            case file of the command
+    workers : Crew        processes that solve
+    progress : Progress   told the trials
+    room : float          space, m, in which a design passes by exchanges of parts; infinite: not
+                          known
     """
     every = tuple(_levers(study.task))
     levers = tuple(each for each in every if not each.whole)
@@ -224,8 +238,15 @@ def relaxations(
 
 
 def _first(search: _Search, levers: tuple[Lever, ...], nearest: Solved | None) -> Bracket | None:
-    """First change that passes, of those tried in this order: what the nearest failing design
-    needs, `_FIRST_CHANGE` of each option, the greatest of each.
+    """Bracket of the first change with which a design passes, of those tried in this order: what
+    the nearest failing design needs, `_FIRST_CHANGE` of each option, the greatest of each; None
+    where none passes.
+
+    Parameters
+    ----------
+    search : _Search   which tries changes
+    levers : tuple     options that may be changed
+    nearest : Solved   design that fails by the least; None: not known
     """
     trials = [(lever, change) for change in (_FIRST_CHANGE, inf) for lever in levers]
     if nearest is not None and nearest.has_cam:
@@ -241,8 +262,8 @@ def _first(search: _Search, levers: tuple[Lever, ...], nearest: Solved | None) -
 
 
 def _rival(search: _Search, levers: tuple[Lever, ...], best: Bracket) -> Bracket | None:
-    """Bracket of another option that passes with the change at which the best one fails; None
-    without one.
+    """Bracket of another option that passes with the change at which the best option fails; None
+    where no other option does.
     """
     for lever in levers:
         if lever is not best.lever and not search.fails(lever, best.failing):
@@ -253,7 +274,9 @@ def _rival(search: _Search, levers: tuple[Lever, ...], best: Bracket) -> Bracket
 
 
 def _levers(task: DesignTask) -> Iterator[Lever]:
-    """Options of the command that can be relaxed."""
+    """Options of the command that can be relaxed, each with its range: ripple to be removed, space,
+    speed, over-speed, life, ambient temperature, and ratio by one more lobe of the cam.
+    """
     yield Lever(
         "--remove", task.remove, _LEAST_REMOVED * task.remove,
         lambda value: {"remove": _percent(value)}, _percent, _removed,
@@ -289,7 +312,7 @@ def _levers(task: DesignTask) -> Iterator[Lever]:
 
 
 def _slower(task: DesignTask, share: float) -> DesignOptions:
-    """Options of the command with all stated speeds times a share."""
+    """Options of the command with all speeds that the task states multiplied by `share`."""
     options: DesignOptions = {"speed": _text(share * task.speed, "rpm")}
     if "speeds" in task.options:
         least, most = (_text(share * each, "rpm") for each in task.speeds)

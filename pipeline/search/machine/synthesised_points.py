@@ -100,8 +100,14 @@ class PointStudy:
     def _judged(
         self, design: Machinery, smoothing: str, record: Callable[[Judge], R]
     ) -> R | RefusedJudgement:
-        """Record that `record` makes of the case of a design, read from its text; its refusal where
-        it is none.
+        """Result of a function of the judge of a design's case; the refusal where the case is
+        refused.
+
+        Parameters
+        ----------
+        design : Machinery   whose text makes the case
+        smoothing : str      lines of `[smoothing]`
+        record : callable    judge of the case -> result
         """
         try:
             case = parse_case(self.text(design, smoothing), self.folder)
@@ -160,9 +166,8 @@ class Solved:
         return not self._shortfalls and self.ripple <= most
 
     def better_than(self, other: Solved) -> bool:
-        """Whether it passes where the other fails, or leaves less ripple at equal size.
-
-        Where neither passes, whether its checks fail by less.
+        """Whether this design passes where the other fails, or both pass and it leaves less ripple
+        at a size not notably larger; where neither passes, whether its checks fail by less.
         """
         if not self.has_cam or not other.has_cam:
             return self.has_cam
@@ -192,8 +197,8 @@ class Solved:
 
     @property
     def use(self) -> float:
-        """Greatest utilisation of the checks that fail and of the allowed ripple; infinite without
-        a cam.
+        """Greatest utilisation of the checks that fail and of the allowed ripple, this with the
+        reserve for finite elements; infinite without a cam.
         """
         if not self.has_cam:
             return inf
@@ -259,8 +264,15 @@ def promising(task: DesignTask, screened: Sequence[Candidate]) -> list[Candidate
 def _screened_front(
     task: DesignTask, screened: Sequence[Candidate], excess: float, most: int
 ) -> list[Candidate]:
-    """At most `most` designs of the front of ripple and size, of those whose excess of utilisations
-    is at most `excess`, none larger than `FAR` times the smallest.
+    """At most `most` screened designs on the front of ripple and size.
+
+    Parameters
+    ----------
+    task : DesignTask     ripple of the torque
+    screened : sequence   all screened designs
+    excess : float        greatest sum of the utilisations above 1; others are left out, and those
+                          larger than `FAR` times the smallest
+    most : int            number of designs
     """
     good = [each for each in screened if each.within(excess)]
     largest = FAR * min((each.size for each in good), default=0.0)
@@ -306,8 +318,13 @@ def _free(study: PointStudy, candidate: Candidate, growth: float) -> Solved:
 
 
 def freed(design: Machinery, growth: float) -> str:
-    """Lines of `[smoothing]` for a synthesis with the preload and the prime radius, up to `growth`
-    times that of the design, as variables.
+    """Lines of `[smoothing]` in a case file for a synthesis with initial energy, preload and prime
+    radius as variables.
+
+    Parameters
+    ----------
+    design : Machinery   about whose values both range
+    growth : float       greatest prime radius over that of the design
     """
     high = growth * design.prime_radius
     low = max(design.frame.least_radius, _SHRUNK * design.prime_radius)
@@ -321,10 +338,16 @@ def freed(design: Machinery, growth: float) -> str:
 
 
 def synthesised(study: PointStudy, point: Solved) -> Solved:
-    """Draft solved in full, prime radius and preload rounded as in a drawing.
+    """Draft solved in full by a preview, with prime radius and preload rounded as in a drawing.
 
-    Where a check fails by little, both are first those of the full synthesis, with the corrections
-    for the guides. Not where it is the keyway root: under a fit the synthesis does not keep it.
+    Where a check fails by little, the synthesis is first repeated in full, with the corrections for
+    the guides, and its prime radius and preload are taken if they pass. Not where it is the keyway
+    root that fails: under a fit the synthesis does not keep its limit.
+
+    Parameters
+    ----------
+    study : PointStudy   which solves designs
+    point : Solved       the draft
     """
     drawn = settled(study, point)
     if not drawn.has_cam or drawn.passes or drawn.use > _SHORT or drawn.root_fails:
@@ -334,8 +357,8 @@ def synthesised(study: PointStudy, point: Solved) -> Solved:
 
 
 def settled(study: PointStudy, point: Solved) -> Solved:
-    """Design of a synthesis, its prime radius and preload rounded as in a drawing, solved again by
-    a preview.
+    """Design with the prime radius and preload of its synthesis, rounded as in a drawing, solved
+    again by a preview.
 
     Room and counterweight are laid out for the cam radius of the synthesis.
     """
@@ -380,10 +403,15 @@ def drafts(study: PointStudy, screened: Sequence[Candidate], workers: Crew) -> D
 def _with_offsets(
     study: PointStudy, chosen: Sequence[Candidate], points: list[Solved], workers: Crew
 ) -> Drafts:
-    """All drafts; those near to passing are replaced by drafts with an offset, if that improves the
-    best one.
+    """All drafts with a cam; those near to passing are replaced by drafts with an offset of the
+    follower, if an offset improves the best one.
 
-    chosen, points : screened designs and their drafts, in the same order.
+    Parameters
+    ----------
+    study : PointStudy   which drafts designs
+    chosen : sequence    screened designs
+    points : list        their drafts, in the same order
+    workers : Crew       processes that draft
     """
     near = [k for k, each in enumerate(points) if each.use <= _CURABLE]
     replaced: list[int] = []
@@ -408,9 +436,18 @@ def _drafted(study: PointStudy, chosen: Sequence[Candidate], workers: Crew) -> l
 def solved_front(
     study: PointStudy, drafted: Drafts, workers: Crew, progress: Progress
 ) -> tuple[list[Solved], list[Solved]]:
-    """Passing designs on the front of the drafts, and failing ones, the nearest first.
+    """Designs that pass when solved in full, on their front of ripple and size, and those that
+    fail, the nearest to passing first.
 
-    Where none of the front passes, the other drafts that pass are solved, those replaced at last.
+    The drafts on the front are solved; where none of them passes, the other drafts that pass, those
+    replaced at last.
+
+    Parameters
+    ----------
+    study : PointStudy    which solves designs
+    drafted : Drafts      drafts, and those replaced by one with an offset
+    workers : Crew        processes that solve
+    progress : Progress   told the designs
     """
     likely, last = ([each for each in points if each.passes] for points in drafted)
     passing: list[Solved] = []
@@ -438,7 +475,14 @@ def passing_draft(
 ) -> Solved | None:
     """First draft that passes when solved in full; None if none does.
 
-    Those without an offset are drafted first, in an order: where one passes, no other is.
+    Designs without an offset are drafted first: where one passes, none with an offset is.
+
+    Parameters
+    ----------
+    study : PointStudy    which solves designs
+    screened : sequence   screened designs, of which the promising are drafted
+    workers : Crew        processes that draft
+    order : callable      screened design -> number; the least is drafted first
     """
     chosen = sorted(promising(study.task, screened), key=order)
     plain: list[Solved] = []

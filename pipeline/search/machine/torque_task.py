@@ -130,7 +130,13 @@ class DesignTask:
 
 
 def _words(name: str, value: object) -> str:
-    """An option as text of the command line."""
+    """Value of an option as text of the command line, with its unit.
+
+    Parameters
+    ----------
+    name : str       of the option, which sets the unit
+    value : object   number in SI, text, path, or a pair of numbers
+    """
     if isinstance(value, tuple):
         return "..".join(_words(name, each) for each in value)
     if not isinstance(value, float | int):
@@ -187,7 +193,21 @@ def task_of(torque: str | Path, **options: Unpack[DesignOptions]) -> DesignTask:
 def _number(
     value: str | float, unit: str, field: str, *, above: float = -inf, at_least: float = -inf
 ) -> float:
-    """A number in SI from a number in SI or a text with a unit."""
+    """Value of an option in SI.
+
+    Parameters
+    ----------
+    value : float or str   number in SI, or text with a unit
+    unit : str             in which limits are shown, of the quantity of the option
+    field : str            name of the option
+    above : float          lower bound, excluded
+    at_least : float       lower bound, included
+
+    Raises
+    ------
+    InputError
+        If it is not finite or not within the bounds.
+    """
     read = units.parse(value, unit, field) if isinstance(value, str) else float(value)
     if not (isfinite(read) and read > above):
         raise InputError(field, _as_text(value), f"> {units.shown(above, unit)}")
@@ -203,8 +223,13 @@ def _as_text(value: str | float) -> str:
 def _range(
     speeds: str | tuple[str | float, str | float] | None, running: float
 ) -> tuple[float, float]:
-    """Least and greatest speed, rad/s, of a range about the running speed; both that speed where
-    none is stated.
+    """Least and greatest speed of the machine, rad/s; both the running speed where no range is
+    stated.
+
+    Parameters
+    ----------
+    speeds : str, tuple or None   text such as ``800..3600 rpm``, or two numbers or texts
+    running : float               running speed, rad/s, which has to be in the range
     """
     if speeds is None:
         return running, running
@@ -222,7 +247,9 @@ def _range(
 
 
 def _share(value: str | float) -> float:
-    """Share in 0 to 1 from a number or text such as ``60%``."""
+    """Share of the ripple to be removed, above 0 and below 1, from a number or text such as
+    ``60%``.
+    """
     text = str(value).strip()
     try:
         share = 0.01 * float(text[:-1]) if text.endswith("%") else float(text)
@@ -234,9 +261,18 @@ def _share(value: str | float) -> float:
 
 
 def _cycle(path: Path, cycle: str | float | None) -> float:
-    """Shaft angle of a cycle, rad: as stated, or the whole turns that the angles of the table span.
+    """Shaft angle of a cycle, rad: as stated, or the whole turns that the angles of a torque table
+    span.
 
-    InputError where they span no whole number of turns.
+    Parameters
+    ----------
+    path : Path                  torque table
+    cycle : str, float or None   stated angle: text with a unit, or rad; None: from the table
+
+    Raises
+    ------
+    InputError
+        If the table spans no whole number of turns.
     """
     if cycle is not None:
         return _number(cycle, "deg", "cycle", above=0.0)

@@ -128,9 +128,14 @@ def of_catalogue(
     travels: Sequence[float],
     cam_speed: float,
 ) -> list[SpringPoint]:
-    """Catalogue springs with the preload, N, at which they store an energy, J, over a travel, m,
-    for each pair of both; those that would exceed a limit, or have too little preload, are left
-    out.
+    """Catalogue springs that store an energy over a travel, each with the preload at which it does;
+    those that would exceed a limit, or have too little preload, are left out.
+
+    Parameters
+    ----------
+    springs : sequence             of the catalogue
+    energies, travels : sequence   J; m: every pair of both is tried
+    cam_speed : float              rad/s, for the surge
     """
     points = []
     for spring in springs:

@@ -78,8 +78,9 @@ def exclusions(
 
 
 def _lines(record: ExclusionReasons) -> list[str]:
-    """Lines of text: limits by the number of choices that they exclude, the nearest choice, and the
-    smallest changes that admit one.
+    """Lines of text on a redesign without result: limits by the number of choices that they
+    exclude, the nearest choice, its limits in conflict, and the smallest changes that make it
+    feasible.
     """
     counts = [
         f"{each['limit']}{' (' + each['title'] + ')' if each['title'] else ''}: {each['count']}"
@@ -122,9 +123,7 @@ def _excess(record: PreviewJudgement) -> tuple[int, float]:
 
 
 def _way(shortfall: Shortfall) -> str:
-    """Change with which a failing check would pass, in words: demand instead of limit,
-    with unit.
-    """
+    """Words on what would let a failing check pass: its demand in place of its limit, with unit."""
     unit = unit_text(shortfall["unit"])
     demand, limit = shortfall["demand"], shortfall["limit"]
     if demand is None or limit is None:

@@ -83,9 +83,16 @@ class RollerSearch:
     def _unbounded(
         self, least: Mapping[str, float], bushes: Sequence[str]
     ) -> tuple[list[Pair], DraftJudgement | None]:
-        """Without a limit on the cam radius: all springs with the first bush, then the other bushes
-        with the best spring. Gives the feasible pairs with a lower bound of their ripple, and the
-        best judgement.
+        """Judge springs and bushes with the roller without a limit on the cam radius: all springs
+        with the first bush, then the other bushes with the best spring.
+
+        Gives the feasible pairs with a lower bound of their ripple, and the judgement of the least
+        ripple, None without a feasible one.
+
+        Parameters
+        ----------
+        least : mapping     lower bound of the ripple, over that of the engine, by spring
+        bushes : sequence   names, the first one to be tried with all springs
         """
         pairs: list[Pair] = []
         good: list[DraftJudgement] = []
@@ -108,9 +115,16 @@ class RollerSearch:
     def _within(
         self, pairs: Sequence[Pair], room: float
     ) -> tuple[list[Pair], DraftJudgement | None]:
-        """Under a limit on the cam radius (`room`, m): pairs by increasing bound, until the bound
-        is not below the best ripple. Gives the pairs still possible under a smaller limit, and the
-        best judgement; None without a feasible one.
+        """Judge pairs under a limit on the cam radius, by increasing bound of their ripple, until
+        the bound is not below the best ripple.
+
+        Gives the pairs still possible under a smaller limit, and the judgement of the least ripple,
+        None without a feasible one.
+
+        Parameters
+        ----------
+        pairs : sequence   springs and bushes with bounds
+        room : float       greatest cam radius, m
         """
         best: DraftJudgement | None = None
         after: list[Pair] = []
@@ -126,7 +140,14 @@ class RollerSearch:
         return after, best
 
     def _judged(self, spring: str, bush: str, room: float | None = None) -> DraftJudgement | None:
-        """Judgement of a choice by the synthesis alone; None: there is no such cam."""
+        """Judgement, by the synthesis alone, of a spring and a bush with the roller; None where the
+        case is refused.
+
+        Parameters
+        ----------
+        spring, bush : str   names in the catalogue
+        room : float         greatest cam radius, m; None: not limited
+        """
         choice = Choice(self.roller, spring, bush, room)
         record = self.judge.drafted(choice, fine=True)
         self.tried.append((choice, record))
@@ -150,10 +171,14 @@ class Selection:
 
 
 def selection(case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool) -> Selection:
-    """Parts of a catalogue that a redesign of a case tries.
+    """Parts of the catalogues that a redesign of a case tries: those not dominated by another,
+    rollers with the springs whose energy can reach the required torque reduction; and what is left
+    out, with the reason.
 
     Parameters
     ----------
+    case : Case         to be redesigned
+    parts : Catalogue   rollers, springs, bushes
     problem : Problem   of the original case: torque and load cases
     by_mass : bool      whether mass is the second objective
     """
@@ -207,8 +232,14 @@ class _Least:
         return 1.0 - (self.design.torque_reduction or 0.0)
 
     def by_spring(self, force: float) -> dict[str, float]:
-        """Lower bound of the residual ripple, as a share of the ripple before, by spring, for a
-        greatest roller load, N.
+        """Lower bound of the residual ripple over the ripple of the engine, by spring, where the
+        force on the roller is limited.
+
+        By the energy that the spring can store within its travel and the force.
+
+        Parameters
+        ----------
+        force : float   greatest roller load, N
         """
         case, problem, design = self.case, self.problem, self.design
         bound = ripple_bounds.RippleBound(design.torque, problem.gear_ratio)

@@ -90,8 +90,8 @@ class RedesignTask:
         return self.judge().previewed(Change() if choice is None else choice)
 
     def conflict(self, choice: Choice | None) -> ConflictJudgement | RefusedJudgement:
-        """Limits in conflict in the case of a choice, and their relaxations; None: of the case as
-        it is.
+        """Limits in conflict in the case of a choice of parts, and the relaxations that make it
+        feasible; `choice` None: of the case as it is.
         """
         judge = self.judge()
 
@@ -105,13 +105,16 @@ class RedesignTask:
 def redesign(
     case_file: Path, out: Path, against: str, jobs: int | None, progress: Progress
 ) -> RedesignDocument:
-    """Pareto front of ripple and size or mass over the catalogues, written to a folder.
+    """Search the catalogues for parts of a case: Pareto front of ripple and size or mass, written
+    to a folder as case files.
 
     Parameters
     ----------
-    out : Path      for ``redesign.json``, ``point_01.toml`` and so on, and ``solved/``
-    against : str   of `AGAINST`
-    jobs : int      processes; None: number of cores, at most 4
+    case_file : Path      case with an engine and a stem
+    out : Path            for ``redesign.json``, ``point_01.toml`` and so on, and ``solved/``
+    against : str         second objective, of `AGAINST`
+    jobs : int            processes; None: number of cores, at most 4
+    progress : Progress   told each stage
 
     Returns
     -------
@@ -175,8 +178,12 @@ def _against(name: str) -> Against:
 
 
 def _begin(search: RedesignTask) -> None:
-    """Copy the files that the case includes to the output folder; ResultError if it has the
-    redesign of another case.
+    """Copy the files that the case includes to the output folder.
+
+    Raises
+    ------
+    ResultError
+        If the folder has the redesign of another case.
     """
     out, case = search.out, search.case
     record = out / RECORD
@@ -190,8 +197,13 @@ def _begin(search: RedesignTask) -> None:
 def _searched(
     search: RedesignTask, parts: Selection, workers: ProcessPoolExecutor, progress: Progress
 ) -> list[Tried]:
-    """Choices of all rollers, in the order of their names, with their judgements by the synthesis
-    alone.
+    """Choices of parts of all rollers with their judgements by the synthesis alone, in the order of
+    their names.
+
+    Raises
+    ------
+    InputError
+        If no choice makes a valid case.
     """
     waiting = [
         workers.submit(search.searched, roller, least, parts.bushes)
@@ -207,7 +219,7 @@ def _searched(
 
 
 def _refuse_invalid(search: RedesignTask, choices: Sequence[Choice]) -> None:
-    """Refuse a case of which no choice is valid: it is an error of the case.
+    """Refuse a case of which no choice of parts is valid: it is an error of the case.
 
     Raises
     ------
@@ -227,7 +239,9 @@ def _refuse_invalid(search: RedesignTask, choices: Sequence[Choice]) -> None:
 
 
 def _chosen(tried: Sequence[Tried], against: Against) -> list[Choice]:
-    """Choices on the front of the judgements by the synthesis alone."""
+    """Feasible choices on the front of ripple and second objective, `against`, by the synthesis
+    alone; at most `MOST_POINTS`.
+    """
     rough = [(choice, record) for choice, record in tried if not is_refused(record)]
     feasible = [(choice, record) for choice, record in rough if record["feasible"]]
     figures = [(record[AGAINST[against]], record["ripple_left_share"]) for _, record in feasible]
@@ -238,8 +252,8 @@ def _chosen(tried: Sequence[Tried], against: Against) -> list[Choice]:
 def _judged_whole(
     search: RedesignTask, chosen: Sequence[Choice], workers: ProcessPoolExecutor, progress: Progress
 ) -> tuple[PreviewJudgement | RefusedJudgement, list[Judged]]:
-    """Judgement of the case as it is, and choices with theirs, by synthesis and preview at the
-    worst tolerance corners.
+    """Judgement of the case as it is, and the chosen parts with theirs, by synthesis and preview at
+    the worst tolerance corners.
     """
     progress.stage(f"solve {len(chosen)} points of the front")
     waiting = [workers.submit(search.whole, choice) for choice in (None, *chosen)]
@@ -251,10 +265,15 @@ def _judged_whole(
 
 
 def _split(judged: Sequence[Judged], against: Against) -> tuple[list[Whole], list[Judged]]:
-    """Judged choices on the front of ripple and second objective, by increasing size, then the
+    """Judged choices on the front of ripple and second objective, by increasing size, then all
     others.
 
     The front has none that fails and, where one passes, none that lacks data.
+
+    Parameters
+    ----------
+    judged : sequence   choices with their judgements
+    against : str       second objective, key of `AGAINST`
     """
     whole = [(choice, record) for choice, record in judged if not is_refused(record)]
     best = "pass" if any(record["verdict"] == "pass" for _, record in whole) else "incomplete"
@@ -266,7 +285,13 @@ def _split(judged: Sequence[Judged], against: Against) -> tuple[list[Whole], lis
 
 
 def _why(record: PreviewJudgement | RefusedJudgement, front: str) -> str:
-    """Reason why a judged choice is not on the front, whose points have the verdict `front`."""
+    """Reason why a judged choice is not on the front.
+
+    Parameters
+    ----------
+    record : mapping   judgement, or refusal
+    front : str        verdict of the points of the front
+    """
     if is_refused(record):
         return record["why"]
     if not record["feasible"]:
@@ -279,8 +304,8 @@ def _why(record: PreviewJudgement | RefusedJudgement, front: str) -> str:
 
 
 def _written(search: RedesignTask, kept: Sequence[Whole]) -> list[FrontPoint]:
-    """Write a case file per point of the front, in place of earlier ones, and give
-    their records.
+    """Write a case file for each choice of the front, ``point_NN.toml``, in place of earlier ones;
+    returns their records.
     """
     for old in search.out.glob("point_*.toml"):
         old.unlink()

@@ -38,7 +38,9 @@ class RippleBound:
     gear_ratio: float
 
     def __call__(self, energy: float) -> float:
-        """Residual over engine torque ripple, 0 to 1, at a maximum energy (J)."""
+        """Lower bound of the torque ripple that a cam leaves, over that of the engine, 0 to 1,
+        where its spring stores at most `energy`, J.
+        """
         if not energy > 0.0:
             return 1.0
         theta = uniform_turn(_BOUND_POINTS)
@@ -84,8 +86,12 @@ def bearable_energy(force: float, rate: float, preload: float, relief: float) ->
 def relief_of(scenarios: tuple[Scenario, ...], jump: float | None) -> float:
     """Greatest share of the spring force that inertia relieves in the slowest load case, 0 to 0.9.
 
-    `jump` limits that share in the fastest load case (None: 1); inertia grows with the square of
-    the speed.
+    Inertia grows with the square of the speed.
+
+    Parameters
+    ----------
+    scenarios : tuple      load cases, with their speeds
+    jump : float or None   limit of this share in the fastest load case; None: 1
     """
     speeds = [float(item.numbers["cam.speed"]) for item in scenarios]
     fastest = max(speeds)

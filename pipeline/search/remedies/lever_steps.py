@@ -91,8 +91,15 @@ class Workbench:
         return bool(first) and next(iter(first.values())) > 0.0
 
     def scaled(self, lever: Scaled, size: float) -> Step:
-        """Step of a lever that multiplies values by exp(+-size): rounded to three digits away from
-        those of the case. `along`: keys changed by the same difference.
+        """Step of a lever that multiplies values of the case by exp(size) or exp(-size), by its
+        direction; rounded to few digits, away from the values of the case.
+
+        Keys in `along` of the lever change by the same difference as its first key.
+
+        Parameters
+        ----------
+        lever : Scaled   keys and direction
+        size : float     logarithm of the factor, > 0
         """
         factor = math.exp(lever.direction * size)
         before = self._numbers(lever.keys)
@@ -106,9 +113,11 @@ class Workbench:
         return Step(Change.of(texts), abs(math.log(new / before[first])))
 
     def cards(self, lever: Catalogued) -> list[Step]:
-        """Steps to each card of the catalogue with a better rating, the smallest change first; the
-        size is the logarithm of the ratio of the ratings, for a bearing with that of its
-        dimensions.
+        """Steps of a lever to each card of the catalogue with a better rating than the part of the
+        case, the smallest change first.
+
+        The size of a step is the logarithm of the ratio of both ratings; for a bearing its share
+        `_OF_RATING`, with the change of the dimensions.
         """
         here, unit = self.rating_here(lever), self.unit(lever)
         steps: list[tuple[float, float, Step]] = []
@@ -144,9 +153,11 @@ class Workbench:
         return Step(Change(((lever.key, units.format(BalanceHole().wall, "mm")),)), 0.0)
 
     def crowns(self, lever: Crowned) -> list[Step]:
-        """Steps that add or change the follower's crown, counted as the smallest changes.
+        """Steps that add a crown to the follower or change its radius or design load; they rank
+        before all other changes or by the ratio of the values.
 
-        None without the ends of both bodies, or where a table or a standard states the crown.
+        Empty without the ends of both bodies, where a table or a standard states the crown, and
+        where a crown would be added without a known line load.
         """
         facing = self.case.facing
         key, crown = f"{facing.table}.crown", facing.crown
@@ -170,8 +181,12 @@ class Workbench:
         return []
 
     def _numbers(self, keys: tuple[str, ...]) -> dict[str, float]:
-        """Numbers of the case at those of the keys that it has, SI, by key; `[*]` stands for every
-        load case.
+        """Numbers of the case, SI, at those of the keys that it has, by key.
+
+        Parameters
+        ----------
+        keys : tuple of str   dotted; `[*]` stands for every load case, `{cam}` for the material of
+                              the cam
         """
         numbers: dict[str, float] = {}
         for pattern in keys:
@@ -184,7 +199,9 @@ class Workbench:
         return numbers
 
     def _ratings(self, lever: Catalogued) -> dict[str, float]:
-        """Rating of each card of the catalogue that has one, SI, by its name."""
+        """Rating of each card of the catalogue by its name, SI, as the lever compares it; cards
+        without a rating are left out.
+        """
         if lever.key == BEARING:
             known = {name: getattr(card, lever.rating) for name, card in self.parts.rollers.items()}
             return {name: value for name, value in known.items() if value is not None}
@@ -222,8 +239,13 @@ def without_exponent(value: float, unit: str, digits: int = 4) -> str:
 
 
 def _rounded(key: str, value: float, direction: int) -> str:
-    """Value (SI) as text in the unit of its key, rounded up (`direction` > 0) or down to a few
-    digits.
+    """Value as text in the unit of its key, rounded to a few digits.
+
+    Parameters
+    ----------
+    key : str         dotted, of the case file
+    value : float     SI
+    direction : int   > 0: rounded up; else down
     """
     unit = unit_at(key)
     exact = Decimal(units.in_unit(value, unit) if unit else value)

@@ -89,7 +89,12 @@ def _worst_corners(trial: Trial, one: Check) -> tuple[str, ...]:
     """Names of the `_CORNERS` tolerance corners with the worst demands of a check, the governing
     one first.
 
-    All corners where the worst demands are equal or infinite: another one may then govern.
+    All corners where the worst demands are equal or not finite: another one may then govern.
+
+    Parameters
+    ----------
+    trial : Trial   with its solved corners
+    one : Check     the check
     """
     sign = -1.0 if one.sense == "at_most" else 1.0
     solved = [each for each in trial.corners if one.id in each.demands]
@@ -123,8 +128,8 @@ class Order(NamedTuple):
 
     @property
     def parts(self) -> tuple[Order, ...]:
-        """The order divided into two for two processes, each with half of the checks, related ones
-        together.
+        """Remedy search divided into two for two processes, each with half of the checks, related
+        ones together.
 
         The remedy of a check does not depend on the others that are sought.
         """
@@ -222,8 +227,13 @@ def remedies(
 
 
 def _depth(corners: Mapping[str, Sequence[str]], names: Iterable[str]) -> Depth:
-    """Depth of a preview at the corners that govern the checks `names`, at their worst ones, and at
-    the governing corner of every check.
+    """Depth of a preview that judges every check at the corner that governs one of `names`, and
+    single checks at the worst corners of `names` and the governing corner of every check.
+
+    Parameters
+    ----------
+    corners : mapping   worst tolerance corners by check, the governing one first
+    names : iterable    ids of checks
     """
     of_names = [corners.get(name, ()) for name in names]
     of_any = {names[0] for names in corners.values() if names}
@@ -313,10 +323,16 @@ class _RemedySearch:
     def _crossings(
         self, names: Iterable[str], below: float, level: float
     ) -> dict[str, list[_Crossing]]:
-        """Levers that turn a check to pass by a change of a size from `below` to `level`, by id of
-        the check; by closed forms.
+        """Levers that turn a check to pass by a change of a size between two bounds, by id of the
+        check; by closed forms.
 
         The step nearest to passing is stored in `closest`, the last one of a lever in `previous`.
+
+        Parameters
+        ----------
+        names : iterable   ids of the failed checks without a remedy so far
+        below : float      size of the changes tried before
+        level : float      greatest size of a change, |ln| of the ratio of values
         """
         crossings: dict[str, list[_Crossing]] = {}
         for lever, every in self._levers(names):
@@ -339,8 +355,8 @@ class _RemedySearch:
         return crossings
 
     def _levers(self, names: Iterable[str]) -> list[tuple[Lever, list[str]]]:
-        """Levers that can be applied to the case, each with those of the checks that it
-        can cure.
+        """Levers that can be applied to the case, each with the ids of the checks in `names` that
+        it can cure.
         """
         table: dict[Lever, list[str]] = {}
         for name in names:
@@ -349,8 +365,9 @@ class _RemedySearch:
         return [(lever, checks) for lever, checks in table.items() if self.bench.acts(lever)]
 
     def _steps(self, lever: Lever, below: float, level: float) -> Iterator[Step]:
-        """Steps of a lever with a size above `below` and up to `level`: one of a scaled value, or
-        the cards of that range.
+        """Steps of a lever with a size above `below` and up to `level`, |ln| of the ratio of
+        values: one of a scaled value, or the cards of that range; a hole or a crown with the first
+        range.
         """
         if isinstance(lever, Scaled):
             most = math.log(lever.most)
@@ -396,10 +413,15 @@ class _RemedySearch:
             return dict.fromkeys(names, math.inf)
 
     def _verified(self, name: str, ways: Sequence[_Crossing]) -> Remedy | None:
-        """Remedy of a check by the smallest of the levers `ways` that a preview confirms; None
-        without one.
+        """Remedy of a check by the first of some levers that a preview confirms; None where it
+        confirms none.
 
         Of changes of about the same size the one that makes the fewest other checks fail.
+
+        Parameters
+        ----------
+        name : str        id of the check
+        ways : sequence   levers that cure it by closed forms, the smallest change first
         """
         best: tuple[int, float, Remedy] | None = None
         for way in ways:
@@ -417,8 +439,15 @@ class _RemedySearch:
         return None if best is None else best[2]
 
     def _confirmed(self, name: str, way: _Crossing) -> _Confirmed | None:
-        """Smallest step of a lever with which the preview passes at every tolerance corner, by
-        interpolation between a failing and a passing step; None without one.
+        """Smallest step of a lever with which a check passes in the preview at every tolerance
+        corner; None without one.
+
+        Of a scaled value by interpolation between a failing and a passing step.
+
+        Parameters
+        ----------
+        name : str        id of the check
+        way : _Crossing   lever with both steps
         """
         if not isinstance(way.lever, Scaled):
             judgement = self._judgement(name, way.below.step)
@@ -457,8 +486,14 @@ class _RemedySearch:
         return _Confirmed(step, judgement, value) if value <= 1.0 else None
 
     def _refined(self, name: str, way: _Crossing, lever: Scaled) -> float:
-        """Size of the change at which a check meets its limit, by one more evaluation and
-        interpolation.
+        """Size of the change at which a check meets its limit, by one more evaluation of the closed
+        forms, at the size expected, and interpolation.
+
+        Parameters
+        ----------
+        name : str        id of the check
+        way : _Crossing   failing and passing step, and the size expected
+        lever : Scaled    of the change
         """
         if way.size >= way.below.step.size:
             return way.size
@@ -468,8 +503,13 @@ class _RemedySearch:
         return _crossing(above, below, self.failures[name].used)
 
     def _judgement(self, name: str, step: Step) -> Judgement | None:
-        """Preview of the case with a step, at the tolerance corners of a check, stored; None where
-        it has no solution.
+        """Preview of the case with a step, at the tolerance corners of a check, computed once; None
+        where the changed case has no solution.
+
+        Parameters
+        ----------
+        name : str    id of the check
+        step : Step   change of the case
         """
         key = self.failures[name].corners, step.change
         if key not in self.judgements:
@@ -491,8 +531,14 @@ class _RemedySearch:
         return math.inf if value <= 1.0 and (one is None or one.status != "pass") else value
 
     def _remedy(self, name: str, lever: Lever, confirmed: _Confirmed) -> Remedy:
-        """Remedy of a check by a confirmed step, with its side effects and the rating that would be
-        enough.
+        """Remedy of a check by a confirmed step, with its side effects and, for a card, the rating
+        that would be enough.
+
+        Parameters
+        ----------
+        name : str               id of the check
+        lever : Lever            of the step
+        confirmed : _Confirmed   step with its judgement
         """
         step, judgement, value = confirmed
         words = effects(name, self.base, judgement)
@@ -551,10 +597,14 @@ def _ratio(wanted: float, known: float) -> float:
 
 
 def _hopeless(lever: Scaled, seen: _Seen, first: float) -> bool:
-    """Whether a lever, by the slope of log utilisation so far, would stay far above the limit up to
-    its greatest change.
+    """Whether a lever would leave a check far above its limit up to its greatest change,
+    extrapolated by the slope of the logarithm of the utilisation.
 
-    first : utilisation without a change; seen : with the last step.
+    Parameters
+    ----------
+    lever : Scaled   with its greatest change
+    seen : _Seen     last step, with the utilisation
+    first : float    utilisation without a change
     """
     size = seen.step.size
     if size < _FROM or not (0.0 < first < math.inf and 0.0 < seen.used < math.inf):
@@ -564,11 +614,13 @@ def _hopeless(lever: Scaled, seen: _Seen, first: float) -> bool:
 
 
 def _crossing(above: _Seen | None, below: _Seen, first: float) -> float:
-    """Size of the change at which the utilisation is 1, linear in its logarithm between two steps;
-    their middle where that of the smaller step is infinite.
+    """Size of the change at which the utilisation of a check is 1: linear in the logarithm of the
+    utilisation between two steps; their middle where that of the smaller step is infinite.
 
     Parameters
     ----------
+    above : _Seen   failing step; None: the case without a change
+    below : _Seen   passing step
     first : float   utilisation without a change
     """
     start, high = (0.0, first) if above is None else (above.step.size, above.used)

@@ -12,11 +12,13 @@ _SLIGHT = 0.01  # relative change of a figure up to which the remedy leaves it o
 
 
 def effects(name: str, before: Judgement, after: Judgement) -> tuple[str, ...]:
-    """Side effects of a change, the gravest first: checks that fail now, figures, checks cured.
+    """Side effects of a change in words, the gravest first: checks that fail now, figures that it
+    changes, other checks that it cures.
 
     Parameters
     ----------
-    name : str   check that the change cures
+    name : str                  id of the check that the change cures
+    before, after : Judgement   of the case without and with the change
     """
     failing = newly_failing(before, after)
     cured = [
@@ -42,8 +44,8 @@ def _failing(judgement: Judgement) -> list[str]:
 
 
 def _changed(before: Judgement, after: Judgement) -> list[str]:
-    """Words on each figure of the design that a change moves by more than a trifle: old -> new; and
-    on the mass.
+    """Words on each figure of the design, and its mass, that differ between two judgements by more
+    than a share `_SLIGHT`: old -> new.
     """
     words = []
     for (label, unit, old), (*_, new) in zip(_figures(before), _figures(after), strict=True):

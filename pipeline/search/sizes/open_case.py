@@ -89,12 +89,13 @@ class OpenCase:
         return parse_case(text, self.folder)
 
     def write(self, text: str, out: Path) -> Path:
-        """Write the complete case, and copies of its files if it lies in another folder.
+        """Write the complete case `text` to `out`, and copies of the files it includes if it lies
+        in another folder.
 
         Raises
         ------
         ResultError
-            If a file exists already.
+            If the case file exists already, or a file of the name of a copy with other content.
         """
         if out.exists():
             raise ResultError(f"{out}: exists already, not overwritten")
@@ -126,7 +127,21 @@ def read_open_case(path: str | Path, free: Collection[str] = ()) -> OpenCase:
 def parse_open_case(
     content: str | bytes, folder: Path | None = None, free: Collection[str] = ()
 ) -> OpenCase:
-    """Case with open keys from its text; included files are read from `folder`."""
+    """Case with open keys from its text: keys in `GAPS` that it does not state get provisional
+    values.
+
+    Parameters
+    ----------
+    content : str or bytes   of the case file
+    folder : Path            of included files; None: it includes none
+    free : collection        keys to be left open although the text states them
+
+    Raises
+    ------
+    InputError
+        If a key in `free` cannot be open, the case is invalid, or the lift would follow from an
+        open spring or a constrained synthesis.
+    """
     stated = tables_in(content)
     text = content if isinstance(content, str) else content.decode("utf-8-sig")
     if free:
@@ -155,7 +170,12 @@ def parse_open_case(
 
 
 def _of_arm(tables: Tables) -> Mapping[str, str]:
-    """Prime radius and centre distance of an arm square to its line to the cam; {} of a stem."""
+    """Provisional prime radius and centre distance of an arm, as texts by key, where they are open;
+    empty without an arm or its length.
+
+    Beside a stated prime radius the arm is square to the line from its roller to the cam axis, else
+    to the line of centres.
+    """
     arm = _entry(tables, "follower.arm")
     if not isinstance(arm, dict):
         return {}

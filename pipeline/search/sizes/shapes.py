@@ -136,13 +136,16 @@ class RollerShapes:
         return self.case.roller.radius
 
     def smallest(self) -> Shape:
-        """Smallest shape within the limits, with the smallest roller, and the limits that govern
-        it.
+        """Smallest shape of the cam within the geometric limits, with the smallest roller, and the
+        limits that govern it.
+
+        The prime radius is the greatest of those by pressure angle, curvature and wall around the
+        bore; a stated one is kept.
 
         Raises
         ------
         InputError
-            If a given prime radius is too small for any.
+            If a stated prime radius is too small for any.
         """
         if PRIME not in self.gaps:
             prime, roller = self.case.cam.prime_radius, self._least_roller
@@ -164,8 +167,8 @@ class RollerShapes:
         return Shape(prime, offset, roller, 0.0, governs, by_offset)
 
     def _smallest(self, limits: PitchLimits) -> RollerSize:
-        """Smallest prime radius within limits of the pitch curve, and its offset, best where it is
-        open, m.
+        """Smallest prime radius within limits of the pitch curve, and its offset, m: the best one
+        where the offset is open, else that of the case.
         """
         if self._aside in self.gaps:
             return self.cam.smallest(limits)
@@ -210,7 +213,9 @@ class RollerShapes:
         return self.cam.parts(shape.prime_radius, shape.offset)
 
     def words(self, shape: Shape) -> str:
-        """Extremes of a shape, and the range of an open roller, in words."""
+        """Sentence on the extremes of a shape: pressure angles, convex pitch radius, and the range
+        of the roller where it is open.
+        """
         pitch = self.cam.extremes(shape.prime_radius, shape.offset)
         words = (
             f"pressure angle {shown(pitch.rise.value, 'deg')} on the rise,"
@@ -285,8 +290,11 @@ class FaceShapes:
     least_radius: float = 0.0
 
     def smallest(self) -> Shape:
-        """Smallest shape within the limits, with the narrowest face, and the limits that govern
-        it.
+        """Smallest shape of the cam within the geometric limits, with the narrowest face, and the
+        limits that govern it.
+
+        The base radius is the greatest of those by undercut factor, radius of curvature and wall
+        around the bore; a stated one is kept.
         """
         case, base, governs = self.case, self.case.cam.prime_radius, "given"
         if PRIME in self.gaps:
@@ -344,16 +352,18 @@ def _lengths(shape: Shape) -> SizeLengths:
 
 
 def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
-    """Shapes of an open case.
+    """Shapes of the cam that an open case allows, of a roller on stem or arm or of a flat face.
 
     Parameters
     ----------
+    opened : OpenCase      case with its open keys
     least_radius : float   least convex radius of the contour, m, >= 0
 
     Raises
     ------
     InputError
-        If the lift cannot be read or follows from no torque, or the radius is negative.
+        If the lift cannot be read or follows from no torque, the radius is negative, or the sizes
+        of such a follower are not known.
     """
     if not 0.0 <= least_radius < np.inf:
         raise InputError("least radius", least_radius, ">= 0 m")

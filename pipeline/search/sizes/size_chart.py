@@ -49,8 +49,13 @@ def size_figure(case: Case, shapes: Shapes, shape: Shape) -> Figure:
 
 
 def _about_size(panel: Panel, size: float) -> Panel:
-    """Panel with a spot at the size, mm, and its vertical axis cut at `_HEADROOM` times limit and
-    value there.
+    """Panel over the base radius with a spot at the sized cam, and its vertical axis cut at
+    `_HEADROOM` times the greatest of limits and values there.
+
+    Parameters
+    ----------
+    panel : Panel   curves over the base radius, mm
+    size : float    base radius of the sized cam, mm
     """
     here = [float(np.interp(size, curve.x, curve.y)) for curve in panel.curves]
     reached = [*here, *(line.value for line in panel.limits)]
@@ -79,8 +84,13 @@ def _curve_record(curve: Curve) -> SizeCurve:
 
 
 def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[Panel]:
-    """Panels of pressure angle, deg, and least convex radius of curvature, mm, of roller cams over
-    the base radius, mm.
+    """Panels of pressure angle, deg, and least convex radius of the pitch curve, mm, of roller cams
+    over the base radius, mm.
+
+    Parameters
+    ----------
+    shapes : RollerShapes   cams at other base radii
+    shape : Shape           the sized cam, whose offset and roller all have
     """
     cam, inset = shapes.cam, shape.roller_radius
     least, most = cam.reach(shape.offset)
@@ -119,8 +129,14 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[Panel]:
 
 
 def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[Panel]:
-    """Panels of least radius of curvature, mm, and undercut factor of face cams over the base
+    """Panels of least radius of curvature, mm, and undercut factor of flat-face cams over the base
     radius, mm.
+
+    Parameters
+    ----------
+    case : Case           with the limit of the undercut factor
+    shapes : FaceShapes   cams at other base radii
+    shape : Shape         the sized cam
     """
     bases, cam = (
         _about(_RADIUS_FROM * shape.prime_radius, shape.prime_radius, _CHART_POINTS),

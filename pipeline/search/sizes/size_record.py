@@ -48,7 +48,9 @@ def size_record(sizing: Sizing) -> SizeDocument:
 
 
 def size_lines(sizing: Sizing) -> Iterator[str]:
-    """Lines of a sizing: values with reasons, the cam and its checks."""
+    """Lines of text on a sizing: values of the open keys with reasons, the cam, the spring, and the
+    checks that do not pass.
+    """
     if not sizing.values:
         yield f"no key is open; size finds {', '.join(GAPS)}"
     for key, value in sizing.values.items():

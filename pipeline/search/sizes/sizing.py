@@ -230,6 +230,12 @@ def sized(opened: OpenCase, *, least_radius: float = 0.0, progress: Progress = S
     holds with friction, surge and elastic stem, with all tolerances at their worst ends at once.
     The complete case is judged by a preview at its tolerance corners.
 
+    Parameters
+    ----------
+    opened : OpenCase      case with its open keys
+    least_radius : float   least convex radius of the contour, m, >= 0
+    progress : Progress    told each stage
+
     Raises
     ------
     CamError
@@ -318,8 +324,13 @@ class _SizeSearch:
         return spring_of(self.opened.case, self.opened.gaps, self.shapes.parts(shape), stiff)
 
     def _stiffened(self, exact: Shape, first: _Sized) -> _Sized:
-        """Case complete with the first of stiffer springs whose winding passes; `first` itself
-        where none does.
+        """Complete case with the first of ever stiffer springs whose winding passes its checks;
+        `first` where none of those tried does.
+
+        Parameters
+        ----------
+        exact : Shape    smallest shape by geometry
+        first : _Sized   complete case whose winding fails
         """
         reason, spring = _titles(failing(first.checks, _WOUND)), first.spring
         for _ in range(_TRIES):
@@ -336,12 +347,17 @@ class _SizeSearch:
     def _firm(
         self, exact: Shape, start: ChosenSpring, reason: str, raised: Mapping[str, float]
     ) -> _Sized | None:
-        """Case complete with a spring whose preview holds the follower, within 1 % of the weakest
-        such; None where none of those tried does.
+        """Complete case with the weakest spring, within 1 %, whose preview holds the follower on
+        the cam; None where none of those tried does.
 
-        None: none of those tried does.
+        The preload grows where it is open; where the case states it, the rate.
 
-        The preload grows where it is open; what the case states stays, then the rate grows.
+        Parameters
+        ----------
+        exact : Shape          smallest shape by geometry
+        start : ChosenSpring   that does not hold the follower
+        reason : str           checks that fail, the reason of the new value
+        raised : mapping       utilisation in the preview over that of the screening, by check
         """
         grown = more_preload if PRELOAD in self.opened.gaps else stiffer
 
@@ -393,6 +409,11 @@ class _SizeSearch:
         The base radius grows by the profile tolerance first, so that the part as made keeps the
         limits. A roller or flat face follows from the contact of the solved cam: force and
         curvature of the pitch curve, travel and width of the contact.
+
+        Parameters
+        ----------
+        shape : Shape           as the geometry requires
+        spring : ChosenSpring   with which it is screened
         """
         gaps = self.opened.gaps
         if PRIME in gaps:
@@ -421,11 +442,17 @@ class _SizeSearch:
     def _grown(
         self, shape: Shape, spring: ChosenSpring, raised: Mapping[str, float] = NOT_RAISED
     ) -> Shape:
-        """The smallest shape, from this one on in steps of the prime radius, whose checks that a
-        larger cam can cure pass by the screening; `shape` with its dimensions rounded where none
-        does.
+        """Smallest shape, in steps of the prime radius from a given one on, for which the checks
+        that a larger cam can cure pass by the screening.
 
-        raised: utilisation in the preview over that of the screening, by check.
+        The given shape with its dimensions rounded where they pass with it, the prime radius is not
+        open, or no larger shape helps.
+
+        Parameters
+        ----------
+        shape : Shape           the smallest one tried
+        spring : ChosenSpring   with which it is screened
+        raised : mapping        utilisation in the preview over that of the screening, by check
         """
         self.progress.stage("contact")
         least, screened = self._fitted(shape, spring)
@@ -457,10 +484,10 @@ class _SizeSearch:
         return _Sized(spring, shape, text, judgement, checks)
 
     def _at_worst(self, judgement: Judgement) -> tuple[Check, ...]:
-        """Checks of a judged case, in which one on the spring that fails at the worst ends of all
-        tolerances together stands with its values there.
+        """Checks of a judged case; one on the spring that fails beyond its error bar at the worst
+        ends of all tolerances together has its values there.
 
-        There the closed forms have their limit: within their error bars it is held.
+        All as judged where one on the spring fails already.
         """
         ones = [each for each in (*_HELD, *_WOUND) if each in TOLERANCED]
         nominal = [each for each in judgement.every if each.declaration in ones]

@@ -71,20 +71,23 @@ class ChosenSpring(NamedTuple):
 def spring_of(
     case: Case, gaps: Sequence[str], lift: LiftParts, stiff: ChosenSpring | None = None
 ) -> ChosenSpring:
-    """Spring for the open keys: of least energy at full lift, or of least preload or rate.
+    """Spring for the open keys of a case: of least energy at full lift, or of least preload or
+    rate.
 
-    What is stated stays: the preload is the least one that holds the follower beside a stated
-    rate, or the rate beside a stated preload. The rate of a spring with a design is that of the
-    design.
+    What is stated stays: the preload is the least one that holds the follower beside a stated rate,
+    or the rate beside a stated preload. The rate of a spring with a design is that of the design.
 
     Parameters
     ----------
-    stiff : ChosenSpring   with a rate of another reason, of which the preload is sought
+    case : Case            with speeds, masses and tolerances
+    gaps : sequence        its open keys
+    lift : LiftParts       of the follower
+    stiff : ChosenSpring   whose rate is taken, the preload being sought; None: no rate is imposed
 
     Raises
     ------
     InputError
-        If nothing throws the follower off the cam and neither rate nor preload is given; if a
+        If nothing throws the follower off the cam and neither rate nor preload is stated; if a
         stated preload holds it at no rate.
     """
     design, rate, rate_by = case.spring.design, case.spring.rate, ""

@@ -135,14 +135,18 @@ def smallest_spring(
     rate: float | None = None,
     force: ExternalForce = NO_FORCE,
 ) -> SpringSize:
-    """Spring of least energy at full lift, hence least wire at a given stress.
+    """Spring of least energy at full lift, hence of least wire at a given stress, that keeps the
+    follower in contact.
 
-    The energy (P + k h)^2 / (2 k) with the least preload P(k), a convex function, is convex in the
-    rate k: it has one minimum.
+    The energy (P + k h)^2 / (2 k), h: stroke, with the least preload P(k), a convex function, is
+    convex in the rate k: it has one minimum. The preload is at least `PRELOAD_SHARE` of the force
+    at full lift.
 
     Parameters
     ----------
-    rate : float            N/m, where it is fixed; None: of the least energy
+    lift : LiftParts        of the follower
+    conditions : sequence   under which contact holds
+    rate : float            k, N/m, where it is fixed; None: of the least energy
     force : ExternalForce   of the machine on the follower, as of `preload_needed`
 
     Raises
@@ -176,14 +180,16 @@ def least_rate(
     conditions: Sequence[HoldingCondition],
     force: ExternalForce = NO_FORCE,
 ) -> float:
-    """Least rate for all contact conditions at a preload, N/m.
+    """Least spring rate at which a given preload keeps the follower in contact, N/m; 0 if the
+    preload alone does.
 
-    0 if the preload alone holds it. The preload needed, P(k), falls with the rate: it crosses
-    the given one once.
+    The preload needed, P(k), falls with the rate: it crosses the given one once.
 
     Parameters
     ----------
+    lift : LiftParts        of the follower
     preload : float         nominal, N, > 0
+    conditions : sequence   under which contact holds
     force : ExternalForce   of the machine on the follower, as of `preload_needed`
 
     Raises
