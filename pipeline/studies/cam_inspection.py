@@ -91,13 +91,16 @@ def inspect_part(
     jobs: int | None = None,
     progress: Progress = SILENT,
 ) -> RealPart:
-    """Measured contour fitted to the nominal one, solved and checked.
+    """Fit a measured contour to the nominal one, solve the measured cam in its case, and check it.
 
     Parameters
     ----------
+    case : Case               of the cam
+    contour : Contour         nominal
     measured : array (2, n)   surface points, m
     keep_phase : bool         measured angles are relative to the keyway
     jobs : int                processes of the certificate; None: number of cores, at most 4
+    progress : Progress       told each stage
 
     Raises
     ------
@@ -115,6 +118,13 @@ def write_inspection(
     run: Path, part: RealPart, tolerance: float, folder: Path
 ) -> InspectionDocument:
     """Write the files of an inspection: deviations, cycle, checks and record.
+
+    Parameters
+    ----------
+    run : Path          folder of the run of the nominal cam
+    part : RealPart     fit and solved cam
+    tolerance : float   width of the tolerance zone of the profile, m
+    folder : Path       of the inspection
 
     Returns
     -------

@@ -78,7 +78,15 @@ class LengthOptions:
     def bodies(
         self, pair: TwoCylinders, depths: Sequence[float | None]
     ) -> tuple[FiniteBody, FiniteBody]:
-        """Both bodies in SI; without a depth the radius, at most twice the shorter length.
+        """Both bodies with length, ends and the depth at which they are held, m.
+
+        Without a stated depth it is `_DEPTH_OVER_LENGTH` times the shorter length, at most the
+        radius of a convex body.
+
+        Parameters
+        ----------
+        pair : TwoCylinders   materials and radii
+        depths : sequence     stated depth of each body, m; None: not stated
 
         Raises
         ------
@@ -153,6 +161,16 @@ class LengthOptions:
     def _crown(self, straight: FinitePair, pair: TwoCylinders) -> Crown:
         """Crown of the option, such as ``johns-gohar:300 N/mm`` or a table file; straight without
         it.
+
+        Parameters
+        ----------
+        straight : FinitePair   contact without a crown
+        pair : TwoCylinders     radii
+
+        Raises
+        ------
+        InputError
+            If the crown cannot be read or does not fit the bodies.
         """
         if self.crown is None:
             return Straight()
@@ -179,7 +197,14 @@ class LengthOptions:
 
     @staticmethod
     def _positive(text: str | None, unit: str, option: str) -> float:
-        """Text of an option as a number > 0 in SI; without a unit it is in `unit`."""
+        """Number in SI from the text of an option, above zero; InputError where it is not.
+
+        Parameters
+        ----------
+        text : str or None   with a unit, or a number in `unit`
+        unit : str           of a number without a unit
+        option : str         name of the option
+        """
         if not text:
             raise InputError(option, "missing", f"specified, > 0 {unit}")
         value = units.parse_or_bare(text, unit, option)
@@ -223,8 +248,11 @@ class FiniteLength:
         return [self._record(tier) for tier in self.tiers]
 
     def _record(self, tier: TierResult) -> Document:
-        """Document of one tier: factors over plane-strain p0 with error bars in percent (None:
-        unbounded at a singular end), moment, tilt, place of the greatest.
+        """Document of the contact by one method, half-spaces or finite elements: pressures over
+        plane-strain p0 with error bars in percent, moment, tilt, place of the greatest pressure,
+        stress peaks, residual.
+
+        An error bar is None, unbounded, where the greatest pressure is at a singular end.
         """
         values = factors(tier)
         contact, cells = tier.contact, tier.contact.cells
@@ -278,7 +306,13 @@ class FiniteLength:
 def finite_length(
     options: LengthOptions, pair: TwoCylinders, depths: Sequence[float | None]
 ) -> FiniteLength:
-    """Contact of the options by half-spaces and by finite elements.
+    """Contact of two cylinders of finite length, by half-spaces and by finite elements.
+
+    Parameters
+    ----------
+    options : LengthOptions   lengths, ends, crown, tilt or moment
+    pair : TwoCylinders       radii, materials, line load
+    depths : sequence         at which each body is held, m; None: not stated
 
     Raises
     ------

@@ -62,6 +62,9 @@ class TwoCylinders:
     friction: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse radii of zero, bodies of which one does not fit into the other, and load, friction
+        or elastic constants out of bounds.
+        """
         for name in ("radius_1", "radius_2"):
             radius = getattr(self, name)
             if np.isnan(radius) or radius == 0:
@@ -75,7 +78,9 @@ class TwoCylinders:
         hertz.contact_modulus(*_elastic(self.body_1), *_elastic(self.body_2))
 
     def _refuse_the_concave_body(self) -> None:
-        """InputError that names the concave body, as it is not wider than the other one."""
+        """Raise InputError that names the concave body, whose radius is not greater than that of
+        the other body.
+        """
         radii = {"radius_2": self.radius_2, "radius_1": self.radius_1}
         concave, other = sorted(radii, key=lambda name: 1.0 / radii[name])
         limit = "> 0, as the other body is flat or concave"
@@ -156,7 +161,9 @@ class ConformingContact:
 
 
 def closed_form(pair: TwoCylinders) -> LineContact:
-    """Hertz line contact of two cylinders, with McEwen's stresses under sliding friction."""
+    """Hertz line contact of two cylinders: half-width, pressure, and greatest stresses of body 1
+    with their depths; under sliding friction by McEwen's stresses.
+    """
     half_width, p0 = (
         float(v)
         for v in hertz.line_contact(pair.line_load, 1 / pair.curvature, pair.contact_modulus)
@@ -188,7 +195,11 @@ def is_conforming(pair: TwoCylinders) -> bool:
 
 
 def finite_elements(pair: TwoCylinders) -> FiniteElementContact:
-    """Line contact of two cylinders by finite elements; error bar by a coarser mesh.
+    """Line contact of two cylinders by finite elements, bodies taken as half-planes, with the
+    stresses of both.
+
+    The error bar, relative, is the greatest difference to a coarser mesh plus that of the
+    half-planes, which grows with (a/R)^2.
 
     Raises
     ------
@@ -249,15 +260,20 @@ def conforming(pair: TwoCylinders) -> ConformingContact:
 
 
 def approach(pair: TwoCylinders, depths: tuple[float | None, float | None]) -> float:
-    """Approach of two points remote from the contact, m.
+    """Approach of two points remote from the contact, m: in plane strain it depends on the points.
 
-    Of the centres of discs, or of points at depths (m, much larger than the half-width) below the
-    contact: in plane strain the approach depends on the reference points.
+    Of a convex body the point is the centre of the disc, unless a depth is given.
+
+    Parameters
+    ----------
+    pair : TwoCylinders   radii, materials, line load
+    depths : tuple        of the point of each body below the contact, m, much larger than the
+                          half-width; None: the centre of the disc
 
     Raises
     ------
     InputError
-        If the depth of a flat or concave body is missing.
+        If the depth of a flat or concave body is missing, or one is not above the half-width.
 
     References
     ----------
@@ -285,7 +301,9 @@ def approach(pair: TwoCylinders, depths: tuple[float | None, float | None]) -> f
 
 
 def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
-    """Contact by finite elements with `elements` per half-width, without error bar."""
+    """Line contact of two cylinders by finite elements, `elements` per half-width of Hertz, with
+    the error bar left at 0.
+    """
     half_width, p0 = (
         float(v)
         for v in hertz.line_contact(pair.line_load, 1 / pair.curvature, pair.contact_modulus)
@@ -335,8 +353,8 @@ def _beyond(field: Array, poisson: float) -> float:
 
 
 def patch_mesh(poisson: float) -> tuple[BodyMesh, Index]:
-    """Mesh of the contact patch as far as its stresses reach, and the number of the stress point at
-    each of its nodes.
+    """Mesh of the contact patch of a body of Poisson's ratio `poisson`, as far as its stresses
+    reach, and the index of the stress point at each of its nodes.
 
     Lengths in half-widths; the surface is y = 0, the body below.
     """
@@ -352,8 +370,14 @@ def patch_mesh(poisson: float) -> tuple[BodyMesh, Index]:
 def _pressures(
     pair: TwoCylinders, patches: tuple[ContactPatch, ContactPatch], half_width: float
 ) -> PatchContacts:
-    """Contact pressures of both patches, dimensionless: lengths in half-widths a, gaps in a^2 / (2
-    R).
+    """Contact pressures between two patches, dimensionless: lengths in half-widths a, gaps in a^2 /
+    (2 R), R: relative radius.
+
+    Parameters
+    ----------
+    pair : TwoCylinders   radii and materials
+    patches : tuple       patch of each body
+    half_width : float    a, of Hertz, m
     """
     share = pair.contact_modulus / pair.body_1.plane_strain_modulus
     xi, _ = patches[0].shapes.quadrature()
@@ -372,6 +396,11 @@ def _circle(radius: float, xi: Array) -> Array:
 def _highest(measure: Callable[[Array], Array], friction: float) -> tuple[float, float]:
     """Maximum over the half-plane of a stress measure under a sliding Hertz contact, over p0, and
     its depth, over the half-width.
+
+    Parameters
+    ----------
+    measure : callable   stresses (3, ...): xx, yy, xy -> measure (...)
+    friction : float     traction over pressure
     """
     x, depth = np.meshgrid(np.linspace(-1.5, 1.5, 121), np.linspace(0, 1.5, 61))
     values = measure(hertz.subsurface_stress(x, depth, friction))

@@ -119,7 +119,13 @@ class ContactOptions:
         return first, second
 
     def _line_load(self) -> float:
-        """Line load, N/m, stated or as load over width."""
+        """Line load, N/m, >= 0: stated, or load over width.
+
+        Raises
+        ------
+        InputError
+            If neither or both are stated, or it is negative; names the option.
+        """
         if self.line_load is not None:
             if self.load is not None:
                 raise InputError("--load", self.load, "left out beside --line-load")
@@ -139,7 +145,9 @@ class ContactOptions:
         return line_load
 
     def _width(self) -> float:
-        """Width of the contact, m: with lengths, the one on which both bodies are without ends."""
+        """Width of the contact, m, for the line load: as stated or, where lengths of the bodies
+        are, the length on which both bodies are without ends.
+        """
         if self.width is None:
             return self.lengths.contact_length()
         if self.lengths.stated:
@@ -156,7 +164,11 @@ def solved(
     """Line contact of two cylinders as a document, in mm, MPa and N: Hertz, finite elements or,
     where conforming, pin in a hole.
 
-    with_approach : with the approach of the bodies. field : VTU file of the stresses to be written.
+    Parameters
+    ----------
+    options : ContactOptions   of the command
+    with_approach : bool       whether the approach of the bodies is computed
+    field : Path               VTU file of the stresses to be written; None: none
 
     Raises
     ------
@@ -239,8 +251,8 @@ def lines(document: Document) -> Iterator[str]:
 
 
 def _as_read(text: str, unit: str) -> str:
-    """Text of an option as typed, with the unit in which it is read where it states none; for
-    messages.
+    """Text of an option as typed, for messages; with the unit in which it is read, `unit`, where it
+    states none.
     """
     try:
         float(text)
@@ -334,7 +346,15 @@ def _conforming(contact: ConformingContact, pair: TwoCylinders) -> Document:
 
 
 def _write_field(path: Path, contact: FiniteElementContact, poissons: tuple[float, float]) -> None:
-    """Write the stress of both bodies at the contact as VTU: body 1 below y = 0, body 2 above."""
+    """Write the stresses of both bodies at the contact as a VTU file: body 1 below y = 0, body 2
+    above.
+
+    Parameters
+    ----------
+    path : Path                      of the file
+    contact : FiniteElementContact   stresses at the points of both patches
+    poissons : tuple                 Poisson's ratio of each body
+    """
     from camwright.meshes.mesh_files import write_vtu
 
     meshes, fields = {}, {}
@@ -347,8 +367,13 @@ def _write_field(path: Path, contact: FiniteElementContact, poissons: tuple[floa
 
 
 def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
-    """Contact patch scaled from half-widths to m; `upward`: mirrored above y = 0 with its triangles
-    still counter-clockwise.
+    """Mesh of the contact patch in m; above y = 0 where `upward`, its triangles still
+    counter-clockwise.
+
+    Parameters
+    ----------
+    mesh : BodyMesh   lengths in half-widths, body below y = 0
+    size : float      half-width, m
     """
     if not upward:
         return BodyMesh(mesh.points * size, mesh.triangles, {})
@@ -357,8 +382,13 @@ def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
 
 
 def _fields(of: Array, poisson: float, side: int) -> dict[str, Array]:
-    """Stress measures by name, MPa, from in-plane stresses (3, m): xx, yy, xy, Pa; `side`: sign of
-    the depth along y.
+    """Stress measures of a body in plane strain, MPa, (m,) by name.
+
+    Parameters
+    ----------
+    of : array (3, m)   in-plane stresses xx, yy, xy, Pa, in the axes of the patch, y into the body
+    poisson : float     Poisson's ratio
+    side : int          sign of y of the file along the depth
     """
     xx, yy, xy = of
     in_si = {

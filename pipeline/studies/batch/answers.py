@@ -45,8 +45,13 @@ def states(data: Dataset) -> tuple[NDArray[np.uint8], str]:
 
 
 def answered(data: Dataset, study: Study) -> Answer:
-    """Answers of a study as a record, by the rows of its dataset alone: yield, failing checks,
-    effects of the factors, front, worst design.
+    """Answers of a study as a record: yield, failing checks, effects of the factors on the outputs,
+    front, worst design.
+
+    Parameters
+    ----------
+    data : Dataset   rows of the designs, from which alone the answers follow
+    study : Study    sampling, outputs and objectives
 
     Raises
     ------
@@ -93,7 +98,9 @@ class Sample:
 
     @classmethod
     def of(cls, study: Study, count: int) -> Sample:
-        """Sample of the first `count` designs of a study."""
+        """Which of the first `count` designs of a study are independent samples of one
+        distribution; with Saltelli's sampling those of matrices A and B of each whole block.
+        """
         method = study.sampling.method if study.sampling else ""
         single = method in SAMPLES and len(study.cases) == 1
         if not single or method != SALTELLI:
@@ -126,10 +133,17 @@ def governing_utilisation(data: Dataset) -> Array:
 def _outputs(
     data: Dataset, study: Study, state: NDArray[np.uint8], utilisation: Array
 ) -> tuple[dict[str, Array], int]:
-    """Outputs (n,) by name, and the number of those left out beyond `OUTPUTS_MAX`.
+    """Outputs (n,) of the n designs by name, and the number of those left out beyond `OUTPUTS_MAX`.
 
     They are: whether a design passes (1, 0; NaN: no result), governing utilisation, the headline
     figures, and the columns that the study names as outputs.
+
+    Parameters
+    ----------
+    data : Dataset             with the columns
+    study : Study              with patterns of the names wanted
+    state : array (n,)         `PASSES`, `FAILS` or `UNKNOWN`
+    utilisation : array (n,)   of the governing check
     """
     passes = np.where(state == UNKNOWN, np.nan, (state == PASSES).astype(float))
     names = [name for name in data.columns if name.startswith(HEADLINE)]
@@ -142,8 +156,14 @@ def _outputs(
 
 
 def _counts(data: Dataset, state: NDArray[np.uint8], by: str) -> Answer:
-    """Numbers of designs by state, depth, screen, verdict and message; `by`: column that decides
-    the state.
+    """Record of the numbers of designs that pass, fail or have no result, and by depth, screen,
+    verdict and message.
+
+    Parameters
+    ----------
+    data : Dataset       of n designs
+    state : array (n,)   `PASSES`, `FAILS` or `UNKNOWN`
+    by : str             column that decides the state
     """
 
     def counted(name: str) -> Answer:
@@ -175,8 +195,14 @@ def _design(data: Dataset, wanted: NDArray[np.bool_]) -> int:
 
 
 def _yield(state: NDArray[np.uint8], by: str, sample: Sample) -> Answer:
-    """Share of the designs with a result that pass; with a confidence interval if they are a random
-    sample.
+    """Record of the yield: share of the designs with a result that pass, with a confidence interval
+    if they are a random sample.
+
+    Parameters
+    ----------
+    state : array (k,)   of the independent designs: `PASSES`, `FAILS` or `UNKNOWN`
+    by : str             column that decides the state
+    sample : Sample      how the designs were drawn
     """
     passed, failed = (int((state == each).sum()) for each in (PASSES, FAILS))
     share = Yield(passed, passed + failed)
@@ -195,7 +221,9 @@ def _yield(state: NDArray[np.uint8], by: str, sample: Sample) -> Answer:
 
 
 def _failures(data: Dataset, state: NDArray[np.uint8]) -> list[Answer]:
-    """Checks that fail or lack data in any design, most frequent first."""
+    """Record of each check that fails or lacks data in any design, the most frequent failure first;
+    `alone` counts designs in which it is the only required check that fails.
+    """
     known = [check for check in data.checks if check in DECLARED]
     failing = {check: data[check + STATUS] == "fail" for check in known}
     required = [check for check in known if DECLARED[check].must_have]
@@ -221,8 +249,15 @@ def _failures(data: Dataset, state: NDArray[np.uint8]) -> list[Answer]:
 
 
 def _greatest(data: Dataset, check: str, fails: NDArray[np.bool_]) -> Answer:
-    """Greatest utilisation of a check, and number of the design; the utilisation is null where it
-    is infinite, the design too where no design has one.
+    """Greatest utilisation of a check over the designs, and the number of that design; the
+    utilisation is null where it is infinite, both where no design has one.
+
+    Parameters
+    ----------
+    data : Dataset       of n designs
+    check : str          id of the check
+    fails : array (n,)   whether it fails in a design: without a number its utilisation is then
+                         infinite
     """
     name = f"{check}.utilisation"
     values = data[name] if name in data.columns else np.full(len(data), np.nan)
@@ -255,8 +290,15 @@ def _output(
     sample: Sample,
     factors: Mapping[str, NDArray[Any]],
 ) -> Answer:
-    """Record of an output (n,): mean, spread and extremes, and the effects of the factors (values
-    (n,) by key) on it.
+    """Record of an output: mean, spread and extremes, and the effects of the factors on it.
+
+    Parameters
+    ----------
+    data : Dataset        units, and numbers of the designs
+    name : str            of the output
+    values : array (n,)   of the n designs; NaN: none
+    sample : Sample       which designs are independent
+    factors : mapping     values (n,) by key
     """
     known = np.flatnonzero(np.isfinite(values))
     record: Answer = {
@@ -304,8 +346,12 @@ def _effect(key: str, effect: sensitivity.MainEffect) -> Answer:
 
 
 def _front(data: Dataset, study: Study, state: NDArray[np.uint8]) -> Answer | None:
-    """Front of the first two objectives over the designs that pass; None with fewer than two
-    objectives.
+    """Record of the Pareto front of the first two objectives of a study over the designs that pass;
+    None with fewer than two objectives.
+
+    Parameters
+    ----------
+    state : array (n,)   `PASSES`, `FAILS` or `UNKNOWN`
     """
     objectives = study.objectives[:2]
     if len(objectives) < 2:
@@ -345,7 +391,13 @@ def _points(data: Dataset, rows: NDArray[np.intp]) -> list[Answer]:
 
 def _worst(data: Dataset, utilisation: Array, state: NDArray[np.uint8]) -> Answer | None:
     """Record of the design of the greatest governing utilisation, which is null where it is
-    infinite; None without any.
+    infinite; None where no design has one.
+
+    Parameters
+    ----------
+    utilisation : array (n,)   of the governing check of each design; NaN: infinite if it fails,
+                               else unknown
+    state : array (n,)         `PASSES`, `FAILS` or `UNKNOWN`
     """
     size = np.where(np.isnan(utilisation) & (state == FAILS), np.inf, utilisation)
     if np.isnan(size).all():

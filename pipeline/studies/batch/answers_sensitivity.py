@@ -153,9 +153,16 @@ def independent(count: int, factors: int) -> NDArray[np.int64]:
 def _levels(
     values: NDArray[np.generic], most: int
 ) -> tuple[NDArray[np.int64], tuple[str | tuple[float, float], ...]]:
-    """Number of the level of each value (n,), and the levels: text, or least and greatest value.
+    """Levels of a factor: index of the level of each design (n,), and the levels, each a text or
+    the least and greatest of its values.
 
-    Numbers with more than `most` distinct values are divided into levels of equally many designs.
+    Numbers with many distinct values for the size of the sample are divided into at most `most`
+    levels of equally many designs.
+
+    Parameters
+    ----------
+    values : array (n,)   numbers or texts
+    most : int            number of levels
     """
     distinct, codes = np.unique(values, return_inverse=True)
     if not np.issubdtype(values.dtype, np.number):
@@ -173,8 +180,13 @@ def _levels(
 
 
 def _by_level(codes: NDArray[np.int64], output: Array) -> tuple[Array, Array, Array]:
-    """Count, mean, and sum of squares about the mean, of the output (n,) in each level (k,); codes
-    (n,): level of each design.
+    """Number of designs, mean output, and sum of squares about the mean, in each of k levels, (k,)
+    each.
+
+    Parameters
+    ----------
+    codes : array (n,)    index of the level of each design
+    output : array (n,)   of each design
     """
     counts = np.bincount(codes).astype(float)
     means = np.bincount(codes, output) / counts
@@ -183,8 +195,13 @@ def _by_level(codes: NDArray[np.int64], output: Array) -> tuple[Array, Array, Ar
 
 
 def _variance_share(codes: NDArray[np.int64], output: Array) -> tuple[float, float]:
-    """Share of the variance of the output that lies between levels, without the bias of small
-    samples, and its standard error.
+    """Share of the variance of an output that lies between the levels of a factor, without the bias
+    of small samples, and its standard error; 0 and 1 where no level has two designs.
+
+    Parameters
+    ----------
+    codes : array (n,)    index of the level of each design
+    output : array (n,)   of each design
     """
     output = (output - output.mean()) / output.std()
     counts, means, spread = _by_level(codes, output)

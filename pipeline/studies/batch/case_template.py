@@ -56,7 +56,12 @@ class Template:
 
 
 def read_templates(folder: Path, names: Sequence[str]) -> tuple[Template, ...]:
-    """Templates of the cases of a study file.
+    """Templates, each a case file with the contents of the files it reads, of the cases of a study.
+
+    Parameters
+    ----------
+    folder : Path      of the study file
+    names : sequence   paths of the case files relative to it
 
     Raises
     ------

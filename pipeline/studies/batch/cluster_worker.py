@@ -38,9 +38,14 @@ class StudyPlugin(WorkerPlugin):
 
 
 def solve_shard(task: Task, plugin: str, wanted: Wanted | None) -> Shard:
-    """Rows, clock figures and run files of a task, solved in the process of the worker.
+    """Rows, clock figures and run files of a task, solved in the process of the worker; a process
+    that was ended lets the scheduler hand the task out again.
 
-    `plugin`: name of the worker's plugin; `wanted`: see `SolverProcess.rows`.
+    Parameters
+    ----------
+    task : Task       designs of one case
+    plugin : str      name of the plugin of the worker, which holds the process
+    wanted : Wanted   designs whose run files are made, too; None: of none
     """
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
@@ -50,7 +55,9 @@ def solve_shard(task: Task, plugin: str, wanted: Wanted | None) -> Shard:
 
 
 def solve_run(task: Task, plugin: str) -> Files:
-    """Files of the run folder, by name, of a task with one design."""
+    """Files of the run folder, by name, of a task with one design, solved in the process of the
+    worker.
+    """
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
         return study.process.run_folder(task, 0)
@@ -59,7 +66,13 @@ def solve_run(task: Task, plugin: str) -> Files:
 
 
 def make_page(run: Bare, plugin: str) -> Files:
-    """Files of a run folder with the page added; `run`: design id and files without it."""
+    """Files of a run folder with the page added, made in the process of the worker.
+
+    Parameters
+    ----------
+    run : tuple    id of the design, and the files without the page, by name
+    plugin : str   name of the plugin of the worker
+    """
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
         return study.process.presented(run[1])

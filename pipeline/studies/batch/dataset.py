@@ -84,10 +84,11 @@ def is_text(name: str, units: Mapping[str, str | None]) -> bool:
 
 
 def column_of(name: str, units: Mapping[str, str | None]) -> Column:
-    """Unit and meaning of a dataset column.
+    """Unit and meaning of a column of the dataset.
 
     Parameters
     ----------
+    name : str        of the column
     units : mapping   unit of each factor by dotted key; None: its values are text
 
     Raises
@@ -143,9 +144,16 @@ def in_order(names: Sequence[str]) -> list[str]:
 
 
 def table_of(rows: Rows, units: Mapping[str, str | None]) -> pa.Table:
-    """Arrow table of rows: ordered columns, unit and meaning in the field metadata.
+    """Arrow table of rows: columns in dataset order, unit and meaning in the metadata of the
+    fields.
 
-    Columns without a value are left out, but for the fixed ones; NaN and infinity become null.
+    Columns without a value are left out, except fixed ones and factors; NaN and infinity become
+    null.
+
+    Parameters
+    ----------
+    rows : mapping    values of all rows by name of column
+    units : mapping   unit of each factor by dotted key; None: its values are text
     """
     import pyarrow as pa
 
@@ -240,7 +248,9 @@ def joined(tables: Sequence[pa.Table]) -> pa.Table:
 
 
 def table_from(content: bytes) -> pa.Table:
-    """Table from the bytes of a Parquet file; ValueError for too many rows."""
+    """Arrow table from the bytes of a Parquet file; ValueError for more rows than a study
+    may have.
+    """
     import pyarrow.parquet as pq
 
     from camwright.pipeline.studies.batch.study_file import DESIGNS_MAX
@@ -273,11 +283,13 @@ TABLE: Format[pa.Table] = Format(".parquet", parquet_bytes, read_parquet)
 
 
 def require_columns(table: pa.Table, fixed: Sequence[Column], path: Path) -> None:
-    """Refuse a table that is not of a study.
+    """Refuse an Arrow table that is not of a study.
 
     Parameters
     ----------
+    table : Table      read from a file
     fixed : sequence   columns that it must have
+    path : Path        of the file, for messages
 
     Raises
     ------

@@ -50,8 +50,14 @@ class Plan:
 
     @classmethod
     def of(cls, cases: Sequence[str], designs: SampledDesigns | None, settings: Settings) -> Plan:
-        """Plan of the designs of each case; equal designs, by a hash of case, values and settings,
-        are solved once.
+        """Plan of a study: its designs for each case, of which equal ones, by a hash of case,
+        values and settings, are solved once.
+
+        Parameters
+        ----------
+        cases : sequence           names of the base cases
+        designs : SampledDesigns   values of the factors; None: the cases themselves are the designs
+        settings : Settings        of the study
         """
         count = 1 if designs is None else designs.count
         columns = {} if designs is None else designs.si()
@@ -85,8 +91,13 @@ class Plan:
         return len(self.place) if unique >= len(self.ids) else int(self._first[unique])
 
     def tasks(self, tier: Tier, chosen: Sequence[int] | None = None) -> Iterator[Task]:
-        """Tasks of a few designs each, in order, at a depth: of all different designs or of those
-        `chosen` by number.
+        """Tasks of a few different designs each, all of one case, to be solved at one depth, in the
+        order of the designs.
+
+        Parameters
+        ----------
+        tier : Tier         depth
+        chosen : sequence   indices of the unique designs; None: all
         """
         places = range(len(self.ids)) if chosen is None else chosen
         count = 1 if self.designs is None else self.designs.count
@@ -102,8 +113,13 @@ class Plan:
                 start, left = start + len(part), left - len(part)
 
     def _task(self, tier: Tier, block: int, members: Sequence[int]) -> Task:
-        """Task of the different designs with the numbers `members`, all of the case with number
-        `block`; its name is a hash of its content.
+        """Task that solves some unique designs of one case; its name is a hash of its content.
+
+        Parameters
+        ----------
+        tier : Tier          depth
+        block : int          index of the case
+        members : sequence   indices of the unique designs
         """
         case, units = self.cases[block], self.units
         ids = tuple(self.ids[unique] for unique in members)

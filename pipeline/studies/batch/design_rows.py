@@ -60,8 +60,14 @@ def columns_of(rows: Sequence[Row]) -> dict[str, list[Any]]:
 def completed(
     task: Task, columns: Mapping[str, Sequence[Any]], outputs: Sequence[str]
 ) -> dict[str, Any]:
-    """Columns of a shard completed by id, depth and factors, and reduced to those that match
-    `outputs`, patterns of names; () keeps all.
+    """Columns of the rows of a task for the dataset: those solved that match `outputs`, with fixed
+    columns, factors, and the utilisation of governing checks.
+
+    Parameters
+    ----------
+    task : Task          designs of the rows
+    columns : mapping    solved values by name of column
+    outputs : sequence   patterns of the names to be kept; empty: all
 
     Raises
     ------

@@ -106,7 +106,9 @@ class DesignSolver:
         self._cases = UnpackedTemplates(self.templates)
 
     def screened(self, task: Task) -> dict[str, Any]:
-        """Columns (n,) of the designs of a task by arrays; see `screen_designs`."""
+        """Columns (n,) of the dataset for the n designs of a task, screened by closed forms as
+        arrays; see `screen_designs`.
+        """
         from camwright.pipeline.screening.design_screening import screen_designs
 
         case = self._cases[task.case]
@@ -131,8 +133,13 @@ class DesignSolver:
         return self.settings.positions or case.solver.positions
 
     def solved(self, task: Task, row: int) -> Row:
-        """Values of one design of a task by name of the column; a refusal gives a row with its
-        message.
+        """Row of the dataset, value by name of column, of the design in a row of a task; an error
+        of any kind gives a row with its message.
+
+        Parameters
+        ----------
+        task : Task   designs of one case at one depth
+        row : int     index of the design in it
         """
         try:
             return self._solved(task, row)
@@ -156,8 +163,13 @@ class DesignSolver:
         return judge.run(Change(), tier, corners=self.settings.corners).trial
 
     def design(self, task: Task, row: int) -> Judge:
-        """Judge of the design in a row of a task, with the lift of the base case, if all designs
+        """Judge of the design in a row of a task; with the lift of the base case, if all designs
         have its cam.
+
+        Parameters
+        ----------
+        task : Task   designs of one case
+        row : int     index of the design in it
 
         Raises
         ------
@@ -177,7 +189,9 @@ class DesignSolver:
         return Judge(case, engine_torques(case), lift=lift)
 
     def _base(self, name: str) -> tuple[Case, Lift]:
-        """Base case with the spring and prime radius of its synthesis, and its lift."""
+        """Base case of a name with the spring and prime radius of its synthesis, and its lift; made
+        once.
+        """
         from camwright.pipeline.iteration import synthesize
 
         if name not in self._bases:
@@ -194,14 +208,16 @@ class DesignSolver:
     def solved_and_run(
         self, task: Task, row: int, wanted: Wanted, send: Callable[[Row | Files], object]
     ) -> None:
-        """Send the cells of a design, then its run files, made from one solution.
+        """Send the row of the dataset for a design, then its run files, made from one solution.
 
         The files lack the page, see `presented`.
 
         Parameters
         ----------
+        task : Task       designs of one case
+        row : int         index of the design in it
         wanted : Wanted   designs that may be kept; of others no files are made
-        send : callable   receives the cells, then the files; none where there is no run
+        send : callable   receives the row, then the files; none where there is no run
         """
         cells: Row = {}
         files: Files = {}
@@ -229,7 +245,9 @@ class DesignSolver:
         return self.presented(files)
 
     def presented(self, files: Files) -> Files:
-        """Run files with page and pictures, which are made from the others."""
+        """Run files, by name, with page, pictures and sign-off record added, which are made from
+        the others.
+        """
         from camwright.pipeline.results import signoff
         from camwright.reports.sections import report
 
@@ -249,6 +267,11 @@ class DesignSolver:
         checked trial.
 
         Below CERTIFIED none of its files is written yet.
+
+        Parameters
+        ----------
+        task : Task   designs of one case at one depth
+        row : int     index of the design in it
         """
         from camwright.pipeline.run import CaseRun
 

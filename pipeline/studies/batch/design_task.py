@@ -60,8 +60,13 @@ class Wanted:
     bars: tuple[tuple[float, ...], ...] = ()
 
     def takes(self, screen: str, cells: Mapping[str, object]) -> bool:
-        """Whether the run folder of a design, with this screen and these values by column, may be
-        kept by the rule.
+        """Whether the run folder of a design may be kept by the rule; True where a value of an
+        objective is not known yet.
+
+        Parameters
+        ----------
+        screen : str      of the design
+        cells : mapping   its values by name of column
         """
         if screen != self.screen or any(name not in cells for name, _ in self.objectives):
             return screen == self.screen  # a factor is no cell of a solution

@@ -71,8 +71,8 @@ class Axis:
         return self.levels
 
     def at(self, share: Array) -> Array:
-        """Values (n,), in `unit`, at cumulative probabilities `share` (n,) of a
-        continuous factor.
+        """Values (n,) of a continuous factor, in its unit, at cumulative probabilities (n,) between
+        0 and 1: the inverse of its distribution.
         """
         if self.law == "normal":
             from scipy.special import ndtri
@@ -87,8 +87,8 @@ class Axis:
         return self.low + width * share
 
     def si(self, values: Array) -> Array:
-        """Values (n,), given in `unit`, in SI; a level is converted as a case file would read it,
-        to the last digit.
+        """Values (n,) of the factor from its unit to SI; a level is converted as a case file would
+        read it, to the last digit.
         """
         if not self.unit:
             return values
@@ -101,7 +101,13 @@ class Axis:
 
 
 def axis_of(factor: Factor, case: Case) -> Axis:
-    """Axis of a factor; a missing mean is taken from the case.
+    """Axis of a factor, its values or distribution in one unit; a missing mean is taken from the
+    case.
+
+    Parameters
+    ----------
+    factor : Factor   of the study file
+    case : Case       the first base case
 
     Raises
     ------
@@ -164,6 +170,12 @@ def _require_value_at(case: Case, key: str) -> None:
 def _of_levels(key: str, quantity: object, values: Sequence[Value]) -> Axis:
     """Axis of a factor with a list of values: numbers in the unit of the first one, pure numbers,
     or texts.
+
+    Parameters
+    ----------
+    key : str           dotted, of the case file
+    quantity : object   unit and bounds of the key, `In`; other: the key has no unit
+    values : sequence   as stated in the study file
     """
     if isinstance(quantity, In):
         reading = _Reading(key, quantity, values[0])
@@ -174,7 +186,9 @@ def _of_levels(key: str, quantity: object, values: Sequence[Value]) -> Axis:
 
 
 def _mean(key: str, quantity: In, case: Case) -> Value:
-    """Value of the case at a key, as mean of a distribution that states none."""
+    """Value of the case at a key, a number or text with the unit of the quantity, as mean of a
+    distribution that states none; InputError where the case has no number there.
+    """
     value = value_of(case, key)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise InputError(f"factor {key}.mean", "missing", "given, as the case has no such number")
@@ -187,6 +201,14 @@ class _Reading:
     """Numbers of one factor in the unit of its first value."""
 
     def __init__(self, key: str, quantity: In, first: Value | None) -> None:
+        """Take the unit of the first value; `affine`: offset and factor from this unit to SI.
+
+        Parameters
+        ----------
+        key : str       of the factor
+        quantity : In   of the key
+        first : Value   number, or text with a unit
+        """
         self._field, self._quantity = f"factor {key}", quantity
         self.unit, self.affine = "", (0.0, 1.0)
         if quantity.unit:
@@ -197,7 +219,8 @@ class _Reading:
             self.affine = zero, one - zero
 
     def number(self, value: Value | None) -> float:
-        """A value as number in the unit of the factor.
+        """Value, a number or text with any unit of the quantity, as a number in the unit of the
+        factor.
 
         It is not compared with the bounds of the key, which refuse a design, not the study.
         """
@@ -213,8 +236,12 @@ class _Reading:
         return (si - offset) / scale
 
     def width(self, value: Value | None, mean: float) -> float:
-        """A tolerance or standard deviation in the unit of the factor; ``"5 %"`` is a share of the
-        mean.
+        """Tolerance or standard deviation as a number in the unit of the factor, > 0.
+
+        Parameters
+        ----------
+        value : Value   number, text with a unit, or ``"5 %"``, a share of the mean
+        mean : float    in the unit of the factor
         """
         match = _WITH_UNIT.fullmatch(value) if isinstance(value, str) else None
         if match is not None and match[2] == "%":
@@ -226,8 +253,8 @@ class _Reading:
         return width
 
     def _difference(self, value: Value | None) -> float:
-        """A difference in the unit of the factor, without the offset of a temperature scale: 5 degC
-        is 5 K.
+        """Difference of two values of the factor as a number in its unit, without the offset of a
+        temperature scale: 5 degC is 5 K.
         """
         match = _WITH_UNIT.fullmatch(str(value))
         if match is None or not self._quantity.unit:

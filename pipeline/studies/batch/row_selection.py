@@ -86,7 +86,9 @@ class RowFigures:
         return [name for _, name in ranked[:count]]
 
     def front(self) -> list[str]:
-        """Ids of the Pareto front of the first two objectives, of designs that do not fail."""
+        """Ids of the designs that do not fail on the Pareto front of the first two objectives; of
+        one objective, the best.
+        """
         rows = [(name, row[5]) for name, row in self._rows.items() if _in(row)]
         pairs = [(each[0], each[min(1, len(each) - 1)]) for _, each in rows]
         known = [k for k, pair in enumerate(pairs) if np.isfinite(pair).all()]
@@ -121,11 +123,15 @@ class RowFigures:
         }
 
     def wanted(self, kind: str, count: int) -> Wanted:
-        """Rule for the designs whose run folder the study may still keep, whatever rows follow;
-        kind and count as in `Study.kept`.
+        """Rule for the designs whose run folder the study may still keep, whatever rows follow.
 
         A design that one on the front dominates, or that is worse than the last of the best, is not
         kept in the end either.
+
+        Parameters
+        ----------
+        kind, count : str, int   as in `Study.kept`: "failed", "pareto" or "best", and the number of
+                                 the best
         """
         if kind == "failed":
             return Wanted(FAILED)

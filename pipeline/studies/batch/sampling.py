@@ -59,7 +59,13 @@ def _plain(axis: Axis, values: Array | Levels) -> Array | Levels:
 def designs_of(
     axes: Sequence[Axis], sampling: Sampling, correlations: Sequence[Correlation] = ()
 ) -> SampledDesigns:
-    """Designs of a study, reproducible by its seed.
+    """Values of the factors of all designs of a study, reproducible by its seed.
+
+    Parameters
+    ----------
+    axes : sequence           one per factor
+    sampling : Sampling       method, number of designs, seed
+    correlations : sequence   of pairs of factors
 
     Raises
     ------
@@ -117,7 +123,9 @@ def unit_cube(dimensions: int, sampling: Sampling) -> Array:
 
 
 def _spread(dimensions: int, method: str, count: int, seed: int) -> Array:
-    """Points (n, dimensions) of a latin hypercube or a Sobol sequence."""
+    """Points (n, dimensions) in the unit cube of a latin hypercube or, for any other `method`, of a
+    scrambled Sobol sequence.
+    """
     from scipy.stats import qmc  # as long to import as ten designs to preview
 
     if method == "latin_hypercube":
@@ -136,8 +144,13 @@ def _require_size(words: str, designs: int, factors: int) -> None:
 
 
 def _picked(levels: Sequence[Levels], method: str) -> list[NDArray[np.intp]]:
-    """Number of the level of each factor in every design (n,), a list of arrays: all combinations
-    of a grid, whose last factor varies fastest, or the k-th level of each list in design k.
+    """Index of the level of each factor in every design: a list of arrays (n,), one per factor.
+
+    Parameters
+    ----------
+    levels : sequence   levels of each factor
+    method : str        "list": design k has the k-th level of every factor; else a grid of all
+                        combinations, whose last factor varies fastest
     """
     counts = [len(each) for each in levels]
     if method == "list":
@@ -155,10 +168,19 @@ def _column(axis: Axis, values: Sequence[str | bool | int | float]) -> Array | L
 
 
 def _correlated(shares: Array, axes: Sequence[Axis], correlations: Sequence[Correlation]) -> Array:
-    """Uniform samples (n, d), 0 to 1, correlated by a Gaussian copula: a correlation is that of the
+    """Uniform samples with correlations imposed by a Gaussian copula: a correlation is that of the
     normal scores.
 
-    InputError if the correlations contradict one another.
+    Parameters
+    ----------
+    shares : array (n, d)     independent samples, 0 to 1, of d factors
+    axes : sequence           the factors
+    correlations : sequence   pairs of factors with a coefficient
+
+    Raises
+    ------
+    InputError
+        If the correlations contradict one another.
 
     References
     ----------

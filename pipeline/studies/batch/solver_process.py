@@ -71,8 +71,13 @@ class SolverProcess:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def begin(self) -> tuple[Connection, subprocess.Popen[bytes]]:
-        """Pipe to the solver process, and the process, which is started unless it runs; its imports
-        go on while the caller works.
+        """Start the solver process unless it runs; returns the pipe to it, and the process, whose
+        imports go on while the caller works.
+
+        Raises
+        ------
+        EndedError
+            If the worker has been ended.
         """
         if self._process is not None and self._pipe is not None and self._process.poll() is None:
             return self._pipe, self._process
@@ -126,8 +131,14 @@ class SolverProcess:
     def _encoded(
         self, task: Task, columns: Mapping[str, Any], walls: Sequence[float]
     ) -> tuple[bytes, bytes]:
-        """Rows and clock figures as Parquet files, written by the solver process, or here where it
-        dies.
+        """Rows and clock figures of a task as the bytes of two Parquet files, written by the solver
+        process, or here where it dies.
+
+        Parameters
+        ----------
+        task : Task         designs of the rows
+        columns : mapping   values by name of column
+        walls : sequence    time of each design, s
         """
         with contextlib.suppress(_OutOfTimeError, _OutOfMemoryError, _DiedError):
             files: tuple[bytes, bytes] | None = self._asked("encoded", task, columns, walls)
@@ -146,7 +157,9 @@ class SolverProcess:
             return self._files(lambda: self._asked("presented", files))
 
     def _files(self, reply: Callable[[], Any]) -> Files:
-        """Run files of a reply of the process; {} where it exceeds time or memory or dies."""
+        """Run files, by name, that `reply` fetches from the solver process; empty where this
+        exceeds time or memory or dies.
+        """
         with contextlib.suppress(_OutOfTimeError, _OutOfMemoryError, _DiedError):
             files: Files = reply()
             return files
@@ -169,10 +182,12 @@ class SolverProcess:
         self._ready = False
 
     def _row(self, task: Task, row: int, wanted: Wanted | None) -> Row:
-        """Values of a design by column; after `DEATHS_MAX` deaths of the process a row that says
-        so.
+        """Row of the dataset, value by name of column, for the design in a row of a task, solved by
+        the process; a row that says so where it exceeds time or memory, or has died `DEATHS_MAX`
+        times.
 
-        With `wanted` the process sends the files of its run next, see `_reply`.
+        With `wanted`, the rule for designs to be kept, the process sends the files of its run next,
+        see `_reply`.
         """
         for _ in range(DEATHS_MAX):
             try:
@@ -191,8 +206,8 @@ class SolverProcess:
         return design_rows.died(DEATHS_MAX)
 
     def _asked(self, method: str, *arguments: Any) -> Any:
-        """Reply of the solver process to a call of one of its methods, within the limits of time
-        and memory.
+        """Result of a method of the `DesignSolver` in the solver process, called by name with its
+        arguments, within the limits of time and memory.
         """
         pipe, _ = self._started()
         try:

@@ -70,8 +70,8 @@ class Shard:
     ids: tuple[str, ...]
 
     def fits(self, rows: pa.Table) -> bool:
-        """Whether a table has the columns of a study and the rows of exactly this shard, in its
-        order.
+        """Whether a table has the columns of a study and exactly the rows of this shard, by id, in
+        its order.
         """
         try:
             require_columns(rows, [each for each in FIXED if each is not DESIGN], Path(self.name))
@@ -130,6 +130,9 @@ class StudyFolder:
         return sorted(odd)
 
     def __enter__(self) -> StudyFolder:
+        """Take the folder for this process alone, and make that of the shards; ResultError where it
+        is not free.
+        """
         self.require_free()
         self._home.take()
         try:
@@ -154,8 +157,8 @@ class StudyFolder:
                 write_atomic(self.path / CASES / each.name / name, content)
 
     def read_whole(self, shard: Shard) -> pa.Table | None:
-        """Rows of a shard; None if its file is missing or does not fit, in which case it is
-        deleted.
+        """Rows of a shard; None if its file is missing or does not fit the shard, in which case it
+        is deleted.
         """
         shards = self._store(SHARDS)
         table = shards.get(shard.name, shard.fits)
@@ -176,7 +179,13 @@ class StudyFolder:
         return Store(self.path / folder, TABLE)
 
     def forget_others(self, shards: Sequence[Shard], runs: Sequence[str]) -> None:
-        """Delete all shards and runs but these, left by an earlier study."""
+        """Delete the shards and run folders of an earlier study.
+
+        Parameters
+        ----------
+        shards : sequence   to be kept
+        runs : sequence     ids of the designs whose run folders are to be kept
+        """
         kept = {f"{shard.name}.parquet" for shard in shards} | {f"{each}.json" for each in runs}
         for folder in (SHARDS, TIMINGS):
             for each in sorted((self.path / folder).glob("*")):
@@ -187,7 +196,14 @@ class StudyFolder:
                 shutil.rmtree(each)
 
     def holds_run(self, name: str, depth: str, versions: Mapping[str, str]) -> bool:
-        """Whether the run folder of a design exists at this depth and version."""
+        """Whether the run folder of a design exists, made at this depth and by these versions.
+
+        Parameters
+        ----------
+        name : str           id of the design
+        depth : str          word of the depth
+        versions : mapping   of the program and libraries, by name
+        """
         try:
             summary = read_json(self.path / RUNS / name / "run.json")
         except ResultError:
@@ -198,8 +214,12 @@ class StudyFolder:
         return all(versions.get(each) == version for each, version in made.items())
 
     def write_run(self, name: str, files: Files) -> None:
-        """Write the run folder of a design from its files by name, in one step; it is empty for a
-        design without a result.
+        """Write the run folder of a design in one step.
+
+        Parameters
+        ----------
+        name : str        id of the design
+        files : mapping   contents by relative name; empty: a design without a result
         """
         final = self.path / RUNS / name
         aside = final.with_name(f".{name}.tmp")
@@ -308,8 +328,14 @@ class StudyFolder:
 def _block(
     schema: pa.Schema, parts: Sequence[pa.Table], rows: NDArray[np.intp], start: int
 ) -> pa.Table:
-    """Part of the dataset: these rows of the concatenated parts, numbered from `start`, a column
-    without values filled with nulls.
+    """Part of the dataset with the given columns; columns without values are filled with nulls.
+
+    Parameters
+    ----------
+    schema : Schema    columns of the dataset
+    parts : sequence   tables of unique designs, to be concatenated
+    rows : array       indices of the rows of the concatenation, in the order of the designs
+    start : int        number of the first design
     """
     import pyarrow as pa
 

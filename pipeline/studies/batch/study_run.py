@@ -70,6 +70,7 @@ def run_study(
     jobs : int                 local processes
     scheduler : str            address of a running Dask cluster; None: local processes
     resume : bool              complete an earlier study in `out`
+    progress : Progress        told each stage
 
     Returns
     -------
@@ -78,8 +79,7 @@ def run_study(
     Raises
     ------
     CamError
-        If the study, a case or the folder is refused, a library is missing, or the cluster is
-        lost.
+        If the study, a case or the folder is refused, a library is missing, or the cluster is lost.
     """
     require_extra("study", "a study")
     progress.stage("designs")
@@ -109,8 +109,12 @@ def planned(study: Study, templates: Sequence[Template]) -> Plan:
 
 
 def _axes(study: Study, templates: Sequence[Template]) -> list[Axis]:
-    """Axis of each factor; InputError for what `planned` would refuse and no sample is needed to
-    see.
+    """Axis of each factor of a study; none without sampling.
+
+    Raises
+    ------
+    InputError
+        If a factor does not fit the first case, or an objective is no column of numbers.
     """
     axes: list[Axis] = []
     if study.sampling is not None:
@@ -147,7 +151,13 @@ def _plan(
 
 
 def _require_numbers(name: str, units: Mapping[str, str | None]) -> None:
-    """InputError for an objective that is no column of numbers of the dataset."""
+    """Refuse an objective that is no column of numbers of the dataset, by InputError.
+
+    Parameters
+    ----------
+    name : str        of the column
+    units : mapping   unit of each factor by dotted key; None: its values are text
+    """
     limit = "a column of numbers of the dataset, such as headline.p0_hertz_max_MPa"
     try:
         column_of(name, units)
@@ -210,10 +220,15 @@ class _Run:
         return self.plan.tasks(tier, sorted(order[name] for name in ids))
 
     def _stage(self, tier: Tier, tasks: Iterable[Task], count: int, *, stop: bool) -> list[Shard]:
-        """Solve the tasks of a depth that have no shard in the folder yet; gives the shards of all,
-        in order.
+        """Solve the tasks of one depth that have no shard in the folder yet; returns the shards of
+        all, in order.
 
-        stop : whether the stop rule of the study ends the stage.
+        Parameters
+        ----------
+        tier : Tier        depth
+        tasks : iterable   of all designs of the stage
+        count : int        number of these designs
+        stop : bool        whether the stop rule of the study ends the stage
         """
         self.progress.stage(f"{tier.word}: {count} designs")
         watch = _Watch(self, count, self.study.stop if stop else None)
@@ -252,10 +267,15 @@ class _Run:
         return shards
 
     def _wanted(self, tier: Tier, watch: _Watch) -> Wanted | None:
-        """Rule for the designs of a depth whose run folder is made together with their row.
+        """Rule for the designs of a depth whose run folder is made together with their row; None
+        where no run is kept, or the depth is screening, whose arrays hold no curves.
 
-        Before a stop rule by those of the dataset wherever it stops. None where no run is kept, or
-        arrays are solved, which hold no curves.
+        With a stop rule it rests on the designs alone that the dataset has wherever it stops.
+
+        Parameters
+        ----------
+        tier : Tier      depth
+        watch : _Watch   designs solved so far
         """
         kind, most = self.study.kept
         if not kind or tier < Tier.PREVIEW:
@@ -263,8 +283,13 @@ class _Run:
         return self.figures.of(tier, watch.certain).wanted(kind, most)
 
     def _still_wanted(self, made: set[str], tier: Tier, watch: _Watch) -> set[str]:
-        """Ids of those of the run folders made so far that may be kept in the end; the others are
-        deleted.
+        """Ids of the run folders made so far that may be kept in the end; the others are deleted.
+
+        Parameters
+        ----------
+        made : set       ids of the designs with a run folder
+        tier : Tier      depth
+        watch : _Watch   designs solved so far
         """
         wanted = self._wanted(tier, watch)
         still = made if wanted is None else self.figures.taken(made, wanted)
@@ -273,8 +298,13 @@ class _Run:
         return still
 
     def _keep(self, kept: Sequence[str], deeper: set[str]) -> None:
-        """Write the run folders of the designs `kept` that are not there yet; of those in `deeper`
-        at the depth of the second stage.
+        """Solve and write the run folders of the designs to be kept that are not there yet, then
+        their pages.
+
+        Parameters
+        ----------
+        kept : sequence   ids of the designs
+        deeper : set      ids of those solved at the depth of the second stage
         """
         tasks: list[Task] = []
         for tier, ids in (
@@ -339,6 +369,7 @@ class _Watch:
     """
 
     def __init__(self, run: _Run, count: int, rule: StageEnd | None) -> None:
+        """Watch `count` designs of a stage of a run, to be ended by `rule`; None: by none."""
         self._run, self._count, self._rule = run, count, rule
         self._order: list[Shard] = []
         self.certain: set[str] | None = None if rule is None else set()
@@ -370,8 +401,11 @@ class _Watch:
         self._judge(now - self._began)
 
     def _judge(self, seconds: float) -> None:
-        """Apply the stop rule to the shards complete without a gap from the first; `seconds` since
-        the start.
+        """Apply the stop rule to the shards complete without a gap from the first.
+
+        Parameters
+        ----------
+        seconds : float   since the start of the stage
         """
         rule = self._rule
         while not self.stopped and self._whole < len(self._order):
@@ -389,10 +423,12 @@ class _Watch:
             self.stopped = self.stopped or "time"
 
     def _count_in(self, states: NDArray[np.uint8]) -> None:
-        """Count the designs, as drawn, whose results are complete with the next shard, and those
+        """Count the drawn designs whose results are known with the next shard, and those of them
         that pass.
 
-        states : of the different designs of the shard; one drawn several times counts as often.
+        Parameters
+        ----------
+        states : array   of the unique designs of the shard; one drawn several times counts as often
         """
         plan, start = self._run.plan, self._unique
         self._unique += len(states)

@@ -107,6 +107,9 @@ class TaskScheduler:
     def __init__(
         self, jobs: int, address: str | None, templates: Sequence[Template], settings: Settings
     ) -> None:
+        """Prepare a scheduler; nothing is started before `begin`. For the parameters see
+        the class.
+        """
         self._jobs, self._address = jobs, address
         self._templates, self._settings = templates, settings
         self._plugin = f"camwright-{settings.sha256[:16]}"
@@ -174,11 +177,13 @@ class TaskScheduler:
     def shards(
         self, tasks: Iterable[Task], wanted: Callable[[], Wanted | None] = lambda: None
     ) -> Iterator[tuple[Task, Shard]]:
-        """Tasks with their shards, as they complete.
+        """Tasks with their shards, rows, clock figures and run files, as they complete.
 
         Parameters
         ----------
-        wanted : callable   designs whose run is made with their row, when a task is handed out
+        tasks : iterable    designs of one case each
+        wanted : callable   called as a task is handed out -> rule for the designs whose run is made
+                            with their row, or None
         """
         from camwright.pipeline.studies.batch.cluster_worker import solve_shard
 
@@ -209,9 +214,17 @@ class TaskScheduler:
         """Tasks with their results, in the order in which they complete; at most `_AHEAD` tasks per
         worker are submitted at a time.
 
-        method : function of task, plugin name and arguments, called on a worker. killed : result of
-        a task that ended its worker too often. arguments : called as each task is submitted. A lost
-        cluster raises ResultError.
+        Parameters
+        ----------
+        method : callable      task, name of the plugin, arguments -> result; called on a worker
+        tasks : iterable       the tasks
+        killed : callable      task that ended its worker too often -> its result
+        arguments : callable   each called as a task is submitted, for an argument
+
+        Raises
+        ------
+        ResultError
+            If the cluster is lost.
         """
         from distributed import as_completed
         from distributed.scheduler import KilledWorker
@@ -258,7 +271,12 @@ class TaskScheduler:
 
     def _apart(self, task: Task, wanted: Callable[[], Wanted | None]) -> Shard:
         """Shard of a task that ended its worker too often: each design is solved as a task of its
-        own.
+        own; a single one gets a row that says so.
+
+        Parameters
+        ----------
+        task : Task         the designs
+        wanted : callable   as of `shards`
         """
         import pyarrow as pa
 
