@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 BEARING, CAM_MATERIAL, BUSH_A, BUSH_B = "roller.bearing", "cam.material", "guides.a", "guides.b"
+BUSH_PIVOT = "follower.pivot.bush"
 COUNTER_HOLE = "cam.counter_hole.wall"
 FACTOR_MOST = 4.0
 
@@ -41,7 +42,7 @@ class Catalogued:
 
     Parameters
     ----------
-    key : str       `BEARING`, `CAM_MATERIAL`, `BUSH_A` or `BUSH_B`
+    key : str       `BEARING`, `CAM_MATERIAL`, `BUSH_A`, `BUSH_B` or `BUSH_PIVOT`
     rating : str    key of the card whose ratio is the size of the change
     less : bool     a smaller rating is the better one
     inverse : bool  the utilisation of the check is inverse to the rating
@@ -137,8 +138,9 @@ JAM: tuple[Lever, ...] = (
     *GENTLER,
 )
 LOAD = (PRIME, OVERHANG, LENGTH_A, *GENTLER)
-LOCK = (
+LOCK: tuple[Lever, ...] = (
     one("follower.pivot.bush.diameter", -1, 2.0),
+    Catalogued(BUSH_PIVOT, "friction_max", less=True),
     one("follower.pivot.needle_bearing.diameter", -1, 2.0),
     *SPRING,
     *GENTLER,
@@ -164,10 +166,10 @@ PIVOT: tuple[Lever, ...] = (
 def guide(side: Side, rating: str) -> tuple[Lever, ...]:
     """Levers of a limit on guide A or B: bush by `rating`, length, overhang, radius, spring.
 
-    Of the bush of a pivot: length, radius, spring.
+    Of the bush of a pivot: bush, length, radius, spring.
     """
     if side == "pivot":
-        return PIVOT
+        return (Catalogued(BUSH_PIVOT, rating), *PIVOT)
     bush, length = _of(side)
     return (Catalogued(bush, rating), length, OVERHANG, PRIME, *SPRING, *GENTLER)
 
@@ -175,7 +177,8 @@ def guide(side: Side, rating: str) -> tuple[Lever, ...]:
 def rubbing_speed(side: Side) -> tuple[Lever, ...]:
     """Levers of the sliding speed in guide A or B, or on the pin of a pivot."""
     if side == "pivot":
-        return (one("follower.pivot.bush.diameter", -1, 2.0), *SPRING, *GENTLER)
+        speed = Catalogued(BUSH_PIVOT, "speed_limit")
+        return (speed, one("follower.pivot.bush.diameter", -1, 2.0), *SPRING, *GENTLER)
     return (Catalogued(_of(side)[0], "speed_limit"), *SPRING, *GENTLER)
 
 

@@ -49,7 +49,7 @@ from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.follower_kind import FollowerKind
-from camwright.pipeline.follower.guide_reactions import GuidePair
+from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
 from camwright.pipeline.follower.rocker import Rocker, RockerOutput
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
@@ -355,15 +355,15 @@ class Case(Displayed, Section):
         """Cam contour of a lift."""
         return self.facing.contour(lift, self.cam, self.follower.arm)
 
-    def require_stem(self, use: str) -> None:
-        """Refuse an oscillating follower for a use, in words, that is made for a stem in guides.
-
-        Raises
-        ------
-        InputError
+    @property
+    def bushes(self) -> Mapping[str, Guide]:
+        """Bushes by the dotted names of their tables: of the guides, or of the pivot of an arm,
+        which has none with needles or without a description.
         """
-        if self.follower.arm is not None:
-            raise InputError("follower.kind", self.follower.kind, f'"roller" or "flat" for {use}')
+        pivot = self.follower.pivot
+        if self.follower.arm is None:
+            return {f"guides.{side.lower()}": guide for side, guide in self.guides.both}
+        return {} if pivot is None or pivot.bush is None else {"follower.pivot.bush": pivot.bush}
 
     def require_force_closure(self, use: str) -> None:
         """Refuse a cam that pulls its follower for a use, in words, that is made for one track.

@@ -66,7 +66,9 @@ def parts(
 
 
 def _show(document: RedesignDocument, folder: Path) -> None:
-    """Print the front as a table, what was tried and, without a front, why."""
+    """Print what is not exchanged, the front as a table, what was tried and, without a front,
+    why.
+    """
     from rich.table import Table
 
     from camwright.reports.comparisons.redesign_page import COLUMNS
@@ -78,6 +80,8 @@ def _show(document: RedesignDocument, folder: Path) -> None:
     rows: Sequence[Mapping[str, Any]] = document["points"]
     for row in rows:
         table.add_row(*(listed(row.get(name)) for name, _ in COLUMNS))
+    for line in document["as_given"]:
+        stdout.print(line, markup=False)
     counts = f"{len(document['tried'])} tried, {len(document['pruned'])} left out by bounds"
     if document["without_result"] is not None:
         for line in document["without_result"]["lines"]:

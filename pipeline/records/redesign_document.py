@@ -124,5 +124,7 @@ class RedesignDocument(TypedDict):
     """Reasons why no choice is on the front; null where one is."""
     pruned: list[PrunedRecord]
     """Parts excluded without solution."""
+    as_given: list[str]
+    """Lines on the kinds of part that are not exchanged, and why."""
     tried: list[TriedPoint | TriedRefusal]
     """All choices by the synthesis alone."""

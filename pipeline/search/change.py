@@ -9,7 +9,7 @@ from typing import Protocol
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
-from camwright.pipeline.base.levers import BEARING, BUSH_A, BUSH_B, CAM_MATERIAL
+from camwright.pipeline.base.levers import BEARING, BUSH_A, BUSH_B, BUSH_PIVOT, CAM_MATERIAL
 from camwright.pipeline.base.quantities import PURE
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.substitution import with_bush, with_cam_material, with_roller
@@ -19,7 +19,7 @@ from camwright.pipeline.case.case_values import quantity_of, replaced, unit_at, 
 from camwright.pipeline.case.consistency import check_numbers
 from camwright.pipeline.case.toml_text import TomlValue
 
-PARTS = (BEARING, CAM_MATERIAL, BUSH_A, BUSH_B)
+PARTS = (BEARING, CAM_MATERIAL, BUSH_A, BUSH_B, BUSH_PIVOT)
 """Keys whose value is the name of a card."""
 
 
@@ -80,7 +80,7 @@ class Change:
             elif key == CAM_MATERIAL:
                 case = with_cam_material(case, name, folder)
             else:
-                case = with_bush(case, "a" if key == BUSH_A else "b", name, folder)
+                case = with_bush(case, key, name, folder)
         return case
 
     def replaced(self, case: Case) -> Case:

@@ -148,6 +148,36 @@ def test_a_point_is_what_its_case_file_gives(done):
 
 
 @pytest.mark.slow
+def test_the_parts_of_an_arm_are_searched(small, monkeypatch, tmp_path):
+    """Its own bush and another with a spring that stores enough: the cam of the best is previewed.
+
+    The spring is the nearest of the catalogue in rate, and softer: it fails by itself.
+    """
+    whole = catalogue_of(None)
+    few = Catalogue(
+        {"track_roller_47x18": whole.rollers["track_roller_47x18"]},
+        {"80 x 50": whole.springs["80 x 50"]},
+        {"ptfe_lined": whole.bushes["ptfe_lined"]},
+    )
+    for module in (redesign_study, substitution):
+        monkeypatch.setattr(module, "catalogue_of", lambda folder: few)
+    text = (CASES / "gx120-arm.toml").read_text(encoding="utf-8")
+    text = text[: text.index('[[load_case]]\nname = "governed"')]
+    for old, new in (("torque_reduction = 0.5", "torque_reduction = 0.4"),
+                     ("positions = 720", "positions = 90")):  # fmt: skip
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    (tmp_path / "arm.toml").write_text(text, encoding="utf-8")
+    document = redesign_study.redesign(tmp_path / "arm.toml", tmp_path / "out", "size", 1, Silent())
+    assert document["as_given"] == [] and document["given"]["verdict"] == "pass"
+    good = [each for each in document["tried"] if each.get("feasible")]
+    assert {each["bush"] for each in good} == {"as given", "ptfe_lined"}
+    assert all(each["ripple_left_share"] < 0.6 for each in good)
+    (refused,) = document["refused"]
+    assert "spring_fatigue" in refused["why"] and "pivot" not in refused["why"]
+
+
+@pytest.mark.slow
 def test_without_a_result_limit_and_way_are_named_and_no_file_is(
     small, case_file, tmp_path, capsys
 ):

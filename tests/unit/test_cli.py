@@ -489,12 +489,13 @@ def test_redesign_exits_by_its_points(
 
     points = [{"file": "point.toml", "verdict": "pass", "open": one} for one in open_checks]
     document: dict[str, Any] = {"points": points, "tried": [], "pruned": []}
-    document["without_result"] = None
+    document |= {"without_result": None, "as_given": ["x as given"]}
     monkeypatch.setattr(redesign_study, "redesign", lambda *_: document)
     monkeypatch.setattr(redesign_page, "write", lambda *_: Path("page.html"))
     found, out, _ = command("design", "parts", case_file)
     assert found == code
     assert ("missing data of these points: shaft" in out) == (code == 3)
+    assert "x as given" in out
     document |= {"points": [], "without_result": {"lines": ["excluded most by cam_radius"]}}
     code, out, _ = command("design", "parts", case_file)
     assert code == 1

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from swung_face import face_text
 from synthesis_ratings import named
 
 from camwright.geometry.errors import InputError
@@ -31,11 +32,21 @@ from camwright.pipeline.search.front import front, thinned
 from camwright.pipeline.search.judge import Judge, Judgement, judgements
 from camwright.pipeline.search.parts import redesign_study
 from camwright.pipeline.search.parts.exclusions import exclusions
-from camwright.pipeline.search.parts.part_search import RUNG, RUNGS, RollerSearch
+from camwright.pipeline.search.parts.part_search import RUNG, RUNGS, RollerSearch, selection
 from camwright.pipeline.search.parts.ripple_bounds import RippleBound, bearable_energy
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 
 CASES = Path(__file__).parents[2] / "cases"
+TORSION = """\
+[spring]
+kind = "torsion_pivot"
+travel_max = "16 mm"
+
+[spring.torsion_pivot]
+angular_rate = "1000 N m/rad"
+moment = "100 N m"
+
+"""
 CHOICE = Choice("track_roller_35x16", "60 x 42", "ptfe_lined", 0.08)
 
 
@@ -166,6 +177,48 @@ def test_waivers_are_of_another_design(case, parts):
 def test_bushes_as_given_stay(case, parts):
     found = variant(case, parts, replace(CHOICE, bush=AS_GIVEN), None)
     assert found.guides == case.guides
+
+
+# --- on an arm
+
+
+def test_parts_of_an_arm_bring_along_what_hangs_on_them(parts):
+    """The roller at the arm's end adds to the mass about its pivot; its bush is another."""
+    case = read_case(CASES / "gx120-arm.toml")
+    found = variant(case, parts, Choice("track_roller_52x21", "80 x 50", "bronze"), None)
+    old, pivot = case.follower.pivot, found.follower.pivot
+    disc = 7830.0 * np.pi * (0.026**2 * 0.0206 - 0.0235**2 * 0.0175)
+    assert pivot.swinging_mass == pytest.approx(old.swinging_mass + disc, rel=1e-9)
+    moment = old.swinging_mass * old.mass_distance + disc * case.follower.arm.length
+    assert pivot.swinging_mass * pivot.mass_distance == pytest.approx(moment, rel=1e-9)
+    springs = 0.5 * (parts.springs["80 x 50"].mass - case.spring.design.mass)
+    assert found.follower.mass == pytest.approx(case.follower.mass + disc + springs, rel=1e-9)
+    assert (pivot.bush.friction_max, pivot.bush.length) == (0.15, old.bush.length)
+    assert found.guides == case.guides  # which stand in for none
+    assert found.follower.arm == case.follower.arm
+    low, high = found.smoothing.prime_radius_range
+    assert 10e-3 < low < high < 190e-3  # which the arm reaches
+    assert parse_case(found.to_toml()).sha256 == found.sha256
+
+
+@pytest.mark.parametrize(("spring", "kept"), [("", 2), (TORSION, 3)], ids=["coil", "torsion"])
+def test_what_a_catalogue_does_not_have_stays_as_given(parts, spring, kept):
+    """A face, a torsion spring and a pivot without a bush: each is named, and not exchanged."""
+    text = face_text("flat", "cylinder")
+    if spring:
+        text = text[: text.index("[spring]")] + spring + text[text.index("[cam]") :]
+    case = parse_case(text)
+    of = selection(case, parts, problem_of(case, engine_torques(case)), by_mass=False)
+    assert len(of.as_given) == kept
+    assert all(" as given: " in line for line in of.as_given)
+    assert list(of.springs) == [AS_GIVEN]
+    assert of.bushes == (AS_GIVEN,)
+    assert (list(of.springs[AS_GIVEN]) == [AS_GIVEN]) == bool(spring)
+    choice = Choice(AS_GIVEN, next(iter(of.springs[AS_GIVEN])), AS_GIVEN)
+    found = variant(case, parts, choice, None)
+    assert found.follower.face == case.follower.face
+    assert (found.spring == case.spring) == bool(spring)
+    assert found.smoothing.kind == "constrained"
 
 
 @pytest.mark.parametrize("name", ["60 x 42", "55 x 45", "80 x 50"])

@@ -14,6 +14,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.levers import (
     BEARING,
     BUSH_A,
+    BUSH_PIVOT,
     CAM_MATERIAL,
     Catalogued,
     Crowned,
@@ -156,6 +157,26 @@ def test_a_lower_friction_is_the_better_one(bench: Workbench) -> None:
     ]  # fmt: skip
 
 
+def test_the_bush_of_a_pivot_comes_from_the_same_cards(bench: Workbench) -> None:
+    """A bush acts where the case has it: in guides, or in the pivot of an arm without needles."""
+    arm = Workbench(read_case(GX120.parent / "gx120-arm.toml"), None)
+    lever, guide = Catalogued(BUSH_PIVOT, "pressure_limit"), Catalogued(BUSH_A, "pressure_limit")
+    assert arm.acts(lever) and not arm.acts(guide)
+    assert bench.acts(guide) and not bench.acts(lever)
+    assert arm.cards(lever) == []  # none bears more than its own
+    bushes = arm.cards(Catalogued(BUSH_PIVOT, "friction_max", less=True))
+    assert [dict(step.change.values)[BUSH_PIVOT] for step in bushes] == [
+        "bronze", "wrapped_bronze", "pa66_regularly_greased", "sintered_bronze",
+    ]  # fmt: skip
+    pivots = [each.follower.pivot for each in (bushes[0].change.applied(arm.case, None), arm.case)]
+    changed, before = (None if each is None else each.bush for each in pivots)
+    assert changed is not None and before is not None
+    assert (changed.friction_max, changed.length) == (0.15, before.length)
+    for name in ("pivot_pressure", "pivot_speed", "pivot_jam_index"):
+        keys = {each.key for each in DECLARED[name].levers if isinstance(each, Catalogued)}
+        assert keys == {BUSH_PIVOT}, name
+
+
 def test_a_counter_hole_is_drilled_once(bench: Workbench) -> None:
     assert bench.acts(Drilled())
     drilled = bench.drilled(Drilled()).change.applied(bench.case, bench.folder)
@@ -240,4 +261,4 @@ def test_where_the_follower_locks_the_remedy_says_so() -> None:
 def test_numbers_are_printed_without_an_exponent() -> None:
     assert without_exponent(2901.9, "rpm") == "27710 rpm"
     assert without_exponent(0.7085, "", 3) == "0.709"
-    assert PARTS == (BEARING, CAM_MATERIAL, BUSH_A, "guides.b")
+    assert PARTS == (BEARING, CAM_MATERIAL, BUSH_A, "guides.b", BUSH_PIVOT)

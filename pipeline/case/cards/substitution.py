@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
 
 from camwright.pipeline.base import units
 from camwright.pipeline.base.crossing import first_passing
@@ -27,6 +27,7 @@ from camwright.pipeline.follower.spring import HelicalSpring
 AS_GIVEN = "as given"
 WIDEST_PRIME = 1.5  # upper end of a search over the prime radius of the case
 _WALL_MARGIN = 1.002  # on the least prime radius, for the wall at the contour
+_WITHIN_REACH = 0.95  # of the greatest prime radius that an arm reaches, or the least over it
 _END_MOST = 0.05  # of the roller's width
 _HALVINGS = 40  # of a travel
 _FORK = 2e-3  # m between roller and fork if the case has no pin
@@ -34,7 +35,9 @@ _FORK = 2e-3  # m between roller and fork if the case has no pin
 
 @dataclass(frozen=True)
 class Choice:
-    """Change of parts by name, and the limit of the cam radius, m; None: that of the case."""
+    """Change of parts by name, `AS_GIVEN` for those of the case, and the limit of the cam radius,
+    m; None: that of the case.
+    """
 
     roller: str
     spring: str
@@ -43,7 +46,8 @@ class Choice:
 
     @property
     def words(self) -> str:
-        return f"{self.roller}, spring {self.spring}, bushes {self.bush}"
+        roller = f"follower {AS_GIVEN}" if self.roller == AS_GIVEN else self.roller
+        return f"{roller}, spring {self.spring}, bushes {self.bush}"
 
     def applied(self, case: Case, folder: Path | None) -> Case:
         """A case with the parts, and with the files that it includes; see `variant`.
@@ -97,9 +101,9 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
 
     The roller sets its radius, width, bore and ratings, and with them the cam width, the pin, the
     overhang and the mass of the follower; the spring sets rate, travel and mass; the bush friction
-    and limits of both guides. The prime radius is a variable between the minimum wall and the
-    limit of the cam radius. Waivers and confirmations of the replaced parts are left out, as they
-    are not signed for this design.
+    and limits of both guides, or of the pivot of an arm. The prime radius is a variable between the
+    minimum wall and the limit of the cam radius. Waivers and confirmations of the replaced parts
+    are left out, as they are not signed for this design.
 
     Parameters
     ----------
@@ -114,14 +118,21 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
     data.pop("waivers", None)
     data["name"] = f"{case.name[:31]}-redesign"
     data["title"] = f"{case.title or case.name}: {choice.words}"
-    card, spring = parts.rollers[choice.roller], parts.springs[choice.spring]
-    _put_roller(data, case, card, choice.roller)
-    _put_spring(data, case, spring)
-    _put_mass(data, case, card, spring, parts)
+    radius, roller_mass, spring_mass = case.facing.contact_radius or 0.0, 0.0, 0.0
+    if choice.roller != AS_GIVEN:
+        card = parts.rollers[choice.roller]
+        _put_roller(data, case, card, choice.roller)
+        radius, roller_mass = 0.5 * card.outer_diameter, _heavier(case, card)
+    if choice.spring != AS_GIVEN:
+        spring = parts.springs[choice.spring]
+        _put_spring(data, case, spring)
+        old = case.spring.design or nearest_spring([*parts.springs.values()], case.spring.rate)
+        spring_mass = 0.5 * (spring.mass - old.mass)
+    _put_mass(data, case, roller_mass, spring_mass)
     if choice.bush != AS_GIVEN:
-        for side in ("a", "b"):
-            _put_bush(data, side, choice.bush)
-    _put_search(data, case, choice, 0.5 * card.outer_diameter)
+        for table in case.bushes:
+            _put_bush(data, table, choice.bush)
+    _put_search(data, case, choice, radius)
     return case_of(data, folder)
 
 
@@ -136,16 +147,14 @@ def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -
     """
     data = tables_of(case)
     _put_roller(data, case, card, name)
-    table_in(data, "follower")["mass"] = units.format(
-        case.follower.mass + _heavier(case, card), "g"
-    )
+    _put_mass(data, case, _heavier(case, card), 0.0)
     base = case.cam.prime_radius + 0.5 * card.outer_diameter - case.roller.radius
     table_in(data, "cam")["prime_radius"] = _mm(base)
     return completed(case_of(data, folder), case.folder)
 
 
-def with_bush(case: Case, side: Literal["a", "b"], name: str, folder: Path | None) -> Case:
-    """Case with another bush of the same size in one guide.
+def with_bush(case: Case, table: str, name: str, folder: Path | None) -> Case:
+    """Case with another bush of the same size, by the name of its table: one of `Case.bushes`.
 
     Raises
     ------
@@ -153,7 +162,7 @@ def with_bush(case: Case, side: Literal["a", "b"], name: str, folder: Path | Non
         If the bush does not fit into the case.
     """
     data = tables_of(case)
-    _put_bush(data, side, name)
+    _put_bush(data, table, name)
     return completed(case_of(data, folder), case.folder)
 
 
@@ -204,8 +213,9 @@ def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
         length = fork.cheek_length + radius - old.radius
         table_in(roller, "fork")["cheek_length"] = _mm(length)
     table_in(data, "cam")["width"] = _mm(card.width - old.width + case.cam.width)
-    overhang = case.follower.overhang_at_max_lift + radius - old.radius
-    table_in(data, "follower")["overhang_at_max_lift"] = _mm(overhang)
+    if case.follower.arm is None:
+        overhang = case.follower.overhang_at_max_lift + radius - old.radius
+        table_in(data, "follower")["overhang_at_max_lift"] = _mm(overhang)
 
 
 def _put_spring(data: Tables, case: Case, spring: HelicalSpring) -> None:
@@ -221,13 +231,25 @@ def _put_spring(data: Tables, case: Case, spring: HelicalSpring) -> None:
     )
 
 
-def _put_mass(
-    data: Tables, case: Case, card: BearingCard, spring: HelicalSpring, parts: Catalogue
-) -> None:
-    """Set the mass of the follower with the new roller and half of the new spring."""
-    old = case.spring.design or nearest_spring(list(parts.springs.values()), case.spring.rate)
-    mass = case.follower.mass + _heavier(case, card) + 0.5 * (spring.mass - old.mass)
-    table_in(data, "follower")["mass"] = units.format(mass, "g")
+def _put_mass(data: Tables, case: Case, roller: float, spring: float) -> None:
+    """Set the mass of the follower with what roller and half of the spring are heavier, kg; of an
+    arm its mass about the pivot, too, with the roller at its end.
+    """
+    follower, table = case.follower, table_in(data, "follower")
+    table["mass"] = units.format(follower.mass + roller + spring, "g")
+    arm, pivot = follower.arm, follower.pivot
+    if arm is None or pivot is None or pivot.swinging_mass is None:
+        return
+    distance = arm.length if pivot.mass_distance is None else pivot.mass_distance
+    mass = pivot.swinging_mass + roller
+    moment = pivot.swinging_mass * cmath.rect(distance, pivot.mass_angle) + roller * arm.length
+    table_in(table, "pivot").update(
+        {
+            "swinging_mass": units.format(mass, "g"),
+            "mass_distance": _mm(abs(moment / mass)),
+            "mass_angle": units.format(cmath.phase(moment / mass), "deg"),
+        }
+    )
 
 
 def _heavier(case: Case, card: BearingCard) -> float:
@@ -237,15 +259,18 @@ def _heavier(case: Case, card: BearingCard) -> float:
     return math.pi * roller.material.density * disc
 
 
-def _put_bush(data: Tables, side: str, name: str) -> None:
-    """Write the card of a bush into guide `side` ("a" or "b") of the tables of a case, in place;
-    its dimensions are kept.
+def _put_bush(data: Tables, table: str, name: str) -> None:
+    """Write the card of a bush into its table of a case, by its dotted name, in place; its
+    dimensions are kept.
     """
     place = ("length", "diameter", "wall", "clearance", "stiffness", "housing_resistance")
-    guides = table_in(data, "guides")
-    kept = {key: value for key, value in table_in(guides, side).items() if key in place}
-    guides[side] = kept | {"card": name}
-    forget_sources(data, f"guides.{side}")
+    *path, last = table.split(".")
+    parent = data
+    for step in path:
+        parent = table_in(parent, step)
+    kept = {key: value for key, value in table_in(parent, last).items() if key in place}
+    parent[last] = kept | {"card": name}
+    forget_sources(data, table)
 
 
 def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None:
@@ -256,6 +281,9 @@ def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None
     kept = [n for n in smoothing.free if n not in ("spring_rate", "prime_radius")]
     low = least_prime_radius(case, radius)
     high = max(WIDEST_PRIME * case.cam.prime_radius, 1.2 * low)
+    if (arm := case.follower.arm) is not None:
+        high = min(high, _WITHIN_REACH * (arm.centre_distance + arm.length))
+        low = max(low, abs(arm.centre_distance - arm.length) / _WITHIN_REACH)
     if "prime_radius" in smoothing.free and smoothing.prime_radius_range is not None:
         least, most = smoothing.prime_radius_range
         low = max(low, least)

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from camwright.pipeline.base.units import from_unit
 from camwright.pipeline.case.cards.catalogue import (
     Catalogue,
@@ -163,17 +165,22 @@ class Selection:
     springs : mapping   of each roller, its springs with the lower bounds of their ripple
     bushes : tuple      best pv rating first
     pruned : tuple      parts excluded without solution
+    as_given : tuple    lines on the kinds of part of which the case has none to be exchanged
     """
 
     springs: Mapping[str, Mapping[str, float]]
     bushes: tuple[str, ...]
     pruned: tuple[PrunedRecord, ...]
+    as_given: tuple[str, ...] = ()
 
 
 def selection(case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool) -> Selection:
     """Parts of the catalogues that a redesign of a case tries: those not dominated by another,
     rollers with the springs whose energy can reach the required torque reduction; and what is left
     out, with the reason.
+
+    The case keeps a face, a spring that is not a coil spring on the line of travel, and the needle
+    bearing of a pivot: the catalogues have none in their place.
 
     Parameters
     ----------
@@ -182,23 +189,37 @@ def selection(case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool) 
     problem : Problem   of the original case: torque and load cases
     by_mass : bool      whether mass is the second objective
     """
-    rollers = undominated(parts.rollers, better_roller)
-    bushes = undominated(parts.bushes, better_bush)
-    travels = {name: (spring, travel_of(spring, case)) for name, spring in parts.springs.items()}
-    usable = {name: pair for name, pair in travels.items() if pair[1] > 0.0}
-    springs = undominated(usable, lambda a, b: better_spring(a, b, by_mass=by_mass))
-    pruned = [
-        *_left_out(parts.rollers, rollers, "dominated by another roller of its size"),
-        *_left_out(parts.bushes, bushes, "dominated by another bush in friction and load"),
-        *_left_out(travels, usable, "no travel within its limits at the preload of the case"),
-        *_left_out(usable, springs, "dominated by another spring of its rate in travel"),
-    ]
-    names = sorted(bushes, key=lambda name: (-bushes[name].pv, name))
-    names = [AS_GIVEN, *names] if _bushes_known(case) else names
+    as_given, pruned = list[str](), list[PrunedRecord]()
+    forces, names = {AS_GIVEN: np.inf}, [AS_GIVEN]
+    if case.facing.parts:
+        rollers = undominated(parts.rollers, better_roller)
+        pruned += _left_out(parts.rollers, rollers, "dominated by another roller of its size")
+        forces = {name: ripple_bounds.bearable_force(card, case) for name, card in rollers.items()}
+    else:
+        as_given.append("face as given: the catalogues have rollers")
+    if case.bushes:
+        bushes = undominated(parts.bushes, better_bush)
+        why = "dominated by another bush in friction and load"
+        pruned += _left_out(parts.bushes, bushes, why)
+        best_first = sorted(bushes, key=lambda name: (-bushes[name].pv, name))
+        names = [*(names if _bushes_known(case) else ()), *best_first]
+    else:
+        as_given.append(
+            "bearing of the pivot as given: it has no bush, and the catalogues no needles"
+        )
+    springs = None
+    if case.spring.shape is None:
+        lengths = {name: (each, travel_of(each, case)) for name, each in parts.springs.items()}
+        usable = {name: pair for name, pair in lengths.items() if pair[1] > 0.0}
+        springs = undominated(usable, lambda a, b: better_spring(a, b, by_mass=by_mass))
+        why = "no travel within its limits at the preload of the case"
+        pruned += _left_out(lengths, usable, why)
+        pruned += _left_out(usable, springs, "dominated by another spring of its rate in travel")
+    else:
+        as_given.append("spring as given: the catalogues have coil springs along the travel")
     least = _Least(case, problem, springs)
     tried: dict[str, dict[str, float]] = {}
-    for name, card in rollers.items():
-        force = ripple_bounds.bearable_force(card, case)
+    for name, force in forces.items():
         bounds = least.by_spring(force)
         bound = {name: each for name, each in bounds.items() if each <= least.allowed}
         if bound:
@@ -210,16 +231,18 @@ def selection(case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool) 
                 f"at most {most:.2f} of {required:.2f}"
             )
             pruned.append({"part": name, "why": words, "limit": TORQUE_REDUCTION.id})
-    return Selection(tried, tuple(names), tuple(pruned))
+    return Selection(tried, tuple(names), tuple(pruned), tuple(as_given))
 
 
 @dataclass(frozen=True, eq=False)
 class _Least:
-    """Lower bounds of the ripple of springs with a roller, from their energy."""
+    """Lower bounds of the ripple of springs with a roller, from their energy; None: of that of the
+    case alone, without a bound.
+    """
 
     case: Case
     problem: Problem
-    springs: dict[str, tuple[HelicalSpring, float]]
+    springs: dict[str, tuple[HelicalSpring, float]] | None
 
     @property
     def design(self) -> Scenario:
@@ -241,6 +264,8 @@ class _Least:
         ----------
         force : float   greatest roller load, N
         """
+        if self.springs is None:
+            return {AS_GIVEN: 0.0}
         case, problem, design = self.case, self.problem, self.design
         bound = ripple_bounds.RippleBound(design.torque, problem.gear_ratio)
         relief = ripple_bounds.relief_of(problem.scenarios, problem.ratings.bounds.get(JUMP.id))
@@ -253,8 +278,8 @@ class _Least:
 
 
 def _bushes_known(case: Case) -> bool:
-    guides = (case.guides.a, case.guides.b)
-    return all(g.pressure_limit is not None and g.pv_limit is not None for g in guides)
+    bushes = case.bushes.values()
+    return all(each.pressure_limit is not None and each.pv_limit is not None for each in bushes)
 
 
 def _left_out(parts: Iterable[str], kept: Iterable[str], why: str) -> list[PrunedRecord]:

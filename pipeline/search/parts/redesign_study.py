@@ -129,7 +129,6 @@ def redesign(
     case, folder = read_case(case_file), case_file.resolve().parent
     if not case.balances:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
-    case.require_stem("a redesign")
     search = RedesignTask(case, folder, out.absolute(), versions()["source"])
     problem = problem_of(case, engine_torques(case))
     parts = selection(case, catalogue_of(folder), problem, by_mass=other == "mass")
@@ -163,6 +162,7 @@ def redesign(
             ],
             "without_result": excluded,
             "pruned": list(parts.pruned),
+            "as_given": list(parts.as_given),
             "tried": [_tried_record(choice, record) for choice, record in tried],
         }
         write_atomic(search.out / RECORD, json_text(document) + "\n")

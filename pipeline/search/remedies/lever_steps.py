@@ -12,7 +12,6 @@ from typing import NamedTuple
 from camwright.pipeline.base import units
 from camwright.pipeline.base.levers import (
     BEARING,
-    BUSH_A,
     CAM_MATERIAL,
     Catalogued,
     Crowned,
@@ -83,7 +82,7 @@ class Workbench:
         if isinstance(lever, Catalogued):
             if lever.key == BEARING:
                 return "roller_bearing" in case.facing.parts and case.scope.covers("roller_bearing")
-            return True
+            return lever.key == CAM_MATERIAL or lever.key in case.bushes
         drawn = case.balances and case.smoothing.kind in lever.smoothers
         if lever.smoothers and not drawn:
             return False
@@ -225,7 +224,7 @@ class Workbench:
         if lever.key == BEARING:
             part: Bearing | Guide = case.roller.bearing
         else:
-            part = case.guides.a if lever.key == BUSH_A else case.guides.b
+            part = case.bushes[lever.key]
         value: float | None = getattr(part, lever.rating)
         if value is None and isinstance(part, Guide) and lever.less:
             return part.friction
