@@ -148,10 +148,11 @@ class Sheet:
 
     @property
     def use(self) -> tuple[float, float] | None:
-        """Numerator and denominator of the utilisation, in the unit of the record.
+        """Numerator and denominator of the utilisation of the check, in the unit of the record:
+        demand over limit, or limit over demand where it must be at least the limit.
 
-        Of the worse of the demand and that at its tolerance corner. None without one, and for a
-        quotient that has no bound.
+        Of the worse of the demand and that at its tolerance corner. None where the record has no
+        utilisation, or the denominator is not positive.
         """
         demand, limit, corner = (self.record[key] for key in ("demand", "limit", "corner_demand"))
         if demand is None or limit is None or self.record["utilisation"] is None:
@@ -168,7 +169,9 @@ class Sheet:
 
     @property
     def differs_in(self) -> str:
-        """First of demand, limit and utilisation that differs from the record; "" for none."""
+        """Which of "demand", "limit" and "use", the utilisation, evaluated on the sheet differs
+        first from the record; "" where all agree.
+        """
         limit, stated, use = self.record["limit"], self.record["utilisation"], self.use
         if not self._gives_the_demand:
             return "demand"
@@ -179,8 +182,9 @@ class Sheet:
 
     @property
     def _gives_the_demand(self) -> bool:
-        """Whether the formula gives the demand of the record, to rounding; one of the forces
-        between two angles less closely.
+        """Whether the formula gives the demand of the record: to rounding, or less closely where
+        the demand is of the forces between two solved angles. True where the demand is not
+        evaluated.
         """
         demand = self.record["demand"]
         if self.result is None or demand is None:
@@ -231,7 +235,8 @@ class SheetRun:
         return {each["id"]: each for each in self.run.final.checks}
 
     def sheet(self, name: str) -> Sheet:
-        """Sheet of a check of the final trial.
+        """Hand-check sheet of a check of the final trial, by its id; without evaluation where the
+        formula does not apply or a number is missing in the case.
 
         Raises
         ------
@@ -294,7 +299,14 @@ class _Evaluation:
         return any(self._lacks(text, name) for name, text in places.items())
 
     def _lacks(self, text: str, name: str) -> bool:
-        """Whether the place of a symbol is a key without a value, or a number not stated."""
+        """Whether the value of a symbol of the formula is missing: a key of the case without a
+        value, or a number that the check did not state.
+
+        Parameters
+        ----------
+        text : str   where the symbol has its value, as declared
+        name : str   the symbol
+        """
         if text == STATED:
             return name not in self._stated
         keys = {each for each in formula.names(formula.parsed(text)) if "." in each}
@@ -313,8 +325,8 @@ class _Evaluation:
         return made
 
     def _as_shown(self, name: str) -> Value:
-        """Value of a definition, or with "" of the demand, calculated from the numbers rounded as
-        shown.
+        """Value, SI, of a definition of the formula, or with the name "" of the demand, calculated
+        from the numbers rounded as the sheet shows them.
         """
 
         def rounded(symbol: str) -> Value:
@@ -336,8 +348,8 @@ class _Evaluation:
         )  # fmt: skip
 
     def _bound(self) -> SheetBound | None:
-        """Limit evaluated from its formula; None where it is in words, or a symbol has no number in
-        the case.
+        """Limit of the check evaluated from its formula; None where it is in words, in degC, or a
+        symbol has no number in the case.
         """
         try:
             tree = formula.parsed(self.said.limit, {**self.declared.symbols, **self.said.keys})
@@ -353,7 +365,7 @@ class _Evaluation:
         return name if "." in name else self.said.keys.get(name, "")
 
     def _is_known(self, name: str) -> bool:
-        """Whether a symbol of the limit has a number in the case."""
+        """Whether a symbol of the limit, `name`, has a number in the case."""
         if name in formula.CONSTANTS:
             return True
         if name in self.trees:
@@ -363,7 +375,9 @@ class _Evaluation:
         return bool(key := self._key(name)) and self._numbers.get(key) is not None
 
     def _of_limit(self, name: str) -> Value:
-        """Value, SI, of a symbol of the limit, which is added to the symbols of the sheet."""
+        """Value, SI, of the symbol `name` of the limit; it is added to the symbols of the sheet,
+        unless it is the limit itself.
+        """
         if name in self.trees or name in self.declared.symbols:
             return self._symbol(name)
         key = self._key(name)
@@ -392,8 +406,8 @@ class _Evaluation:
         }
 
     def _defined(self, name: str) -> Value:
-        """Value, SI, of a definition of the formula, calculated once and added to the steps of the
-        sheet.
+        """Value, SI, of a definition of the formula by its name, calculated once and added to the
+        steps of the sheet.
         """
         if name not in self.values:
             tree = self.trees[name]
@@ -404,8 +418,8 @@ class _Evaluation:
         return self.values[name]
 
     def _symbol(self, name: str) -> Value:
-        """Value, SI, of a symbol of the formula, which is added to the symbols of the sheet with
-        its source.
+        """Value, SI, of a symbol of the formula by its name; it is added to the symbols of the
+        sheet with its source.
         """
         if name in self.trees:
             return self._defined(name)
@@ -429,8 +443,13 @@ class _Evaluation:
         return value
 
     def _as_stated(self, name: str, unit: str) -> Value:
-        """Value, SI, of a number that the check states itself, such as a result of a solver;
-        `unit`: that of the record.
+        """Value, SI, of a number that the check states itself, such as a result of a solver; it is
+        added to the symbols of the sheet.
+
+        Parameters
+        ----------
+        name : str   the symbol
+        unit : str   of the number in the record
         """
         value = units.from_unit(self._stated[name], unit)
         at = place(self.record)
@@ -446,8 +465,17 @@ class _Evaluation:
         return self.record.get("stated", {})
 
     def _number(self, name: str, *, turn: bool = False) -> Value:
-        """Value, SI, of a key of the case, a column of the cycle or a figure of the cam; turn :
-        column at all cam angles (n,), not at that of the demand alone.
+        """Value, SI, of a key of the case, a figure of the cam or a column of the cycle.
+
+        Parameters
+        ----------
+        name : str    dotted key, name of the figure, or of the column without its unit
+        turn : bool   of a column: at all cam angles (n,), not at that of the demand alone
+
+        Raises
+        ------
+        ResultError
+            If the case or the cycle lacks it.
         """
         if "." in name:
             value = self._numbers.get(name)
@@ -461,7 +489,13 @@ class _Evaluation:
         return scale * (column if turn else float(column[self._row]))
 
     def _shown(self, name: str, value: float) -> str:
-        """A value as the case states it, else in the unit of its key, column or figure."""
+        """Value as text: as the case states it, else with the unit of its key, column or figure.
+
+        Parameters
+        ----------
+        name : str      dotted key, figure or column
+        value : float   SI
+        """
         if "." not in name:
             unit = FIGURES[name][0] if name in FIGURES else self._column(name)[0]
             return units.shown(value, unit, self.digits)
@@ -471,7 +505,9 @@ class _Evaluation:
         return units.shown(value, quantity.unit if isinstance(quantity, In) else "", self.digits)
 
     def _where(self, name: str) -> str:
-        """Source of a value: key, table with its place, or the cam as drawn."""
+        """Source of a value, in words: the key itself, the table with load case and angle, or the
+        cam as drawn.
+        """
         if "." in name:
             return name
         file = "cam as drawn" if name in FIGURES else _CYCLE
@@ -485,8 +521,8 @@ class _Evaluation:
 
     @cached_property
     def _numbers(self) -> Numbers:
-        """Numbers of the case in the load case of the demand by key, SI, with those that a formula
-        needs besides.
+        """Numbers of the case by key, SI, in the load case of the demand, with four that only
+        formulas of checks need.
         """
         shared = numbers_of(self.run.case, tuple(self.run.machines.values()))
         ring, interference = fitted_ring(shared), greatest_interference(shared)
@@ -520,7 +556,9 @@ class _Evaluation:
 
     @property
     def _row(self) -> int:
-        """Row of the cycle at the cam angle of the demand; 0 where it has none."""
+        """Index of the row of the cycle at the cam angle of the demand; ResultError where the
+        demand has no cam angle, or the cycle no row at it.
+        """
         angle, solved = self.record["cam_angle_deg"], self._rows["cam_angle_deg"]
         row = 0 if angle is None else int(np.argmin(np.abs(solved - angle)))
         if angle is None or abs(solved[row] - angle) > SAME_ANGLE:
@@ -528,7 +566,14 @@ class _Evaluation:
         return row
 
     def _column(self, name: str) -> tuple[str, Array]:
-        """Unit and values (n,) of a column of the cycle, named without its unit."""
+        """Unit and values (n,), in this unit, of a column of the cycle, by its name without the
+        unit; the closed form in place of a column of finite elements that is not solved.
+
+        Raises
+        ------
+        ResultError
+            If the cycle has no such column.
+        """
         for unit in ("", *_UNITS):
             header = units.column(name, unit)
             if header not in self._rows:

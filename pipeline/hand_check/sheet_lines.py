@@ -30,7 +30,7 @@ def demand_words(record: CheckRecord) -> str:
 
 
 def limit_words(sheet: Sheet) -> str:
-    """Limit of a check in words, by its formula, with source."""
+    """Limit of a check in words: number, formula with symbols and then with numbers, source."""
     record = sheet.record
     sense = ">=" if record["sense"] == "at_least" else "<="
     shown = f"{sense} {number(record['limit'])}{unit_text(record['unit'])}"
@@ -41,7 +41,9 @@ def limit_words(sheet: Sheet) -> str:
 
 
 def outcome_words(sheet: Sheet) -> str:
-    """Agreement of the formula's demand with the record, or why the demand is stated."""
+    """Whether the demand by the formula agrees with that of the run, in words, or why it is stated
+    and not evaluated.
+    """
     if not sheet.agrees:
         return f"DISAGREES with the {sheet.differs_in} of the check"
     if not sheet.steps:
@@ -50,7 +52,7 @@ def outcome_words(sheet: Sheet) -> str:
 
 
 def use_words(sheet: Sheet) -> str:
-    """Utilisation as a quotient of demand and limit, and in percent."""
+    """Utilisation of a check as a quotient of demand and limit, and in percent."""
     used_words = used(RecordedCheck(sheet.record).utilisation)
     if sheet.use is None:
         return f"{used_words} used"

@@ -14,10 +14,15 @@ UNKNOWN_ERROR = 1e-6
 
 
 def changes(before: Iterable[CheckRecord], now: Iterable[CheckRecord]) -> list[CheckChange]:
-    """Checks that differ from the baseline: in status, limit, or demand beyond both error bars.
+    """Checks of a run that differ from those of a baseline run: in status, limit, or demand beyond
+    both error bars.
 
     A check on one side only is `new` or `gone`. Relative evidence, such as residuals and mesh
     uncertainties, is an error itself: it differs where its status does.
+
+    Parameters
+    ----------
+    before, now : iterable   check records of the baseline and of the run
     """
     old, new = ({record["id"]: record for record in side} for side in (before, now))
     entries = []
@@ -80,8 +85,8 @@ def _is_error(record: CheckRecord) -> bool:
 
 
 def _error(record: CheckRecord) -> float:
-    """Half of the error bar of a demand, in its unit; by `UNKNOWN_ERROR` of the demand where the
-    record states none.
+    """Half-width of the error bar of a demand, in the unit of the check: as recorded, else
+    `UNKNOWN_ERROR` of the demand; 0 without a demand.
     """
     if record["demand"] is None:
         return 0.0

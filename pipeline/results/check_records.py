@@ -248,7 +248,7 @@ def _row_in_words(record: AnyCheck) -> list[str]:
 
 
 def judgement(checks: Iterable[AnyCheck], depth: Depth) -> StatedVerdict:
-    """Depth, verdict, screen, and a line that states them.
+    """Verdict or screen of the checks of a run, with its depth and a line of text.
 
     A certified run has a verdict and no screen, a shallower one a screen and no verdict.
     """
@@ -291,7 +291,9 @@ def screen_line(records: Iterable[AnyCheck], depth: str) -> str:
 
 
 def _counts(deciding: Sequence[AnyCheck]) -> str:
-    """Counts of the must-have checks that do not simply pass, in words."""
+    """Text with the numbers of required checks that do not simply pass: failed, not proven, without
+    data, waived, with a relaxed limit or values to be confirmed; "" without any.
+    """
     failed = [record for record in deciding if record["status"] == "fail"]
     unproven = sum(bool(record["not_proven"]) for record in failed)
     statuses = Counter(str(record["status"]) for record in deciding)

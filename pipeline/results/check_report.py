@@ -25,7 +25,13 @@ STYLES = {"pass": "green", "fail": "red", "waived": "yellow", "not_evaluated": "
 
 
 def selected(records: Sequence[CheckRecord], only: Iterable[str]) -> tuple[CheckRecord, ...]:
-    """Records whose id matches a pattern such as ``guide_*``; without patterns all.
+    """Check records whose id matches one of some patterns such as ``guide_*``; without patterns
+    all.
+
+    Parameters
+    ----------
+    records : sequence   of the checks
+    only : iterable      patterns
 
     Raises
     ------
@@ -149,7 +155,14 @@ def overview(rows: Iterable[Sequence[str]]) -> Table:
 
 
 def overview_row(target: str, document: Mapping[str, Any]) -> tuple[str, ...]:
-    """Row of a run or case in `overview`."""
+    """Row of `overview` for a run or case: name, depth, verdict or screen, numbers of failed
+    required checks and of those without data, governing check.
+
+    Parameters
+    ----------
+    target : str         run folder or case file, as typed
+    document : mapping   as of `camwright check --json`
+    """
     checks = within_depth(of_records(document["checks"]))
     required = [each.status for each in checks if each.must_have]
     first = governing(checks)
@@ -193,7 +206,13 @@ def _waived(record: CheckRecord) -> str:
 
 
 def binding_lines(records: Iterable[CheckRecord], binding: Sequence[str]) -> list[str]:
-    """Lines on the binding checks: failed ones, and ones without data."""
+    """Lines on the binding checks: one on those that failed, one on those without data.
+
+    Parameters
+    ----------
+    records : iterable   of the checks
+    binding : sequence   ids of the binding ones
+    """
     missing = {r["id"] for r in records if r["status"] == "not_evaluated"}
     known = [name for name in binding if name not in missing]
     unknown = [name for name in binding if name in missing]
@@ -229,7 +248,9 @@ def with_error(value: float | None, error: float | None) -> str:
 
 
 def consistency_line(finding: Finding) -> str:
-    """Line on an input beside its implied or usual value."""
+    """Line on an input of the case that is unusual, or that differs from the value which other
+    inputs imply.
+    """
     if finding["id"] == "plausibility":
         return f"plausibility: {finding['how']}"
     share = finding["difference_percent"]

@@ -56,7 +56,9 @@ _CLOSED = {"": "", "form": "; in a groove only", "force": "; not in a groove"}
 
 
 def check_text(one: Declaration) -> CheckText:
-    """Sentences on a check from its declaration."""
+    """Sentences that describe a check, from its declaration: formula, calculation, limit, load
+    cases, decision, depth, sources.
+    """
     needs = f"; {_NEEDS.get(one.needs, f'a {one.needs}')} only" if one.needs else ""
     part = f"; part `{one.part}`" if one.part else ""
     depth = f"Evaluated at the depth {one.tier.word} and deeper."
@@ -95,7 +97,9 @@ def default_of(row: AnyLimit) -> str:
 
 
 def _limit(one: Declaration) -> str:
-    """Limit of a check with its default and source, in words."""
+    """Where the limit of a check comes from, in words: key of the case with its default, and
+    source.
+    """
     if one.limit is None:
         return str(one.source)
     value = default_of(one.limit)

@@ -38,7 +38,13 @@ _CONTACT_REACH = 3.0  # Hertz half-widths from the contact within which the surf
 
 
 def force_at(cycle: Table, load_case: str, theta: float) -> float:
-    """Normal force, N, of a load case at a cam angle, rad, interpolated linearly.
+    """Normal force on the cam, N, in a load case at a cam angle, interpolated linearly.
+
+    Parameters
+    ----------
+    cycle : Table     ``5_cycle.csv`` of a run
+    load_case : str   its name
+    theta : float     rad
 
     Raises
     ------
@@ -65,9 +71,17 @@ def nodal_forces(pair: ContactPair, solved: SolvedPair) -> tuple[Array, Array]:
 
 
 def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> None:
-    """Write both bodies at one angle with the nodal forces of the contact pressure.
+    """Write an input deck of both bodies at one cam angle, loaded by nodal forces of the contact
+    pressure.
 
-    A body on springs, such as a ring on balls, is loaded by the spring forces instead.
+    A body on springs, such as a ring on balls, is loaded by the spring forces as well, and not
+    held.
+
+    Parameters
+    ----------
+    path : Path           of the deck
+    pair : ContactPair    cam and follower
+    solved : SolvedPair   their contact at one angle
     """
     other, forces = pair.follower, nodal_forces(pair, solved)
     load = force_of(pair, solved)
@@ -100,8 +114,16 @@ def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> Non
 def _deck_body(
     body: ElasticBody, held: str, forces: Array, displacement: Array, width: float
 ) -> DeckBody:
-    """Body of the deck on its support `held`, under nodal forces (2, nodes), N; one on springs with
-    their forces and three displacements that fix its place.
+    """Body of a deck with its nodal forces, on its support; a body on springs has their forces too
+    and, in place of a support, three displacements that fix its place.
+
+    Parameters
+    ----------
+    body : ElasticBody                mesh, constants, springs
+    held : str                        boundary that is held
+    forces : array (2, nodes)         N, over the width
+    displacement : array (2, nodes)   m, as solved
+    width : float                     of contact, m
     """
     if body.springs is None:
         return DeckBody(body.mesh, body.modulus, body.poisson, held, forces)
@@ -119,12 +141,16 @@ def _deck_body(
 def write_pair_deck(
     path: Path, pair: ContactPair, solved: SolvedPair, penalty: float = PENALTY
 ) -> None:
-    """Write both bodies in contact at one angle for CalculiX, own results as comments.
+    """Write an input deck for CalculiX of both bodies at one cam angle, pressed together; the
+    contact pressure is for it to find, own results stand as comments.
 
     Parameters
     ----------
-    penalty : float   pressure per overlap of the surfaces over E*/a of the Hertz contact; the
-                      pressure it takes away is inverse to it
+    path : Path           of the deck
+    pair : ContactPair    cam and follower
+    solved : SolvedPair   their contact at one angle
+    penalty : float       pressure per overlap of the surfaces, over E*/a of the Hertz contact; the
+                          error of the pressure is inverse to it
     """
     other, solution, half = pair.follower, solved.solution, solved.half_width_hertz
     force = force_of(pair, solved)
@@ -169,8 +195,16 @@ def force_of(pair: ContactPair, solved: SolvedPair) -> float:
 def _touching(
     side: ContactSide, frame: ContactFrame, held: str, half_width: float, width: float
 ) -> TouchingBody:
-    """Body of a deck with a contact pair: its mesh, support, springs and the facets near the
-    contact.
+    """Body of a deck with a contact pair: mesh, support, springs, and the facets of its surface
+    near the contact.
+
+    Parameters
+    ----------
+    side : ContactSide     body with its surface
+    frame : ContactFrame   place and direction of the contact
+    held : str             boundary that is held
+    half_width : float     of Hertz, m
+    width : float          of contact, m
     """
     body, mesh = side.body, side.body.mesh
     middles = mesh.points[:, mesh.facet_triples(side.surface)[2]]
@@ -191,11 +225,15 @@ def _touching(
 def deck(
     run: Path, theta: float, path: Path, load_case: str | None = None, *, contact: bool = False
 ) -> SolvedPair:
-    """Solve the contact of a run at a cam angle, rad, and write its deck.
+    """Solve the contact of a finished run at a cam angle, and write its input deck.
 
     Parameters
     ----------
-    contact : bool   whether the deck has a contact pair; without, the pressure as nodal forces
+    run : Path        folder of the run
+    theta : float     cam angle, rad
+    path : Path       of the deck
+    load_case : str   None: the first
+    contact : bool    whether the deck has a contact pair; without, the pressure as nodal forces
 
     Raises
     ------

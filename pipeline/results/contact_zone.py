@@ -36,8 +36,8 @@ _BELOW = 0.04
 
 @lru_cache(maxsize=1)
 def zone_triangles() -> Index:
-    """Triangles (3, t) of node numbers of the zone, which all zones share; node 0 is the contact,
-    then rings of equal node numbers.
+    """Triangles (3, t) of node indices of the mesh of a zone below a contact, which all zones
+    share; node 0 is the contact, then rings of `_SECTORS` + 1 nodes.
     """
     ring = _SECTORS + 1
     first = 1 + np.arange(_SECTORS)
@@ -61,7 +61,7 @@ class ZoneSite:
 
     @cached_property
     def _edge(self) -> float:
-        """Longest element edge at the surface, m."""
+        """Longest edge, m, of the elements of the body that touch its surface."""
         mesh = self.body.body.mesh
         surface = mesh.boundary_nodes(self.body.surface)
         near = mesh.triangles[:3, np.isin(mesh.triangles[:3], surface).any(axis=0)]
@@ -73,9 +73,14 @@ class ZoneSite:
         return scipy.spatial.Delaunay(self.body.body.mesh.points.T)
 
     def radius(self, contacts: Array, half_width: Array) -> Array:
-        """Radius (k,) of the zones, m, at contacts (2, c), c = 1 or k, and half-widths (k,), m.
+        """Radius (k,), m, of the zones of fine mesh below k contacts.
 
-        It ends before the next boundary, unless the contact is as wide as the wall.
+        A zone ends before the next boundary of the body, unless the contact is as wide as the wall.
+
+        Parameters
+        ----------
+        contacts : array (2, c)   points of contact, m, c = 1 or k
+        half_width : array (k,)   of the contacts, m
         """
         mesh = self.body.body.mesh
         others = [n for name, n in mesh.boundaries.items() if name != self.body.surface]
@@ -118,9 +123,12 @@ class ZoneSite:
 
 
 def zone_places(half_width: Array, radius: Array) -> Array:
-    """Node positions (2, m, k), m, of k zones: along the surface, then depth.
+    """Node positions (2, m, k), m, of k zones below contacts: along the surface, then depth.
 
-    half_width (k,), m, zero without contact; radius (k,) of the zone, m.
+    Parameters
+    ----------
+    half_width : array (k,)   of the contacts, m; zero without contact
+    radius : array (k,)       of the zones, m
     """
     size = np.where(half_width > 0, half_width, radius / 16)
     inner = _RING_SPACING * np.arange(1, _EQUAL_RINGS + 1)
@@ -140,15 +148,15 @@ def zone_places(half_width: Array, radius: Array) -> Array:
 
 @lru_cache(maxsize=8)
 def patch_weights(poisson: float) -> tuple[Index, Array, Array]:
-    """Interpolation weights from the contact patch to the inner nodes of the zone, and how far the
-    patch counts there.
+    """Interpolation of stresses from the contact patch, of a body of Poisson's ratio `poisson`, to
+    the inner nodes of a zone, and the weight of the patch there.
 
     Returns
     -------
-    corners : (3, i)   points of the patch about each node
-    shares : (3, i)    their weights
-    blend : (m,)       weight of the patch at all nodes of the zone, 1 below the contact; the
-                       first i nodes alone have any
+    corners : array (3, i)   points of the patch about each node
+    shares : array (3, i)    their weights
+    blend : array (m,)       weight of the patch at all nodes of the zone, 1 below the contact; the
+                             first i nodes alone have any
     """
     patch = contact_patch(poisson).points
     unit = zone_places(np.ones(1), np.full(1, _ZONE_HALF_WIDTHS))[:, :, 0]

@@ -42,7 +42,13 @@ def drawn_cam(run: Path) -> tuple[Case, Contour]:
 
 
 def _drawn_lift(trial: run_reader.TrialRecord) -> Lift:
-    """Lift of a trial from its knots and coefficients; ResultError if these disagree."""
+    """Lift of a trial from the coefficients of its spline in the run folder.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be read, or its coefficients are not those of a C4 spline.
+    """
     file, record = trial.path / run_reader.SPLINE_FILE, trial.record
     columns = read_table(file)
     try:

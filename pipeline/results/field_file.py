@@ -84,7 +84,7 @@ class FieldFile:
         fields: Mapping[str, int], notes: Notes,
     ) -> None:  # fmt: skip
         """Create the groups of an empty file: a block per mesh with room for the fields at each
-        time, and the notes of each step.
+        time, and the notes of each step. For the parameters see the class.
         """
         self._times = np.asarray(times, dtype=float)
         self._blocks = blocks
@@ -99,8 +99,13 @@ class FieldFile:
         self._note(root, notes)
 
     def _open(self, group: h5py.Group, block: MeshBlock, fields: Mapping[str, int]) -> None:
-        """Create the datasets of a block: its mesh, its steps, and room for the data of
-        each step.
+        """Create the datasets of a block: its mesh, its steps, and room for the data of each step.
+
+        Parameters
+        ----------
+        group : Group       of the block
+        block : MeshBlock   its mesh
+        fields : mapping    name -> number of components at each node
         """
         count, cells, steps = block.nodes, block.triangles.shape[1], self._times.size
         group["NumberOfPoints"] = np.array([count])
@@ -160,13 +165,15 @@ class FieldFile:
         self, name: str, first: int, data: Mapping[str, Array], hidden: NDArray[np.bool_],
         points: Array | None = None,
     ) -> None:  # fmt: skip
-        """Write a block at k consecutive steps from `first`.
+        """Write the fields of a block at k consecutive steps.
 
         Parameters
         ----------
-        data : mapping      field -> (k, nodes) or (k, nodes, components)
-        hidden : (k, t)     cells that are left out
-        points : (k, nodes, 2)   mm; None where they do not move
+        name : str                     of the block
+        first : int                    index of the first step
+        data : mapping                 field -> (k, nodes) or (k, nodes, components)
+        hidden : array (k, t)          cells that are left out
+        points : array (k, nodes, 2)   mm; None where they do not move
         """
         group = self._groups[name]
         if points is not None:
@@ -291,7 +298,9 @@ def _opened(path: Path) -> Iterator[h5py.Group]:
 
 
 def _require_own_data(file: h5py.File, length: int) -> None:
-    """ValueError for data outside of a file, or larger than its length, bytes, can hold."""
+    """Refuse, by ValueError, an HDF5 file with data in another file, or with more data than one of
+    `length` bytes can hold.
+    """
     import h5py
 
     def outside(name: str, link: object) -> str | None:
@@ -319,7 +328,9 @@ def _names(root: h5py.Group) -> list[str]:
 
 
 def _step(group: h5py.Group, number: int) -> FieldStep:
-    """Points, triangles, hidden triangles and data of a block at one step."""
+    """Points (2, nodes), mm, triangles (3, t), hidden triangles and fields of a block at the step
+    of index `number`.
+    """
     count, cells = int(group["NumberOfPoints"][0]), int(group["NumberOfCells"][0])
     start = int(group["Steps/PointOffsets"][number])
     rows = slice(number * count, (number + 1) * count)
@@ -347,7 +358,7 @@ def _soft_link(target: str) -> h5py.SoftLink:
 
 
 def _plain(values: ArrayLike | Sequence[str]) -> NDArray[Any]:
-    """Values as VTK reads them: words are ASCII of any length."""
+    """Values as an array that VTK reads; words become ASCII of any length."""
     import h5py
 
     array = np.asarray(values)

@@ -60,9 +60,17 @@ def write_fields(
     folder: Path, final: Trial, shown: Shown = Shown.DEFAULT,
     advance: Callable[[int, int], None] = lambda *_: None,
 ) -> None:  # fmt: skip
-    """Write the field files of a trial; none if the contour encloses no body.
+    """Write the field files of a trial: stress of both bodies over the turn, and arrays that turn
+    them; none if the contour encloses no body.
 
     The load case is that with the maximum contact pressure.
+
+    Parameters
+    ----------
+    folder : Path        for the files
+    final : Trial        with its mesh
+    shown : Shown        cam angles with stresses
+    advance : callable   told number of angles written and number of all
     """
     if final.mesh is None:
         return
@@ -80,10 +88,17 @@ def write_fields(
 
 
 def write_end_field(path: Path, final: Trial, workers: Crew = ALONE) -> None:
-    """Write the field of both bodies at the worst certified angle, if certified by finite elements.
+    """Write the stress field of both bodies, with their ends, at the worst certified angle; no file
+    where the length is not certified by finite elements.
 
-    Half x >= 0 of each on the coarser of the last two meshes: x along the rolling direction, y
+    Half x >= 0 of each body on the coarser of the last two meshes: x along the rolling direction, y
     along the axis, z = 0 in the contact, below it the cam, above it the follower.
+
+    Parameters
+    ----------
+    path : Path      of the VTU file
+    final : Trial    with its certificate
+    workers : Crew   processes that compute the fields
 
     Raises
     ------
@@ -138,8 +153,14 @@ def hardest(cycles: Sequence[Cycle]) -> int:
 
 
 def shown_positions(cycle: Cycle, shown: Shown, certified: Sequence[int]) -> IntArray:
-    """Sorted numbers of the positions of a cycle to show: by default every `STEP`, those
-    `certified`, and the one of the greatest contact pressure.
+    """Ascending indices of the positions of a cycle whose stress is shown: by default one every
+    `STEP` of cam angle, the certified ones, and that of the greatest contact pressure.
+
+    Parameters
+    ----------
+    cycle : Cycle          at its cam angles
+    shown : Shown          the worst alone, the default, or all
+    certified : sequence   indices of the certified positions
     """
     count = cycle.theta.size
     worst = first_greatest(cycle.contact.p0_hertz)
@@ -154,11 +175,18 @@ def write_stress(
     path: Path, fields: TurnFields, positions: IntArray,
     advance: Callable[[int, int], None] = lambda *_: None,
 ) -> None:  # fmt: skip
-    """Stress and displacement of both bodies at some positions of a cycle, as one VTKHDF file.
+    """Write stress and displacement of both bodies at some positions of a cycle as one VTKHDF file.
 
     A block per body on its coarse mesh, and one below the contact of each, of names ending in
     `ZONE`; elements of the coarse mesh which that one replaces are hidden. In the cam frame, in
     which the follower rotates. Times are cam angles in degrees.
+
+    Parameters
+    ----------
+    path : Path              of the file
+    fields : TurnFields      of the cycle
+    positions : array (k,)   indices of the positions
+    advance : callable       told number of positions written and number of all
     """
     cam, _ = fields.names
     coarse = fields.coarse_points
@@ -179,8 +207,13 @@ def write_stress(
 
 
 def _notes(fields: TurnFields, positions: IntArray, times: Array) -> Notes:
-    """Field data of each step by name: load case, cam angle, and contact figures at these positions
-    of the cycle.
+    """Field data of each of k steps by name: load case, cam angle, and contact figures.
+
+    Parameters
+    ----------
+    fields : TurnFields      of the cycle
+    positions : array (k,)   indices of the positions
+    times : array (k,)       cam angles, deg
     """
     cycle = fields.cycle
     contact, theta = cycle.contact, cycle.theta[positions]
@@ -205,7 +238,17 @@ def _notes(fields: TurnFields, positions: IntArray, times: Array) -> Notes:
 def _write(
     file: FieldFile, name: str, first: int, field: BodyField, poisson: float, block: MeshBlock
 ) -> None:
-    """Write the fields of one body at consecutive positions, from number `first`, in mm and MPa."""
+    """Write displacement, mm, and stresses, MPa, of one block of a field file at consecutive steps.
+
+    Parameters
+    ----------
+    file : FieldFile    to be written
+    name : str          of the block
+    first : int         index of the first step
+    field : BodyField   of the body, SI
+    poisson : float     its Poisson's ratio, for the stress along the axis
+    block : MeshBlock   without points: these move and are written as well
+    """
     points = None
     if block.points is None:
         points = field.points.transpose(2, 1, 0) / _MILLIMETRE
@@ -239,7 +282,14 @@ TURN_ARRAYS = (
 
 
 def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[str, ArrayLike]:
-    """Arrays of ``fields/turn.npz``, with which a viewer turns cam and follower.
+    """Arrays of ``fields/turn.npz``, with which a viewer turns cam and follower through a turn:
+    outline of the cam, nodes of the follower, its pose at each angle shown.
+
+    Parameters
+    ----------
+    pair : ContactPair     cam and follower
+    bodies : CycleBodies   their meshes
+    cycle : Cycle          at its cam angles
 
     Returns
     -------
@@ -260,7 +310,9 @@ def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[s
 
 
 def cam_outlines(pair: ContactPair, stations: int) -> Array:
-    """Contour and bore (2, stations, 2), m, at common polar angles."""
+    """Outlines of a cam, contour and then bore with its keyway, at the same polar angles: points
+    (2, stations, 2), m, the last axis being the outline.
+    """
     outer = pair.contour.points(uniform_turn(stations))
     radius, angle = np.hypot(*outer), np.arctan2(outer[1], outer[0])
     inner = outer * (bore_reach(pair.bore_radius, pair.keyway, angle) / radius)

@@ -135,12 +135,13 @@ def classes_of(name: str, final_trial: int) -> tuple[FileClass, ...]:
 def file_differences(
     stored: Path, again: Path, names: Iterable[tuple[str, Kind]]
 ) -> Iterator[tuple[str, str]]:
-    """Name of each file that differs, and how, in words; only those of `names` are compared.
+    """Files of a run that differ from those made again: name of each, and how it differs in words.
 
     Parameters
     ----------
+    stored : Path      folder of the run
     again : Path       folder of the files computed or drawn again, all of which exist
-    names : iterable   relative names and how each is compared
+    names : iterable   relative names, and how each is compared; other files are not
     """
     for name, kind in names:
         file, other = stored / name, again / name
@@ -153,7 +154,13 @@ def file_differences(
 
 
 def _compared(file: Path, other: Path, kind: Kind) -> str:
-    """The first difference of two files in words; "" without one."""
+    """First difference of two files in words, "" without one.
+
+    Parameters
+    ----------
+    file, other : Path   stored, and made again
+    kind : str           how they are compared; of a kind without a comparison any difference counts
+    """
     compare = _BY_KIND.get(kind)
     if compare is None:
         return "is not the file that the case gives"
@@ -216,10 +223,16 @@ def _array(name: str, one: np.ndarray, two: np.ndarray) -> str:
 
 
 def _worst(one: np.ndarray, two: np.ndarray, name: str, digits: float = 0.0) -> int | None:
-    """Flat index of the value that is furthest beyond the difference allowed for numbers of this
-    name; None where none is.
+    """Flat index of the value that is furthest beyond the allowed difference from that recomputed;
+    None where none is.
 
-    digits : float   relative difference that the digits of the values make
+    A value that is finite in one array alone comes first. Angles are compared modulo a turn.
+
+    Parameters
+    ----------
+    one, two : arrays   stored and recomputed, flat
+    name : str          which sets the allowed difference
+    digits : float      relative difference that the digits of the values make
     """
     if not two.size:
         return None
@@ -298,13 +311,16 @@ def _members(file: Path) -> dict[str, np.ndarray]:
 
 
 def text_difference(one: str, two: str, absolute: float = _REPRODUCED) -> str:
-    """First difference of two texts: a word, or a number beyond round-off.
+    """First difference of two texts, in words: a word, or a number beyond round-off; "" without
+    one.
 
     A count, written without a decimal point, must be the same.
 
     Parameters
     ----------
-    absolute : float   difference of two numbers that does not count; besides `SAME` of the number
+    one, two : str     stored and recomputed
+    absolute : float   difference of two numbers that does not count, besides `_REPRODUCED` of the
+                       number
     """
     parts, others = _NUMBER.split(one), _NUMBER.split(two)
     for place, (a, b) in enumerate(zip_longest(parts, others, fillvalue="")):
@@ -318,8 +334,8 @@ def text_difference(one: str, two: str, absolute: float = _REPRODUCED) -> str:
 
 
 def _equal(one: str, two: str, absolute: float) -> bool:
-    """Whether two numbers as text are equal but for round-off; whole numbers only if they are
-    written alike.
+    """Whether two numbers, as text, differ by no more than `absolute` and round-off; False where
+    both are whole numbers.
     """
     if not (_REAL.search(one) or _REAL.search(two)):
         return False
@@ -359,12 +375,12 @@ def _solids(file: Path, other: Path) -> str:
 
 
 def _entities(text: str) -> tuple[str, dict[str, str]]:
-    """Text of a STEP file besides its entities, and the entities by number.
+    """Text of a STEP file without its entities, and the text of each entity by its number.
 
     Raises
     ------
     ResultError
-        If a number stands twice, or one that is referred to nowhere.
+        If a number stands twice, or an entity refers to one that is missing.
     """
     listed = _ENTITY.findall(text)
     entities = dict(listed)
@@ -457,11 +473,13 @@ _BY_KIND: Mapping[Kind, Callable[[Path, Path], str]] = {
 def record_differences(
     one: object, two: object, share: float = SAME, place: str = "", left_out: Sequence[str] = ()
 ) -> Iterator[str]:
-    """Differences of two JSON values in words; `place`: dotted key of the values.
+    """Differences of two JSON values in words, entry by entry.
 
     Parameters
     ----------
+    one, two : object     stored and recomputed
     share : float         relative difference of two numbers that does not count
+    place : str           dotted key of the values
     left_out : sequence   keys that are not compared, anywhere
     """
     if isinstance(one, Mapping) and isinstance(two, Mapping):

@@ -176,8 +176,8 @@ def _names_in(out: Path) -> list[str]:
 
 
 def _hashes_of(out: Path) -> dict[str, str]:
-    """Hash by file name as the record of a run of any schema has it; {} without a
-    readable record.
+    """Hash by file name from the sign-off record of a run of any schema; empty without a readable
+    record.
     """
     try:
         files = read_json(out / signoff.NAME)["files"]
@@ -281,7 +281,13 @@ def staged(path: Path) -> Iterator[Path]:
 
 
 def _put_in_place(complete: Path, path: Path) -> None:
-    """Move complete files into a run, the record last."""
+    """Move complete files into a run folder, its sign-off record last, and delete their folder.
+
+    Parameters
+    ----------
+    complete : Path   folder of the files
+    path : Path       run folder
+    """
     files = dict(files_in(complete))
     for name in sorted(files, key=lambda name: name == signoff.NAME):
         (path / name).parent.mkdir(parents=True, exist_ok=True)

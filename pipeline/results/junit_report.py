@@ -91,14 +91,18 @@ def junit_suite(
 ) -> ET.Element:
     """JUnit suite of a run: properties, a test case for each check, the verdict last.
 
-    A check without data is skipped, with its reason. One that fails is a failure where it counts
-    at the level `fail_on`, else a passed test whose output states its status. The checks share
-    one solution: its time is that of the suite, and each test case has a time of zero.
+    A check without data is skipped, with its reason. One that fails is a failure where it counts at
+    the level `fail_on`, else a passed test whose output states its status. The checks share one
+    solution: its time is that of the suite, and each test case has a time of zero.
 
     Parameters
     ----------
+    records : iterable     of the checks
+    name : str             of the suite
+    fail_on : str          level of `camwright check --fail-on`
     decided : str          ``pass``, ``incomplete`` or ``fail``, as the exit code states it
     properties : mapping   such as the verdict in words, the scope, the exit code
+    clock : Clock          start and time of the solution
     """
     checks = in_order(of_records(records))
     counting = {each.id for each in failing(checks, fail_on)}
@@ -134,7 +138,7 @@ def _case(suite: ET.Element, name: str, test: str) -> ET.Element:
 
 
 def _counted(suite: ET.Element) -> ET.Element:
-    """The suite with the numbers of its tests, failures, errors and skipped tests set."""
+    """The suite, given its numbers of tests, failures, errors and skipped tests as attributes."""
     cases = suite.findall("testcase")
     suite.set("tests", str(len(cases)))
     for count, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):

@@ -140,6 +140,9 @@ class RunFolder:
         resume: bool = False,
         replace: bool = False,
     ) -> None:
+        """Lock the final path and begin or continue the temporary folder. For the parameters see
+        the class.
+        """
         self.out = absolute(out)
         self.path = partial_of(self.out)
         self.case = case
@@ -159,6 +162,9 @@ class RunFolder:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        """Release the lock; after an error the files of the unfinished run are deleted, or kept for
+        ``resume`` where contact is solved and the error is not one of the case.
+        """
         if isinstance(error, Exception):
             again = isinstance(error, CamError) and not isinstance(error, ResultError)
             if again or not (is_complete(self.path) or self._holds_pieces()):
@@ -351,7 +357,19 @@ def _differing(state: Json, now: Mapping[str, Json]) -> str:
 
 
 def _refuse_other_runs(home: OwnedFolder, case: Case, *, replace: bool) -> None:
-    """Refuse to overwrite anything but a run of the same input, or name if it is replaced."""
+    """Refuse to overwrite anything but a run of the same input.
+
+    Parameters
+    ----------
+    home : OwnedFolder   final path
+    case : Case          whose run is written
+    replace : bool       accept a run of a case of the same name as well, and files added or changed
+
+    Raises
+    ------
+    ResultError
+        If the folder is signed, or holds another run or files of the user.
+    """
     out = home.path
     if os.path.lexists(out / signoff.SIGNATURES):
         raise ResultError(f"{out}: holds a signed run; choose another folder or remove it")
@@ -372,8 +390,15 @@ def _refuse_other_runs(home: OwnedFolder, case: Case, *, replace: bool) -> None:
 def _refuse_to_delete(out: Path, *, replace: bool) -> None:
     """Refuse to delete a run with files that no command wrote.
 
-    Those that were changed, or that `inspect` or `contact deck` wrote, are deleted where it is
-    replaced.
+    Parameters
+    ----------
+    out : Path       folder of the run
+    replace : bool   accept files that were changed since, or that `inspect` or `contact deck` wrote
+
+    Raises
+    ------
+    ResultError
+        Naming the file.
     """
     if not (out / signoff.NAME).is_file():
         reason = f"holds no {signoff.NAME}, which lists the files of a run"

@@ -168,7 +168,8 @@ def read_run(path: str | Path) -> Run:
 
 
 def read_verdict(path: Path) -> dict[str, Any]:
-    """Summary of a finished run and checks of its final trial, without tables.
+    """Summary of a finished run with the checks of its final trial as a document, without reading
+    its tables.
 
     Raises
     ------
@@ -284,7 +285,9 @@ def load_end_words(ends: Iterable[LoadEndRecord]) -> str:
 
 
 def _case_text(path: Path, summary: Summary) -> str:
-    """Text of ``case.toml``; ResultError if the summary states another scope."""
+    """Text of ``case.toml`` in a run folder; ResultError if its scope is not that of the
+    summary.
+    """
     text = read_text(path / "case.toml")
     try:
         scope = parse_toml(text, str(path / "case.toml")).get("scope", {})
@@ -299,8 +302,15 @@ def _case_text(path: Path, summary: Summary) -> str:
 def _require_judgement(
     path: Path, summary: Summary, checks: Iterable[AnyCheck], depth: Depth
 ) -> None:
-    """ResultError if depth, verdict or screen of the summary are not those of the checks of the
-    final trial.
+    """Refuse, by ResultError, a run whose summary states another depth, verdict or screen than
+    follows from the checks of its final trial.
+
+    Parameters
+    ----------
+    path : Path         run folder
+    summary : mapping   contents of ``run.json``
+    checks : iterable   records of the final trial
+    depth : str         of the final trial
     """
     judged = judgement(checks, depth)
     for said, known, whose in (
@@ -365,8 +375,14 @@ def read_records(file: Path) -> tuple[CheckRecord, ...]:
 
 
 def _require(file: Path, record: Mapping[str, object], kind: type, what: str = "") -> None:
-    """ResultError if a record lacks a key of the form `kind`, or has a value of another type; what
-    : the part of the file in the message.
+    """Refuse, by ResultError, a record that lacks a key of a form, or has a value of another type.
+
+    Parameters
+    ----------
+    file : Path        which holds the record
+    record : mapping   read from it
+    kind : type        form, a typed dictionary
+    what : str         words for the part of the file, for the message
     """
     known = _known(kind)
     missing = [key for key in known if not isinstance(record, dict) or key not in record]

@@ -136,7 +136,9 @@ def limit_columns(theta: Array, uses: Mapping[str, Array]) -> dict[Column, Array
 
 
 def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
-    """Columns of ``3_contour.csv``: pitch curve, contour and outward normal over the cam angle."""
+    """Columns of ``3_contour.csv`` over the cam angle: pitch curve, contour, its outward normal,
+    pressure angle, radii of curvature.
+    """
     theta = drawn_angles(case)
     pitch, normal = contour.pitch.points(theta), contour.normal(theta)
     surface = contour.points(theta)
@@ -155,7 +157,9 @@ def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
 
 
 def cycle_columns(cycles: tuple[Cycle, ...]) -> dict[Column, Cells]:
-    """Columns of ``5_cycle.csv``, the load cases in sequence."""
+    """Columns of ``5_cycle.csv``: those of all load cases, one below the other, NaN where a load
+    case lacks a column.
+    """
     tables = [cycle.columns() for cycle in cycles]
     columns = dict.fromkeys(column for table in tables for column in table)
     # One load case has columns that another lacks, such as the torque of an engine at rest.
@@ -173,7 +177,9 @@ def sweep_columns(sweeps: tuple[SpeedSweep, ...]) -> dict[Column, Array]:
 
 
 def column_table(trial: Trial) -> dict[str, tuple[Column, ...]]:
-    """Columns with unit and meaning by file of a trial's folder."""
+    """Columns, with unit and meaning, of each table in the folder of a trial, by name of
+    the file.
+    """
     tables: dict[str, Values] = {
         "2_lift.csv": lift_columns(trial.case, trial.lift),
         "2_spline.csv": spline_columns(trial.lift),
@@ -290,11 +296,17 @@ def figures(trial: Trial) -> CamFigures:
 
 
 def _body_stresses(solution: Solution, loaded: Sequence[Cycle]) -> BodyStresses:
-    """Maximum von Mises stress below the contact with its depth, in cam and follower; ring.
+    """Maximum von Mises stress, MPa, below the contact with its depth, mm, in cam and follower, and
+    greatest stress of the ring of the roller; None where not known.
 
     The contact presses on both bodies alike: in the follower stress and depth are those of the cam
-    times the ratio of the half-planes of both Poisson ratios. The ring of the roller's bearing
-    bends: greatest amplitude plus mean at its groove, None where it is not described.
+    times the ratio of the half-planes of both Poisson ratios. The ring of the bearing of the roller
+    bends: amplitude plus mean at its groove.
+
+    Parameters
+    ----------
+    solution : Solution   of the cam
+    loaded : sequence     cycles of the load cases that count
     """
     bodies = solution.machine.bodies.values()
     (own, at), (other, there) = (von_mises_peak(card.nu) for card in bodies)
@@ -325,7 +337,9 @@ def _body_stresses(solution: Solution, loaded: Sequence[Cycle]) -> BodyStresses:
 
 
 def _residual_max(cycles: Sequence[Cycle]) -> float | None:
-    """Maximum equilibrium residual of contact and guides; None if the contact is unknown."""
+    """Maximum relative residual of equilibrium, over all load cases, of contact, guides and
+    friction; None where one is not known.
+    """
 
     def worst(cycle: Cycle) -> float:
         parts = (
@@ -449,10 +463,12 @@ def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, list[float]] | None:
 def crank_speed_record(
     trial: Trial, required: Array | None
 ) -> tuple[CrankSpeedRecord, Values | None]:
-    """Record of crank speed with and without cam, consistency and plausibility.
+    """Record of the crank speed with and without the cam, and of inputs that are inconsistent or
+    implausible.
 
     Parameters
     ----------
+    trial : Trial           solved cam
     required : array (n,)   crank torque about its mean, N m, for which the lift is drawn in the
                             design load case; None if no smoother of the torque drew it
 

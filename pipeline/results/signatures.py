@@ -81,7 +81,9 @@ def encoded(kind: str, payload: bytes) -> bytes:
 
 
 def checked_name(name: str) -> str:
-    """Name of a signer; InputError if empty, too long or with control characters."""
+    """Name of a signer without blanks at its ends; InputError if it is empty, too long or has
+    characters that cannot be printed.
+    """
     name = name.strip()
     if not name or len(name) > _LONGEST_NAME or not name.isprintable():
         limit = f"1 to {_LONGEST_NAME} printable characters"
@@ -90,13 +92,16 @@ def checked_name(name: str) -> str:
 
 
 def sign(folder: Path, private: Ed25519PrivateKey, role: str, name: str, date: str) -> Signature:
-    """Add the signature of a role to ``signoff.intoto.jsonl``, the only file written.
+    """Sign the record of a run in a role: add the signature to ``signoff.intoto.jsonl``, the only
+    file written.
 
     Parameters
     ----------
-    folder : Path      of a run as recorded, see `signoff.changes`
-    role : str         one of `ROLES`
-    date : str         UTC, such as ``2026-01-31T12:00:00Z``
+    folder : Path                 of a run as recorded, see `signoff.changes`
+    private : Ed25519PrivateKey   of the signer
+    role : str                    one of `ROLES`
+    name : str                    of the signer
+    date : str                    UTC, such as ``2026-01-31T12:00:00Z``
 
     Raises
     ------
@@ -122,8 +127,20 @@ def _role(text: str, roles: Iterable[Role]) -> Role | None:
 def _signed(
     folder: Path, place: Path, private: Ed25519PrivateKey, role: Role, name: str, date: str
 ) -> Signature:
-    """Add the signature of a role: file of all signatures written into the folder `place`; refused
-    where one is of another record or the role is signed.
+    """Write the file of all signatures of a run, with a new one added, into a folder; returns the
+    new one.
+
+    Parameters
+    ----------
+    folder : Path                 of the run
+    place : Path                  for the file
+    private : Ed25519PrivateKey   of the signer
+    role, name, date : str        see `sign`
+
+    Raises
+    ------
+    ResultError
+        If the role is signed already, or a signature is of another record.
     """
     file, digest = folder / signoff.SIGNATURES, sha256_of(folder / signoff.NAME)
     before = read_text(file) if file.is_file() else ""
@@ -158,13 +175,14 @@ def _signed(
 def verified(
     folder: Path, trusted: Mapping[str, TrustedKey]
 ) -> tuple[tuple[Signature, ...], list[str]]:
-    """Valid signatures of a run record, and faults of the invalid ones, one line each.
+    """Valid signatures of the record of a run, and faults of the invalid ones, one line each.
 
     The files of the run are not compared; `signoff.changes` does that.
 
     Parameters
     ----------
-    trusted : mapping   of `read_trusted`
+    folder : Path       of the run
+    trusted : mapping   keys by fingerprint, of `read_trusted`
     """
     file = folder / signoff.SIGNATURES
     if not file.is_file():
@@ -191,11 +209,19 @@ def verified(
 
 
 def _verified(line: str, digest: str, trusted: Mapping[str, TrustedKey]) -> Signature:
-    """Signature of one envelope, a line of JSON, on the record of hash `digest`, verified with the
-    trusted keys by fingerprint.
+    """Signature of one envelope, verified with the trusted keys.
 
-    _RefusedError if the key is not trusted or may not sign the role, or signature or hash are
-    wrong. The payload of an untrusted key is only quoted in that message.
+    Parameters
+    ----------
+    line : str          of JSON, the envelope
+    digest : str        SHA-256 of the record that is signed
+    trusted : mapping   keys by fingerprint
+
+    Raises
+    ------
+    _RefusedError
+        If the key is not trusted or may not sign the role, or signature or hash are wrong. The
+        payload of an untrusted key is only quoted in the message.
     """
     from cryptography.exceptions import InvalidSignature
 
@@ -216,8 +242,8 @@ def _verified(line: str, digest: str, trusted: Mapping[str, TrustedKey]) -> Sign
 
 
 def _claim(payload: bytes, digest: str) -> str:
-    """What the payload of an unverified envelope states, for a message; "" where it is no statement
-    on the record of this hash.
+    """What the payload of an unverified envelope states, in words for a message; "" where it is no
+    statement on the record of hash `digest`.
     """
     try:
         predicate = _statement(payload, digest)
@@ -227,7 +253,14 @@ def _claim(payload: bytes, digest: str) -> str:
 
 
 def _opened(line: str) -> tuple[str, bytes, bytes]:
-    """Fingerprint of the key, payload, and signature of an envelope; nothing is verified yet."""
+    """Fingerprint of the key, payload and signature of an envelope, a line of JSON; nothing is
+    verified yet.
+
+    Raises
+    ------
+    _RefusedError
+        If it is no envelope with one signature.
+    """
     envelope = _parsed(line, "envelope", ("payloadType", "payload", "signatures"))
     if envelope["payloadType"] != PAYLOAD:
         raise _RefusedError(f"payloadType is not {PAYLOAD}")
@@ -242,8 +275,17 @@ def _opened(line: str) -> tuple[str, bytes, bytes]:
 
 
 def _statement(payload: bytes, digest: str) -> dict[str, str]:
-    """Role, name, date and hash that a payload states; refused unless it is a statement on the
-    record of hash `digest`.
+    """Role, name, date and hash that the payload of an envelope states.
+
+    Parameters
+    ----------
+    payload : bytes   JSON
+    digest : str      SHA-256 of the record of the run
+
+    Raises
+    ------
+    _RefusedError
+        If it is no statement on this record.
     """
     keys = ("_type", "subject", "predicateType", "predicate")
     statement = _parsed(payload, "statement", keys)
@@ -275,7 +317,9 @@ def _is_date(text: str) -> bool:
 
 
 def _parsed(text: str | bytes, what: str, keys: tuple[str, ...]) -> dict[str, Any]:
-    """JSON object of exactly these keys, each once."""
+    """JSON object with exactly the keys `keys`, each once; _RefusedError, naming it `what`, for any
+    other text.
+    """
     try:
         value = json.loads(text, object_pairs_hook=each_key_once)
     except (ValueError, RecursionError):
@@ -290,7 +334,7 @@ def _closed(value: Any, what: str, keys: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _decoded(text: Any, what: str) -> bytes:
-    """Bytes of a base64 text; refused in the words `what` if it is not base64."""
+    """Bytes of a base64 text; _RefusedError, naming it `what`, if it is none."""
     try:
         if not isinstance(text, str):
             raise ValueError

@@ -55,7 +55,8 @@ def fingerprint(public: Ed25519PublicKey) -> str:
 
 
 def write_key(path: Path, owner: str = "") -> Path:
-    """Write a new private key (PEM) and its public key ``PATH.pub`` (OpenSSH).
+    """Make a new Ed25519 key: write the private key (PEM) to `path` and its public key, with the
+    owner as comment, to ``PATH.pub`` (OpenSSH); returns the path of the latter.
 
     Raises
     ------
@@ -88,6 +89,11 @@ def write_key(path: Path, owner: str = "") -> Path:
 
 def read_private_key(path: Path, passphrase: bytes | None = None) -> Ed25519PrivateKey:
     """Private Ed25519 key of a PEM or OpenSSH file.
+
+    Parameters
+    ----------
+    path : Path          of the file
+    passphrase : bytes   of an encrypted key; None: not known
 
     Raises
     ------
@@ -135,7 +141,8 @@ def own_keys() -> Path | None:
 
 
 def trust(public: Path) -> Path | None:
-    """Add a public key to `own_keys`; the file, or None without a home folder.
+    """Add the public key in a file to the trusted keys of the user, `own_keys`; returns that file,
+    or None without a home folder.
 
     Raises
     ------
@@ -190,8 +197,18 @@ def _lines_alone(block: re.Match[str]) -> str:
 
 
 def _trusted_line(line: str, path: Path, number: int) -> TrustedKey:
-    """Trusted key of a line of a file: roles, if not all, key in OpenSSH form, owner; InputError
-    for any other line.
+    """Trusted key of a line of a file: roles, if not all, key in OpenSSH form, owner.
+
+    Parameters
+    ----------
+    line : str     without blanks at its ends
+    path : Path    of the file, for the message
+    number : int   of the line, for the message
+
+    Raises
+    ------
+    InputError
+        If it is no such line.
     """
     before, algorithm, after = line.partition(_OPENSSH)
     named = [part for part in before.strip().split(",") if part]
@@ -205,8 +222,8 @@ def _trusted_line(line: str, path: Path, number: int) -> TrustedKey:
 
 
 def _public(text: str, path: Path, place: str) -> Ed25519PublicKey:
-    """Public Ed25519 key of a text in OpenSSH or PEM form; InputError with file and place for any
-    other.
+    """Public Ed25519 key of a text in OpenSSH or PEM form; InputError, with file `path` and `place`
+    in it, for any other text.
     """
     from cryptography.exceptions import UnsupportedAlgorithm
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey

@@ -56,7 +56,9 @@ def record(path: Path) -> SignoffRecord:
 
 
 def _record(path: Path, files: dict[str, str]) -> SignoffRecord:
-    """Sign-off record of the run in a folder, with these hashes by file name."""
+    """Sign-off record of the run in a folder: figures, verdict, scope, waivers, evidence, and the
+    hashes `files` by file name.
+    """
     summary = run_reader.read_summary(path)
     trial = path / f"trial_{summary['final_trial']}"
     made, checks = run_reader.read_trial_record(trial), run_reader.read_checks(trial)
@@ -163,7 +165,7 @@ class Difference(NamedTuple):
 
 
 def changes(path: Path) -> list[Difference]:
-    """Differences of a run from its record, by file name.
+    """Differences of the files of a run from its sign-off record, by file name.
 
     The signatures are not among the files, see `signatures.verified`. Where the folder holds more
     than files and folders, that alone is named and no file is read.
@@ -234,7 +236,13 @@ def read_run(path: str | Path) -> run_reader.Run:
 
 
 def _recorded_hashes(path: Path, recorded: Json) -> dict[str, str]:
-    """Hash by file name of a record; ResultError if it is no record of this schema."""
+    """Hash by file name in a sign-off record; ResultError if it is no record of this schema.
+
+    Parameters
+    ----------
+    path : Path       run folder
+    recorded : JSON   contents of the record
+    """
     run_reader.require_schema(path / NAME, recorded)
     known = recorded.get("files") if isinstance(recorded, dict) else None
     if not isinstance(known, dict) or not all(_is_sha256(each) for each in known.values()):

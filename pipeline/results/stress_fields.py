@@ -72,7 +72,13 @@ class BodyField:
         )
 
     def placed(self, places: Poses) -> BodyField:
-        """Field transformed from the body's frame to the cam frame."""
+        """Field of a body transformed to the cam frame: points, displacement and stress turned,
+        points moved.
+
+        Parameters
+        ----------
+        places : Poses   of the body in the cam frame at the k cam angles
+        """
         turn = places.turn
         xx, yy, xy = self.stress
         tensor = np.einsum(
@@ -100,8 +106,13 @@ class Poses:
 
 
 def follower_places(pair: ContactPair, theta: Array) -> Poses:
-    """Poses of the follower's body in the cam frame at cam angles (k,), rad, by which its contact
+    """Poses of the body of the follower in the cam frame at k cam angles, by which its contact
     point and normal meet those of the cam.
+
+    Parameters
+    ----------
+    pair : ContactPair   cam and follower
+    theta : array (k,)   cam angles, rad
     """
     contacts, normals = pair.contacts(theta)
     normals = -normals
@@ -170,10 +181,15 @@ class TurnFields:
         return ZoneSite(self.bodies.cam), ZoneSite(self.bodies.follower)
 
     def at(self, part: IntArray) -> dict[str, BodyField]:
-        """Fields by block at some positions of the cycle, (k,), in the cam frame.
+        """Fields of both bodies by name of the block, on coarse and fine meshes, at k positions of
+        the cycle, in the cam frame.
 
         The displacement of the follower includes its rigid motion by the approach, so that the
-        displaced surfaces touch. A body of the cam that carries no load has no field.
+        displaced surfaces touch.
+
+        Parameters
+        ----------
+        part : array (k,)   indices of the positions
         """
         surfaces = self._surfaces
         if len(surfaces) == 1:
@@ -230,8 +246,14 @@ class TurnFields:
         return fields
 
     def _with_patch(self, cam: Loaded, part: IntArray) -> BodyField:
-        """Field of the cam below its contact, near the contact with the stress of the
-        finite-element patch, from which the maxima of the cycle are.
+        """Field of the cam below its contact, whose stress near the contact is that of the
+        finite-element patch, from which the maxima of the cycle are; where no pressure is solved,
+        that of closed forms.
+
+        Parameters
+        ----------
+        cam : Loaded        cam under its loads at k positions
+        part : array (k,)   indices of the positions in the cycle
         """
         field, contact = cam.fine, self.cycle.contact
         pressure = contact.pressure[part]
@@ -254,9 +276,14 @@ class TurnFields:
 
 
 def fallen_back(contour: Contour, theta: Array, along: Array) -> Array:
-    """Gap (m, k), m, of the contour below its tangent at distances `along` (m, k), m.
+    """Depth (m, k), m, of the contour below its tangent at k contacts; by the circle of curvature
+    where the contour does not reach as far.
 
-    By the circle of curvature where the contour does not reach as far.
+    Parameters
+    ----------
+    contour : Contour      of the cam
+    theta : array (k,)     cam angles of the contacts, rad
+    along : array (m, k)   distances along the tangent, m
     """
     try:
         return -contour.surface_offset(theta, -along.T).T

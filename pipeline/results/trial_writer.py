@@ -21,7 +21,7 @@ from camwright.pipeline.results.trial import Trial
 
 
 def write_trial_files(folder: RunFolder, trial: Trial) -> None:
-    """Write lift, contour, mesh, cycle, checks and record of a trial.
+    """Write the files of a trial into a run folder: lift, contour, mesh, cycle, checks and record.
 
     The pressure along the line of contact is that of half-spaces; the certificate states the
     correction of it.

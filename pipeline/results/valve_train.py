@@ -82,7 +82,10 @@ def _shape(cam: ValveCam) -> list[ValveTrainRow]:
 
 
 def _motion(cam: ValveCam, turn: Turn) -> list[ValveTrainRow]:
-    """Rows on shaft speed, acceleration and efficiency of the rise in the load case of a turn."""
+    """Rows of the record on the uneven shaft speed of a valve cam: efficiency of the rise, shaft
+    speed, its acceleration, acceleration of the follower, deflection of the train; in the load case
+    of a turn.
+    """
     mean, name = turn.machine.cam_speed, turn.machine.load_case
     phi, motion = turn.theta, cam.motion
     speed, turning = cam.speed(phi, mean), cam.angular_acceleration(phi, mean)
@@ -105,8 +108,15 @@ def _motion(cam: ValveCam, turn: Turn) -> list[ValveTrainRow]:
 
 
 def _elastic(machine: Machine, cam: ValveCam, phi: Array, speed: Array) -> list[ValveTrainRow]:
-    """Rows on the deflection of the valve train at full lift; speed (n,), rad/s, of the cam at its
-    angles phi (n,), rad.
+    """Rows of the record on the deflection of the valve train at full lift, um, by three forms of
+    the equations.
+
+    Parameters
+    ----------
+    machine : Machine    stiffness, mass and spring
+    cam : ValveCam       with its motion
+    phi : array (n,)     cam angles, rad
+    speed : array (n,)   of the cam at them, rad/s
     """
     follower, spring, name = elastic_follower(machine), machine.spring, machine.load_case
     train = ElasticValve(

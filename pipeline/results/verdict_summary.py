@@ -51,12 +51,17 @@ class Places(NamedTuple):
 
 
 def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
-    """Summary of a run's verdict in at most `LINES` lines of `WIDTH` columns.
+    """Summary of the verdict of a run in at most `LINES` lines of `WIDTH` columns.
 
     Verdict or screen; where the follower leaves the cam or locks; the worst `WORST` failures with
     demand, limit and remedy; number of missing keys; headline; record of a measured speed;
-    governing check, unless it is the first failure; scope; page, trials and time.
-    Only a path makes a line longer.
+    governing check, unless it is the first failure; scope; page, trials and time. Only a path makes
+    a line longer.
+
+    Parameters
+    ----------
+    document : mapping   as of `camwright check --json`
+    places : Places      names of case, run and page, and time taken, for the text
     """
     checks: Sequence[CheckRecord] = records_of(within_depth(of_records(document["checks"])))
     failed = failures(checks)
@@ -103,7 +108,9 @@ def trial_lines(run: Run) -> list[str]:
 
 
 def verdict_words(document: Mapping[str, Any]) -> str:
-    """Verdict with its reasons; screen below the certified depth."""
+    """Verdict with its reasons in words; below the certified depth the screen. `document`: as of
+    `camwright check --json`.
+    """
     line = document["verdict_line"]
     if document["verdict"] is None:
         return f"screen: {line}; no verdict below the certified depth"
@@ -136,7 +143,13 @@ def _failed(checks: Iterable[CheckRecord], *, must_have: bool) -> list[CheckReco
 
 
 def failure_words(check: CheckRecord, room: int | None = None) -> str:
-    """Failed check in words: title, demand, limit, utilisation, place; room: columns or None."""
+    """Failed check in words: title, demand, limit, utilisation, load case and cam angle.
+
+    Parameters
+    ----------
+    check : mapping   its record
+    room : int        columns to which the title is shortened; None: not shortened
+    """
     judged, unit = RecordedCheck(check), unit_text(check["unit"])
     demand = number(judged.worst)
     sense = ">=" if check["sense"] == "at_least" else "<="
@@ -152,7 +165,10 @@ def failure_words(check: CheckRecord, room: int | None = None) -> str:
 def missing_keys(checks: Iterable[CheckRecord], *, must_have: bool = True) -> dict[str, list[str]]:
     """Missing keys of a case, each with the ids of the checks that need it.
 
-    Of the required checks, else of the optional ones.
+    Parameters
+    ----------
+    checks : iterable   records
+    must_have : bool    of the required checks; False: of the optional ones
     """
     keys: dict[str, list[str]] = {}
     for check in checks:
@@ -163,7 +179,14 @@ def missing_keys(checks: Iterable[CheckRecord], *, must_have: bool = True) -> di
 
 
 def missing_count(checks: Iterable[CheckRecord], case: str) -> list[str]:
-    """Line on the number of missing keys, and the command that lists them."""
+    """List with a line on the number of keys that the required checks lack, and the command that
+    lists them; empty where none is missing.
+
+    Parameters
+    ----------
+    checks : iterable   records
+    case : str          name of the case file
+    """
     count = len(missing_keys(checks))
     if not count:
         return []
@@ -195,8 +218,13 @@ def _failed_lines(word: str, failed: Iterable[CheckRecord]) -> list[str]:
 
 
 def missing_lines(checks: Sequence[CheckRecord], case: str) -> list[str]:
-    """Lines on missing keys with the required checks that need them, on checks that lack other
-    data, and on the number of keys.
+    """Lines on missing keys with the required checks that need them, on required checks that lack
+    other data, and on the number of keys.
+
+    Parameters
+    ----------
+    checks : sequence   records
+    case : str          name of the case file
     """
     keys = missing_keys(checks)
     by_ids: dict[str, list[str]] = {}
@@ -254,8 +282,12 @@ _OF_A_LOAD_CASE = (
 
 
 def _listed(row: Mapping[str, Any], titles: Iterable[tuple[str, tuple[str, ...], str]]) -> str:
-    """Figures of a row in words, to five digits, unknown ones left out; titles : title,
-    keys, unit.
+    """Figures in words, to five digits, unknown ones left out.
+
+    Parameters
+    ----------
+    row : mapping       figures by key; None: unknown
+    titles : iterable   title, keys of its figures (two: a range), unit
     """
     parts = []
     for title, keys, unit in titles:
@@ -266,7 +298,12 @@ def _listed(row: Mapping[str, Any], titles: Iterable[tuple[str, tuple[str, ...],
 
 def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
     """Lines on the next step: command for the remedies of failures, for the missing data, or for
-    the deeper solution.
+    the deeper solution; empty where there is none.
+
+    Parameters
+    ----------
+    document : mapping   as of `camwright check --json`
+    places : Places      name of the case file, for the command
     """
     checks = records_of(within_depth(of_records(document["checks"])))
     failed = failures(checks)
@@ -312,7 +349,13 @@ def headline_line(document: Mapping[str, Any]) -> list[str]:
 
 
 def body_stresses(figures: Mapping[str, Any]) -> list[str]:
-    """Greatest stress of each body with its place, such as ``606 MPa in the cam, ...``."""
+    """Greatest stress of cam, follower and roller ring in words, with place, such as ``606 MPa in
+    the cam, ...``; unknown ones left out.
+
+    Parameters
+    ----------
+    figures : mapping   headline of a run
+    """
     stress, depth = (figures.get(f"von_mises_{of}") for of in ("max_MPa", "depth_mm"))
     place = f", {depth:.2g} mm below the surface" if depth is not None else ""
     parts = (
@@ -324,7 +367,7 @@ def body_stresses(figures: Mapping[str, Any]) -> list[str]:
 
 
 def governing_line(checks: Iterable[CheckRecord]) -> list[str]:
-    """Line: title, utilisation and place of the governing check; none without one."""
+    """List with a line on the governing check: title, utilisation and place; empty without one."""
     first = governing(of_records(checks))
     if first is None:
         return []
@@ -334,8 +377,8 @@ def governing_line(checks: Iterable[CheckRecord]) -> list[str]:
 
 
 def measured_line(document: Mapping[str, Any]) -> list[str]:
-    """Line on the record of a measured crank speed: runs, cycles, wheel, sampling rate, error bar;
-    empty without one.
+    """List with a line on a measured crank speed: runs, cycles, wheel, sampling rate, error bar of
+    its torque; empty without one. `document`: as of `camwright check --json`.
     """
     record: Mapping[str, Any] = document.get("measurement") or {}
     if "torque_error_bar_max_Nm" not in record:
@@ -352,7 +395,13 @@ def measured_line(document: Mapping[str, Any]) -> list[str]:
 
 
 def place_line(document: Mapping[str, Any], places: Places) -> list[str]:
-    """Line on page, analysis sheet, number of trials and time; none for a case."""
+    """List with a line on page, analysis sheet, number of trials and time; empty for a case.
+
+    Parameters
+    ----------
+    document : mapping   as of `camwright check --json`
+    places : Places      path of the page, and time taken
+    """
     parts = [f"page: {places.page}, analysis sheet: #sheet in it"] if places.page else []
     if count := document.get("trials"):
         parts.append("1 trial" if count == 1 else f"{count} trials")

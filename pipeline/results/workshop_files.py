@@ -135,10 +135,10 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
 
 
 def swing_record(case: Case, contour: Contour) -> dict[str, Json] | None:
-    """Arm of an oscillating follower and its swing by cam angle; None of a stem.
+    """Record of the arm of an oscillating follower and its swing by cam angle; None of a stem.
 
-    Rows of the distance of its reference point from the cam axis, mm, and of the angle at the pivot
-    from the line to the cam axis to the arm, deg.
+    Rows of two numbers: distance of the reference point of the arm from the cam axis, mm, and angle
+    at the pivot between the line to the cam axis and the arm, deg.
     """
     arm, degrees = case.follower.arm, np.arange(0.0, 360.0, RADII_STEP)
     angle = case.follower.arm_angle(contour.lift(np.radians(degrees)), case.cam.prime_radius)
@@ -169,7 +169,9 @@ def track_record(case: Case, word: str) -> dict[str, Json]:
     """JSON record of the axial profile of a running surface: width of its flat, ends, crown with
     drops over y from the middle of the body; null where not stated.
 
-    word : "cam", else the follower.
+    Parameters
+    ----------
+    word : str   "cam", else the follower
     """
     part = case.cam if word == "cam" else case.facing
     end, crown = part.end, part.crown
@@ -186,10 +188,13 @@ def track_record(case: Case, word: str) -> dict[str, Json]:
 
 
 def crown_drops(case: Case, word: str) -> tuple[Array, Array]:
-    """Axial coordinates, m, from the middle of a body, and drops of its crown there, m, (k,) each;
-    word : "cam", roller or face.
+    """Axial coordinates (k,), m, from the middle of a body, and drops (k,) of its crown there, m.
 
     Both sides of the flat, as far as the drop is stated and bounded.
+
+    Parameters
+    ----------
+    word : str   body: "cam", "roller" or "face"
     """
     machine = machines(case)[0]
     crown = machine.crowns[word]
@@ -265,10 +270,18 @@ def write_workshop(
     contour: Contour,
     note: Callable[[str], None] = lambda _: None,
 ) -> None:
-    """Write dimensions, contour, drawing, solid, path of the cutter and inspection sheets.
+    """Write the files for the workshop: dimensions, contour, drawing, solid, path of the cutter,
+    inspection sheet and crowns.
 
     A file that the contour does not allow, such as the path of a tool larger than the minimum
-    concave radius, is left out with a `note`; all others are written.
+    concave radius, is left out; all others are written.
+
+    Parameters
+    ----------
+    folder : Path       for the files
+    case : Case         dimensions and tolerances
+    contour : Contour   of the cam
+    note : callable     told which file is left out, and why
     """
     folder.mkdir(parents=True, exist_ok=True)
     outline, order = outline_of(case, contour), case.workshop_order
@@ -319,7 +332,9 @@ def dimensions_text(case: Case, contour: Contour) -> str:
 
 
 def contour_table(contour: Contour, theta: Array) -> str:
-    """CSV of contour and lift, a row for each angle."""
+    """CSV text of contour, normal, curvature, pressure angle, lift and its derivatives, a row for
+    each cam angle `theta` (n,), rad.
+    """
     x, y = contour.points(theta)
     normal = contour.normal(theta)
     lift = contour.pitch.lift.derivatives(theta, 3)
@@ -358,7 +373,15 @@ def cutter_table(contour: Contour, tool_radius: float, theta: Array) -> str:
 
 
 def inspection_sheet(contour: Contour, theta: Array, tolerance: float) -> str:
-    """CSV of nominal points with normal tolerance band and empty measured columns."""
+    """CSV text of nominal points of the contour with the tolerance band along the normal, mm, and
+    empty columns for what is measured.
+
+    Parameters
+    ----------
+    contour : Contour    of the cam
+    theta : array (n,)   cam angles of the points, rad
+    tolerance : float    width of the zone of the profile, m: half of it to either side
+    """
     x, y = contour.points(theta) * 1e3
     normal = contour.normal(theta)
     polar = np.degrees(np.mod(np.arctan2(y, x), 2 * np.pi))
