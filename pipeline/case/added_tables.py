@@ -63,8 +63,18 @@ def with_added(case: Tables) -> Tables:
 
 
 def _add(table: Tables, more: Tables, path: str) -> None:
-    """Write the keys of `more` into `table`, tables within tables; `path` : dotted name of the
-    table for messages. InputError for a key that it has with another value.
+    """Write the keys of one table into another, in place, tables within tables.
+
+    Parameters
+    ----------
+    table : Tables   changed
+    more : Tables    keys to be added
+    path : str       dotted name of the table, for messages
+
+    Raises
+    ------
+    InputError
+        For a key that `table` has with another value.
     """
     for key, value in more.items():
         stated, name = table.get(key), f"{path}.{key}".lstrip(".")
@@ -114,8 +124,8 @@ def _completing(rows: Sequence[tuple[str, Key]]) -> str:
 
 
 def _rows(paths: Iterable[str]) -> list[tuple[str, Key]]:
-    """Dotted paths with their keys in the order of a case file; a table is replaced by the keys
-    that it requires, or by its card and those that the card leaves.
+    """Dotted paths of missing values with their keys, in the order of a case file; a table is
+    replaced by the keys that it requires, or by its card and those that the card leaves.
     """
     rows: dict[str, Key] = {}
     for path in paths:
@@ -130,8 +140,13 @@ def _rows(paths: Iterable[str]) -> list[tuple[str, Key]]:
 
 
 def _block(rows: Sequence[tuple[str, Key]], materials: Mapping[str, Material]) -> str:
-    """Text of one `[[added]]` table with these keys (path, key) and their examples as values, a
-    comment on each; the card of a table that has one comes first.
+    """Text of one `[[added]]` table with the examples of missing keys as values and a comment on
+    each; the card of a table that has one comes first.
+
+    Parameters
+    ----------
+    rows : sequence       dotted path and key of each value
+    materials : mapping   of the case by name, whose cards are repeated
     """
     by_table = sorted(rows, key=lambda row: _place(row[0], rows))
     text = f"[[{ADDED}]]\n"
@@ -185,8 +200,9 @@ def with_examples(error: MissingKeysError, tables: Tables, folder: Path | None) 
 
     Parameters
     ----------
-    tables : dict   resolved tables of the case, as far as they are there
-    folder : Path   of the case, for its cards; None: shipped cards alone
+    error : MissingKeysError   which names the missing keys
+    tables : dict              resolved tables of the case, as far as they are there
+    folder : Path              of the case, for its cards; None: shipped cards alone
     """
     written = Written(tables)
     missing = [key for key in error.keys if not is_stand_in(tables, key)]
@@ -206,8 +222,8 @@ def with_examples(error: MissingKeysError, tables: Tables, folder: Path | None) 
 
 
 def _within(path: str) -> Iterator[tuple[str, Key]]:
-    """A key with its path, or in place of a table the keys that it requires, those of its tables
-    too. A card stands for the keys that it fills, if it spares enough of them.
+    """Missing key at a dotted path, with its path; in place of a table the keys that it requires,
+    those of its tables too. A card stands for the keys that it fills, if it spares enough of them.
     """
     keys = keys_at(path)
     if not keys or not keys[0].is_table:
@@ -227,8 +243,13 @@ def _within(path: str) -> Iterator[tuple[str, Key]]:
 
 
 def _with_card(path: str, listed: Sequence[Key]) -> Iterator[tuple[str, Key]]:
-    """Keys of a table by their paths; its card in place of those that it fills, if it spares
-    enough.
+    """Keys of a table by their paths; its card in place of those that the card fills, if these are
+    `_KEYS_SPARED` or more.
+
+    Parameters
+    ----------
+    path : str          dotted name of the table
+    listed : sequence   keys of the table that are missing
     """
     spared: Tables = {}
     for card in keys_at(f"{path}.card")[:1]:
@@ -240,7 +261,13 @@ def _with_card(path: str, listed: Sequence[Key]) -> Iterator[tuple[str, Key]]:
 
 
 def _filled(path: str, card: Key) -> Tables:
-    """The table at a dotted path as the example of its card key fills it."""
+    """Table of the values that the example of a card key fills in.
+
+    Parameters
+    ----------
+    path : str   dotted name of the table
+    card : Key   its key `card`, with the example
+    """
     tables: Any = {card.name: card.example}
     table = tables
     for step in reversed(path.split(".")):
@@ -254,8 +281,14 @@ def _section(path: str) -> type[Any]:
 
 
 def _materials(rows: Rows, written: Written, folder: Path | None) -> Rows:
-    """Card key of each shipped material that the examples of `rows` or the case name, and the case
-    does not have, by path; without an example where no card has the name.
+    """Card keys, by path, of the materials that the examples or the case name and the case does not
+    have; without an example where no card has the name.
+
+    Parameters
+    ----------
+    rows : mapping      missing keys by path, with examples
+    written : Written   tables of the case
+    folder : Path       of the cards of the user; None: shipped cards alone
     """
     stated = written.value(("materials",))
     known, shipped = stated if isinstance(stated, dict) else {}, known_cards(folder)["materials"]

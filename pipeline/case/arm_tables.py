@@ -84,13 +84,18 @@ def _mass(arm: Tables) -> float:
 
 
 def _prime_radius(arm: Tables, face: TomlValue | None) -> float:
-    """Distance from the cam axis, m, of the roller centre or, with the table `face` of a flat face,
-    of that at the start angle of the arm.
+    """Prime radius that follows from the start angle of an arm: distance from the cam axis, m, of
+    the roller centre at this angle, or of the plane of a flat face.
+
+    Parameters
+    ----------
+    arm : Tables   `[follower.arm]` with start_angle, centre_distance and length
+    face : table   `[follower.face]`; flat where it has an offset; None: a roller
 
     Raises
     ------
     InputError
-        If the face is beyond the cam axis.
+        If the start angle is not within 0 to 180 deg, or the face is beyond the cam axis.
     """
     start = units.parse(arm["start_angle"], "deg", _START)
     if not 0.0 < start < pi:
@@ -110,8 +115,13 @@ def _prime_radius(arm: Tables, face: TomlValue | None) -> float:
 
 
 def _as_arcs(lift: Tables, arm: Tables) -> Tables:
-    """Lift table whose strokes and points that are stated as angles are written as arcs, mm, at the
-    length of the arm; other values are left for the reader to refuse.
+    """Table of a lift in which strokes and points stated as angles of the arm are written as arcs,
+    mm, at the length of the arm; other values are left as they are, for the reader to refuse.
+
+    Parameters
+    ----------
+    lift : Tables   `[lift]`
+    arm : Tables    `[follower.arm]` with its length
     """
 
     def arc(value: TomlValue) -> TomlValue:

@@ -400,7 +400,13 @@ class Case(Displayed, Section):
 
 
 def _keyed(key: str, value: object) -> Iterator[tuple[str, object]]:
-    """Dotted key and value of every entry of nested tables."""
+    """Dotted key and value of every entry of nested tables.
+
+    Parameters
+    ----------
+    key : str        dotted name of `value`; "": the whole
+    value : object   table, list of tables, or value
+    """
     if isinstance(value, Mapping):
         for name, inner in value.items():
             yield from _keyed(f"{key}.{name}" if key else str(name), inner)

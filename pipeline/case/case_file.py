@@ -101,8 +101,13 @@ def case_of(data: Tables, folder: Path | None = None) -> Case:
 
 
 def resolved(data: Tables, folder: Path | None = None) -> Tables:
-    """Tables of a case with added tables, cards and new names in place, and stand-ins for parts out
-    of scope.
+    """Tables of a case as they are validated: added tables, cards and new names in place, arm,
+    rocker and groove reduced, and stand-ins for parts out of scope.
+
+    Parameters
+    ----------
+    data : Tables   of the case file
+    folder : Path   of its cards; None: shipped cards alone
     """
     named_tables = with_every_name(with_new_keys(with_added(data)))
     tables = with_stand_ins(with_closure(with_rocker(with_arm(named_tables))))
@@ -176,8 +181,19 @@ def _cards(tables: TomlValue | None) -> dict[str, Material]:
 
 
 def _read(path: Path, name: str, field: str, limit: int) -> bytes:
-    """Contents of a file of at most `limit` bytes; messages name the key `field` and the file
-    `name`.
+    """Contents of a file of at most `limit` bytes.
+
+    Parameters
+    ----------
+    path : Path   of the file
+    name : str    of the file, for messages
+    field : str   key that names it, for messages
+    limit : int   bytes
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it cannot be read or is larger.
     """
     try:
         if not path.is_file():
@@ -193,7 +209,14 @@ def _read(path: Path, name: str, field: str, limit: int) -> bytes:
 
 
 def _read_includes(case: Case, folder: Path | None) -> dict[str, bytes]:
-    """Contents of the files to which a case refers, by the name under which a run keeps them."""
+    """Contents of the files to which a case refers, by the name under which a run keeps them.
+
+    Raises
+    ------
+    InputError
+        If the case has no folder, a file cannot be read, is outside the folder or of a kind that is
+        not read, or two would be kept under one name.
+    """
     read: dict[str, bytes] = {}
     origin: dict[str, str] = {}
     for field, name in includes(case):

@@ -71,8 +71,18 @@ def _fields_at(path: str) -> tuple[Key, ...]:
 
 
 def _fields_along(key: str, names: Iterable[str]) -> tuple[Key, ...]:
-    """Keys of a case file, one per variant of its table, at the end of a path of names; through the
-    name of a material the path goes on in its card.
+    """Keys of the case file at the end of a path of names, one per variant of its table; through
+    the name of a material the path goes on in its card.
+
+    Parameters
+    ----------
+    key : str          dotted, for the message
+    names : iterable   steps of the path
+
+    Raises
+    ------
+    InputError
+        If no table has such a key.
     """
     keys: tuple[Key, ...] = ()
     path = ""
@@ -141,7 +151,7 @@ def refused_as_written(case: Case) -> Iterator[None]:
 
 
 def _refused_text(case: Case, error: InputError) -> Refused:
-    """Refused value as text: as the case file has it, else with its unit."""
+    """Refused value of an error as text: as the case file has it, else with the unit of its key."""
     try:
         quantity, value = quantity_of(error.field), value_of(case, error.field)
         if not isinstance(quantity, In):
@@ -198,7 +208,19 @@ def replaced(case: Case, values: Mapping[str, float]) -> Case:
 
 
 def _put(node: Any, path: Sequence[str | int], values: Mapping[str | int, Any]) -> Any:
-    """Copy of a section, part or tuple with values in the table at a path below it."""
+    """Copy of a section, part or tuple in which values of one of its tables are replaced.
+
+    Parameters
+    ----------
+    node : object      section, part or tuple
+    path : sequence    steps from it to the table; empty: itself
+    values : mapping   new values, SI, by name or index
+
+    Raises
+    ------
+    InputError
+        If a part has no such key, or it follows from others.
+    """
     if path:
         first, *rest = path
         child = node[first] if isinstance(first, int) else getattr(node, _attribute(node, first))

@@ -34,8 +34,13 @@ def filled(text: str, **values: Filling) -> str:
 
 
 def _filled(line: str, values: Mapping[str, Filling]) -> str | None:
-    """A line of a commented text with its marks replaced; None, for a line to be left out, where a
-    value before the comment is None.
+    """Line of a commented text with its marks replaced by values; None, for a line to be left out,
+    where a value before the comment is None.
+
+    Parameters
+    ----------
+    line : str         TOML with marks such as ``@speed@``
+    values : mapping   by name of the mark
     """
     match = _LINE.fullmatch(line)
     if match is None:

@@ -12,7 +12,9 @@ _NO_RATE, _NO_PRELOAD = 1e-6, 1e-9  # N/m, N
 
 
 def with_closure(tables: Tables) -> Tables:
-    """Tables of a case; those of a groove without a spring with one of no force in its place."""
+    """Tables of a case with, in place of the missing spring of a groove, one of negligible force;
+    other cases unchanged.
+    """
     cam = tables.get("cam")
     if not isinstance(cam, dict) or cam.get("closure") != GROOVE or "spring" in tables:
         return tables

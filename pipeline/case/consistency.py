@@ -241,7 +241,8 @@ def _start(case: Case) -> Iterator[Rule]:
 
 
 def _closure(case: Case) -> None:
-    """A groove guides the roller of a stem by a stated lift, and leaves out what it cannot have.
+    """Refuse what a case with a groove states and cannot have, and what it lacks: a groove guides
+    the roller of a stem by a stated lift.
 
     Raises
     ------
@@ -274,7 +275,9 @@ def _closure(case: Case) -> None:
 
 
 def _groove() -> Iterator[Rule]:
-    """The groove is within the disc, and the roller within the groove above its fillet."""
+    """Rules of a groove: its floor and outer wall are within the disc, and the roller runs within
+    it above its fillet.
+    """
     depth, fillet = "cam.groove.depth", "cam.groove.corner_radius"
     yield _less(depth, lambda at: at("cam.width"), "< {cam.width}: a floor is left")
     limit = ">= {roller.width}: the roller is within the groove"
@@ -358,7 +361,9 @@ def tightened_tolerances(case: Case) -> dict[str, tuple[str, str]]:
 
 
 def _tolerances(case: Case) -> Iterator[Rule]:
-    """A tolerance is tighter than its default only with a source."""
+    """Rules that tolerances are no tighter than their defaults, of those whose tolerances or guide
+    state no source.
+    """
     if case.tolerances.source:
         return
     for rule in _no_tighter():
@@ -369,7 +374,7 @@ def _tolerances(case: Case) -> Iterator[Rule]:
 
 
 def _check_film(case: Case) -> None:
-    """Refuse a mixed oil film without roughness and hardness of both bodies."""
+    """Refuse, by InputError, a mixed oil film without roughness and hardness of both bodies."""
     if case.lubricant is None or case.lubricant.film == "smooth":
         return
     cards = (case.cam.material, case.facing.material)
@@ -434,7 +439,9 @@ def _fit(case: Case) -> None:
 
 
 def _camshaft(case: Case) -> Iterator[Rule]:
-    """The machine shaft is within its pinion, and the bearings have the size of their ratings."""
+    """Rules of the camshaft: the machine shaft is within its pinion, and no bearing has a greater
+    rating than rolling bearings of its size.
+    """
     shaft = case.camshaft
     if shaft is None:
         return
@@ -467,7 +474,9 @@ def _flat(body: CamBody | FollowerKind, at: At) -> Any:
 
 
 def _ends(case: Case) -> Iterator[Rule]:
-    """Each body keeps a flat between its ends, and each crown fits the contact."""
+    """Rules that each body keeps a flat between its ends; InputError where a crown lacks the ends
+    or does not fit the contact.
+    """
     for part in (case.cam, case.facing):
         if part.end is not None:
             limit = f"< {{}}, half of {{{part.width_key}}}"
@@ -481,7 +490,7 @@ def _ends(case: Case) -> Iterator[Rule]:
 
 
 def _ring(case: Case) -> Iterator[Rule]:
-    """Steel is left between the bore with its keyway and the base circle of the cam."""
+    """Rules that metal is left between the bore with its keyway and the base circle of the cam."""
     roller = case.roller_given is not None
     base = "{cam.prime_radius}" + (" less {roller.radius}" if roller else "")
 
@@ -504,7 +513,9 @@ def _ring(case: Case) -> Iterator[Rule]:
 
 
 def _arm(case: Case) -> Iterator[Rule]:
-    """An arm reaches the prime circle, or its face the base circle, and has no offset."""
+    """Rules of an arm: its roller reaches the prime circle, or its face the base circle and is not
+    sunk into its carrier; the follower has no offset.
+    """
     distance, length = "follower.arm.centre_distance", "follower.arm.length"
     yield _equal("cam.offset", _fixed(0.0), "0 mm with an arm")
     face, plane = case.follower.face, "follower.face.offset"
@@ -530,7 +541,9 @@ def _arm(case: Case) -> Iterator[Rule]:
 
 
 def _key(case: Case) -> Iterator[Rule]:
-    """The key has flanks; none of its dimensions is one of many designs."""
+    """Rules that flanks of the key are left in shaft and hub; judged on the case alone, as no
+    search varies its dimensions.
+    """
     cam = case.cam
     if cam.key is None:
         return
@@ -583,8 +596,14 @@ def _roller(case: Case) -> Iterator[Rule]:
 
 
 def _refusal(case: Case, rule: Rule, at: At) -> InputError:
-    """InputError of the number at the key of a broken rule, with more digits where value and bound
-    read alike.
+    """InputError for the number at the key of a broken rule, with value and limit as text; with
+    more digits where both read alike.
+
+    Parameters
+    ----------
+    case : Case   with the number
+    rule : Rule   that it breaks
+    at : At       dotted key -> number, SI
     """
     for digits in _MESSAGE_DIGITS:
         value = text_of(case, rule.key, digits)

@@ -133,8 +133,13 @@ def refusal_of(error: ValidationError, section: str = "") -> InputError:
 
 
 def _refusal(entry: Mapping[str, Any], key: str) -> InputError:
-    """InputError of one key from an error of pydantic: value as written, limit, what to do about a
-    kind that is not provided.
+    """InputError of one key from an error of pydantic: value as written, limit in words and, for a
+    kind that is not provided, what to do about it.
+
+    Parameters
+    ----------
+    entry : mapping   error of pydantic
+    key : str         dotted key; "": the case
     """
     context, value = dict(entry.get("ctx", {})), entry["input"]
     word = value if isinstance(value, str) else ""
@@ -161,8 +166,13 @@ def _refusal(entry: Mapping[str, Any], key: str) -> InputError:
 
 
 def _key_of(entry: Mapping[str, Any], section: str) -> str:
-    """Dotted key of an error of pydantic within a section; that of the kind where the error is in
-    it.
+    """Dotted key of an error of pydantic; where the error is of the kind of a table, that of
+    `kind`.
+
+    Parameters
+    ----------
+    entry : mapping   error of pydantic
+    section : str     dotted name of the section that was validated
     """
     context = entry.get("ctx", {})
     key = f"{section}.{_dotted(entry['loc'])}".strip(".")

@@ -77,7 +77,14 @@ def given_lift(case: LiftSource) -> Lift:
 
 
 def _stated_lift(case: LiftSource) -> Lift:
-    """Lift as the case states it, of follower or output."""
+    """Lift as the case states it, m over the cam angle: of the follower, or of the output of a
+    rocker where the case says so.
+
+    Raises
+    ------
+    InputError
+        If the case has no lift, or its file cannot be read.
+    """
     section = case.lift
     if isinstance(section, LiftSegments):
         return motion_of(section).lift()
@@ -126,10 +133,8 @@ def lift_origin(case: LiftSource) -> str:
 
 
 def table_overshoot(case: LiftSource) -> tuple[float, float] | None:
-    """Greatest overshoot of the curve through a lift table between its rows, over the stroke, and
-    its cam angle, rad.
-
-    None for another lift, or one fitted to its table.
+    """Greatest overshoot of the curve through a lift table beyond its rows, as a share of the
+    stroke, and its cam angle, rad; None for another lift, or one fitted to its table.
     """
     if not isinstance(case.lift, LiftTable) or _fitted(case) is not None:
         return None

@@ -164,8 +164,12 @@ class Key:
         return self._stated(Known, Known("") if self.is_table else None)
 
     def _stated(self, kind: type[Words], absent: Words | None = None) -> Words:
-        """The first mark of a kind, such as `Known`, on the fields of its path; `absent` where
-        there is none, and KeyError if that is None.
+        """First mark of a kind, such as `Known`, on the fields of the path of the key.
+
+        Parameters
+        ----------
+        kind : type      class of the mark
+        absent : Words   returned where there is none; None: KeyError is raised
         """
         marks = (mark for each in self._alike for mark in words_at(each.section, each.field))
         words = next((mark for mark in marks if isinstance(mark, kind)), absent)
@@ -261,8 +265,13 @@ def sections(section: type[Section]) -> Iterator[TableKeys]:
 
 
 def _within(section: type[Section], path: str) -> Iterator[TableKeys]:
-    """Tables below a section at a dotted path, each before those within it; NAME stands for a name
+    """Tables below a section of the case file, each before those within it; NAME stands for a name
     that the case chooses.
+
+    Parameters
+    ----------
+    section : type   class of the section
+    path : str       its dotted name
     """
     for name, field in section.model_fields.items():
         for kind, inner in nested(field):
@@ -284,8 +293,8 @@ def nested(field: FieldInfo) -> Iterator[tuple[str, type[Section]]]:
 
 
 def _nested(hint: object, kind: str) -> Iterator[tuple[str, type[Section]]]:
-    """Sections within a type hint, each with its kind: "rows" of an array of tables, "names" of a
-    table of named ones, else the kind handed down.
+    """Sections within a type hint, each with how it is written: "rows" of an array of tables,
+    "names" of a table of named ones, else `kind`.
     """
     origin = get_origin(hint)
     if origin is Annotated:

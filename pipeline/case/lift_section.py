@@ -17,7 +17,7 @@ Stroke = Annotated[float, In("mm", above=-10_000, below=10_000)]
 
 
 def _known_law(name: str) -> str:
-    """The name of a motion law or dwell; refused with the closest one if it is unknown."""
+    """Name of a motion law or dwell itself; refused, with the closest one, if it is unknown."""
     laws = (DWELL, *LAWS)
     if name not in laws:
         raise refusal(f"a motion law{suggestion(name, laws)}")

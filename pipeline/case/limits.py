@@ -89,9 +89,8 @@ AnyLimit = Limit | OpenLimit
 
 
 def utilisation_slope(limit: AnyLimit, value: float) -> float:
-    """Decrease of the utilisation per unit of the limit, SI, at its value `value`.
-
-    Negative if a greater value reduces the margin.
+    """Decrease of the utilisation per unit of its limit, SI, at the value `value` of the limit, by
+    the form of the utilisation; negative if a greater limit reduces the margin.
     """
     sign = 1.0 if limit.sense == "at_most" else -1.0
     if limit.slope == "rest":

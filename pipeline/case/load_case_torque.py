@@ -113,7 +113,9 @@ def engine_torque(case: TorqueSource, state: LoadCase) -> Torque:
 
 
 def torque_key(case: TorqueSource, load_case: str) -> str:
-    """Case key, such as `engine.file`, that supplies the torque of the load case with this name."""
+    """Key of the case, such as `engine.file`, that supplies the torque of the load case of this
+    name.
+    """
     number = [state.name for state in case.load_cases].index(load_case)
     if case.load_cases[number].torque is not None:
         return f"load_case[{number}].torque"
@@ -147,8 +149,8 @@ def require_ripple(case: TorqueSource, torques: Mapping[str, Torque]) -> None:
 
 
 def _torque_of_cycle(case: TorqueSource, state: LoadCase) -> Torque:
-    """Torque of a load case at the shaft over a cycle, of engine and driven machine together; a
-    file of the load case replaces both.
+    """Torque at the shaft in a load case over a cycle, N m, of engine and driven machine together;
+    a file of the load case replaces both.
     """
     machine = case.torque
     if state.torque is not None:
@@ -206,8 +208,8 @@ def has_torque(case: TorqueSource, state: LoadCase) -> bool:
 
 
 def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
-    """Engine with the intake pressure of the load case; if that is not fired, without heat of
-    combustion and with its stated friction or none.
+    """Engine with the intake pressure of a load case; where this is not fired, without heat of
+    combustion and with the stated friction, or none.
     """
     if state.intake_pressure is not None:
         engine = replace(engine, intake_pressure=state.intake_pressure)

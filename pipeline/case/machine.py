@@ -241,8 +241,9 @@ class Machine(Displayed):
 
     @property
     def tilting(self) -> FollowerTilt:
-        """Compliance and clearance by which the follower tilts across the plane of the cam: of the
-        stem in its guides, or of an arm.
+        """Compliance and clearance by which the follower tilts in the plane of contact normal and
+        cam axis: of the stem in its guides, or of an arm and its pivot where one of them is
+        described.
         """
         bush = None if self.pivot is None else self.pivot.bush
         of_arm = None if self.arm is None else arm_tilt(self.arm, self.arm_bar, bush)
@@ -371,7 +372,8 @@ class Machine(Displayed):
 
     @property
     def compliances(self) -> dict[str, float]:
-        """Compliances by name of the described members from cam to follower mass, m/N.
+        """Compliances, m/N, by name, of the members between cam and the mass of the follower that
+        are described, along the travel.
 
         The stem counts to its far guide; an arm bends with its fork, on the bush of its pivot. The
         line contact and the cam, an arm that is not described and needles are taken as rigid.
@@ -389,7 +391,9 @@ class Machine(Displayed):
 
     @property
     def _pivot_compliance(self) -> float | None:
-        """Compliance of the bush of the pivot at the end of the arm, m/N; None without one."""
+        """Compliance of the bush of the pivot, m/N, reduced to the end of the arm; None without a
+        bush.
+        """
         if self.arm is None or self.pivot is None or self.pivot.bush is None:
             return None
         bush, share = self.pivot.bush, self.arm.pivot_share(float(self.arm.held(self.spring.link)))
@@ -503,7 +507,14 @@ def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
 
 
 def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machine:
-    """Machine of a case in one load case; torque : of the engine there, None without."""
+    """Machine of a case in one load case: its parts, loads and limits.
+
+    Parameters
+    ----------
+    case : Case        resolved
+    state : LoadCase   speed, preload, requirements
+    torque : Torque    at the shaft over a cam turn; None: no torque is balanced
+    """
     follower, guides, spring = case.follower, case.guides, case.spring
     card = follower.stem_material
     length = np.inf if follower.stem_length is None else follower.stem_length
@@ -546,8 +557,8 @@ def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machin
 
 
 def friction_range(case: Case) -> FrictionRange:
-    """Least, nominal and greatest friction of guides A and B; of an arm that of its pivot, and
-    none.
+    """Least, nominal and greatest friction coefficient of guides A and B; of an arm on a pivot that
+    of the pivot in place of A.
     """
     pivot, tolerance = case.follower.pivot, case.tolerances.friction
     if pivot is None:
@@ -563,7 +574,17 @@ def _drops(case: Case, crown: AxialCrown | None) -> TabulatedCrown | None:
 
 
 def _required(case: Case, state: LoadCase, row: AnyLimit) -> float | None:
-    """Reduction of a ripple required in a load case; None: none is required."""
+    """Reduction of a ripple required in a load case, a share; None: none is required.
+
+    A load case that states none has that of the case if its ripple counts in the synthesis; one
+    that states 0 has none.
+
+    Parameters
+    ----------
+    case : Case        with its limits
+    state : LoadCase   the load case
+    row : AnyLimit     limit of the reduction, of torque or speed
+    """
     stated: float | None = getattr(state, row.id)
     if stated is None:
         return case.limits[row] if state.ripple_weight > 0 else None

@@ -45,7 +45,14 @@ class Usual:
     keys: Sequence[str] = ()
 
     def finding(self, title: str, value: float, text: str) -> Implied | None:
-        """Finding on a value (SI) more than 10 % outside the range; None otherwise."""
+        """Finding on a value more than 10 % outside the usual range; None otherwise.
+
+        Parameters
+        ----------
+        title : str     of the finding, such as the key
+        value : float   SI
+        text : str      words that state the value
+        """
         stated = in_unit(value, self.unit)
         nearest = min(max(stated, self.low), self.high)
         unit = f" {self.unit}".replace(" -", "")
@@ -157,7 +164,9 @@ def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Impl
 
 
 def _pressure_findings(case: Case) -> Iterator[Implied | None]:
-    """Friction that the brake torque leaves, and dead centre, of a measured cylinder pressure."""
+    """Findings on a measured cylinder pressure: friction that the brake torque leaves, and lead of
+    the motored peak; None where they are usual.
+    """
     if not isinstance(case.engine, PressureTable):
         return
     balance, _ = pressure(case, case.engine)
@@ -179,7 +188,9 @@ def _pressure_findings(case: Case) -> Iterator[Implied | None]:
 
 
 def _motor_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Implied | None]:
-    """The speed at which the motor line carries the mean torque, against that of a load case."""
+    """Findings on the speed of a load case against that at which the motor line carries the mean
+    torque; None where both agree.
+    """
     motor = None if case.crankshaft is None else case.crankshaft.load
     if not isinstance(motor, MotorLine):
         return
@@ -199,7 +210,9 @@ _SURROUNDED = ("lubricant", "roller.bearing", "spring.design", "spring.gas")
 
 
 def _temperature_findings(case: Case) -> Iterator[Implied | None]:
-    """Temperatures of parts in operation below that of their surroundings."""
+    """Findings on temperatures of parts in operation below that of their surroundings; None where
+    the difference is small.
+    """
     around = ("guides.ambient_temperature", "cooling.ambient_temperature")
     warm = {key: value for key in around if (value := value_of(case, key)) is not None}
     warmest = max(warm, key=warm.__getitem__)
@@ -216,7 +229,9 @@ def _temperature_findings(case: Case) -> Iterator[Implied | None]:
 
 
 def _bush_findings(case: Case) -> Iterator[Implied | None]:
-    """Bushes of another diameter than the stem that runs in them."""
+    """Findings on bushes of another diameter than the stem that runs in them; None where the
+    difference is small.
+    """
     stem = "follower.stem_diameter"
     through = value_of(case, stem)
     for key in ("guides.a.diameter", "guides.b.diameter"):
@@ -231,7 +246,9 @@ def _bush_findings(case: Case) -> Iterator[Implied | None]:
 
 
 def _balance_finding(case: Case) -> Implied | None:
-    """The unbalance that a bench leaves, against the grades to which rotors are balanced."""
+    """Finding on the unbalance that a balancing bench leaves on the camshaft, as a balance grade,
+    residual over rotor mass times cam speed; None where it is usual, zero or not stated.
+    """
     key, other = "camshaft.counterweight.residual", "camshaft.rotor_mass"
     residual, mass = value_of(case, key), value_of(case, other)
     if residual is None or mass is None:
@@ -251,7 +268,9 @@ _ONE_OIL = 2.0
 
 
 def _oil_finding(case: Case) -> Implied | None:
-    """The viscosity of the oil at the cam, against that of the oil in the roller bearing."""
+    """Finding on the viscosity of the oil at the cam against that in the roller bearing; None where
+    both can be of one oil, or one is not stated.
+    """
     key, other = "lubricant.viscosity", "roller.bearing.viscosity"
     dynamic, bearing = value_of(case, key), value_of(case, other)
     oiled = value_of(case, "roller.bearing.lubrication") == "oil"
@@ -269,7 +288,9 @@ def _oil_finding(case: Case) -> Implied | None:
 
 
 def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Implied]:
-    """The spring against the energy swing, unless the synthesis chooses it: one finding."""
+    """Finding on the spring against the energy swing of the torque, by the share that its rate
+    stores or by the lift; at most one, and none where the synthesis chooses the spring.
+    """
     torque, smoothing, spring = torques.get(case.load_cases[0].name), case.smoothing, case.spring
     chosen = smoothing.kind == "constrained" and smoothing.of_spring
     if torque is None or chosen:
@@ -296,7 +317,7 @@ def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Impl
 
 
 def _keys_in(case: Case, keys: Sequence[str]) -> Iterator[str]:
-    """Dotted keys of the case that the patterns stand for."""
+    """Dotted keys of a case for which patterns stand; ``materials.*`` stands for every material."""
     for key in keys:
         if key.startswith("materials.*"):
             yield from (key.replace("*", name) for name in case.materials)

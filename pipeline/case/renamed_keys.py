@@ -68,8 +68,18 @@ def with_new_wire_keys(wire: TomlValue, field: str) -> Tables:
 
 
 def _rename(table: Tables, old: str, new: str, place: str) -> None:
-    """Give a key its new name in place, its order kept; `place` is the dotted name of its table for
-    messages. InputError if the table has both names.
+    """Give a key of a table its new name, in place, its order kept.
+
+    Parameters
+    ----------
+    table : Tables   changed; without the old name it stays as it is
+    old, new : str   names of the key
+    place : str      dotted name of the table with a point at its end, for messages
+
+    Raises
+    ------
+    InputError
+        If the table has both names.
     """
     if old not in table:
         return

@@ -246,8 +246,14 @@ class _StandIns(NamedTuple):
         return node if isinstance(node, dict) else {}
 
     def put(self, part: ScopeName, key: str, value: TomlValue | None) -> None:
-        """Write a value that the case does not state into its tables, in place, with the source
-        that it stands in for an excluded part.
+        """Write a value into the tables, in place, where the case does not state it, with the
+        source that it stands in for an excluded part.
+
+        Parameters
+        ----------
+        part : str    name of the excluded part in the scope
+        key : str     dotted
+        value : any   as in a case file; None: nothing is written
         """
         path, _, name = key.rpartition(".")
         table = self.table(path)
@@ -294,7 +300,12 @@ def is_stand_in(tables: Tables, key: str) -> bool:
 
 
 def _guides(stem: Tables) -> Tables:
-    """Table of guides that neither rub nor tilt, on the stem of the follower table `stem`."""
+    """Table of guides that neither rub nor tilt, as stand-ins for guides that the scope leaves out.
+
+    Parameters
+    ----------
+    stem : Tables   `[follower]`, with diameter, overhang and material of the stem
+    """
     diameter, overhang = _length(stem, "stem_diameter", _STEM), _length(stem, _OVERHANG, _STEM)
     guide: Tables = {
         "length": units.format(min(diameter, 2.0 * overhang), "mm"),

@@ -156,8 +156,13 @@ _TOLD = 6
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
-    """End of a message on an unknown word: the closest known word, else a list of the known
+    """End of a message on an unknown word: the closest known word, else the first of the known
     ones.
+
+    Parameters
+    ----------
+    word : str         the unknown word
+    known : iterable   words that are accepted
     """
     words = list(known)
     if close := difflib.get_close_matches(word, words, n=1):
@@ -192,7 +197,12 @@ Table = Annotated[PartType, FromTable()]
 
 
 def part_of(part: type[PartType], section: Section) -> PartType:
-    """Part made of the values of the section that describes it.
+    """Part of a machine made of the values of the section that describes it.
+
+    Parameters
+    ----------
+    part : type         class of the part
+    section : Section   validated
 
     Raises
     ------

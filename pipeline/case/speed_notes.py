@@ -31,8 +31,9 @@ _ASSUMED = {
 
 
 def calibration_record(calibration: Calibration | None) -> WheelErrors:
-    """Pitch errors of the trigger wheel, deg, for ``run.json``: tolerance, and where they were
-    estimated, rms corrected and rms left, with the change of torque in percent.
+    """Pitch errors of the trigger wheel, deg, for ``run.json``: tolerance and, where they were
+    estimated, rms of the errors corrected and of what is left, with the change of torque between
+    the speeds in percent. Empty without a calibration.
     """
     if calibration is None:
         return {}
@@ -51,12 +52,14 @@ def calibration_record(calibration: Calibration | None) -> WheelErrors:
 def speed_notes(
     trace: SpeedTrace, inertia: float, running_gear: RunningGear | None = None
 ) -> tuple[str, ...]:
-    """Lines on pitch errors and half orders; those that need action begin with ``warning:``.
+    """Lines of text on pitch errors and half orders of a measured crank speed; those that need
+    action begin with ``warning:``.
 
     Parameters
     ----------
-    inertia : float                kg m2, of all parts that turn with the crank
-    running_gear : RunningGear     None: taken for one cylinder
+    trace : SpeedTrace           the speed
+    inertia : float              kg m2, of all parts that turn with the crank
+    running_gear : RunningGear   None: taken for one cylinder
     """
     calibration = trace.calibration
     lines, warnings = [], _half_orders(trace, running_gear)
@@ -98,8 +101,13 @@ def _contradictions(calibration: Calibration) -> list[str]:
 
 
 def _wide_bar(trace: SpeedTrace, inertia: float) -> list[str]:
-    """Note, in a list, where pitch errors leave an uncertainty of the torque above `WHEEL_BAR_MAX`
-    of its peak to peak; inertia in kg m2.
+    """Note, in a list, that pitch errors leave an uncertainty of the torque above `WHEEL_BAR_MAX`
+    of its peak to peak; empty where they do not.
+
+    Parameters
+    ----------
+    trace : SpeedTrace   with its calibration
+    inertia : float      of all parts that turn with the crank, kg m2
     """
     calibration = trace.calibration
     bar = float(trace.wheel_bar(inertia).max())
@@ -120,8 +128,13 @@ def _wide_bar(trace: SpeedTrace, inertia: float) -> list[str]:
 
 
 def _half_orders(trace: SpeedTrace, running_gear: RunningGear | None) -> list[str]:
-    """Note, in a list, where the half orders of the cycle are out of proportion to the integer
-    orders for the firing of these cylinders.
+    """Note, in a list, that the half orders of the cycle are out of proportion to the integer
+    orders for the firing of the cylinders; empty where they are not.
+
+    Parameters
+    ----------
+    trace : SpeedTrace           the speed
+    running_gear : RunningGear   firing offsets; None: one cylinder
     """
     share = trace.half_order_share
     offsets = (0.0,) if running_gear is None else running_gear.firing_offsets

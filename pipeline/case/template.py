@@ -45,7 +45,12 @@ class FirstCase(NamedTuple):
 
 
 def first_case(name: str, kind: str = "cylinder") -> FirstCase:
-    """Case file of a kind with the name of the case, and its data file.
+    """Complete, commented case file of a kind, and its data file.
+
+    Parameters
+    ----------
+    name : str   of the case
+    kind : str   one of `KINDS`
 
     Raises
     ------

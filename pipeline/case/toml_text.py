@@ -29,7 +29,12 @@ _FILE_KEYS = ("file", "torque", "motored_file", "external_force_file")
 
 def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -> Tables:
     """Tables of a section or part as in a case file, values as text with unit; absent fields are
-    omitted. renamed : file names in place of those stated; None: as they are.
+    omitted.
+
+    Parameters
+    ----------
+    model : Section or Part   with its values, SI
+    renamed : mapping         file names in place of those stated; None: as they are
     """
     section = section_of(type(model)) if isinstance(model, Part) else type(model)
     tables: Tables = {}
@@ -61,8 +66,13 @@ def table_in(tables: Tables, name: str) -> Tables:
 
 
 def _written(value: _FieldValue, unit: str, renamed: Mapping[str, str] | None) -> TomlValue:
-    """Value of a field as in a case file: with its unit, a material by its name, a part as a
-    table.
+    """Value of a field as in a case file: with its unit, a material by its name, a part as a table.
+
+    Parameters
+    ----------
+    value : object      of the field, SI
+    unit : str          in which a number is written; "": without
+    renamed : mapping   file names in place of those stated; None: as they are
     """
     if isinstance(value, Material):
         return value.name

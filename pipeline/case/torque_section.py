@@ -65,8 +65,13 @@ def shaft_torque(torque: ShaftTorque, speed: float, path: Callable[[str], Path])
 
 
 def _values(torque: ShaftTorque, theta: Array, path: Callable[[str], Path]) -> Array:
-    """Torque at the shaft (n,), N m, at shaft angles `theta` (n,), rad; path : from file name to
-    path.
+    """Torque of a machine at its shaft (n,), N m, positive when it drives the shaft.
+
+    Parameters
+    ----------
+    torque : ShaftTorque   section of the case
+    theta : array (n,)     equal shaft angles of a cycle, rad
+    path : callable        file name -> path
     """
     if isinstance(torque, TabledTorqueFile):
         return tabled_torque(torque, path(torque.file)).torque(theta)
@@ -78,7 +83,9 @@ def _values(torque: ShaftTorque, theta: Array, path: Callable[[str], Path]) -> A
 
 
 def _inertia(torque: ShaftTorque, theta: Array) -> Array:
-    """Inertia of the reciprocating masses at the shaft (n,), kg m2, at shaft angles (n,), rad."""
+    """Inertia of the reciprocating masses of a machine, reduced to its shaft (n,), kg m2, at shaft
+    angles (n,), rad; zero without such masses.
+    """
     if isinstance(torque, Press):
         return torque.inertia(theta)
     if isinstance(torque, (PressureTorqueFile, CompressorTorque, PumpTorque)):

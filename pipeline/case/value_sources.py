@@ -50,7 +50,8 @@ def values_at(tables: Tables, path: str) -> tuple[str, ...]:
 
     Parameters
     ----------
-    path : str   dotted; its last word may have wildcards: ``cam.material.endurance_*``
+    tables : Tables   of the case
+    path : str        dotted; its last word may have wildcards: ``cam.material.endurance_*``
     """
     *parents, last = path.split(".")
     table, name = tables, ""
@@ -95,6 +96,12 @@ def _entry(table: TomlValue | None, key: str) -> TomlValue:
 def require_known(tables: Tables, field: str, value: str) -> None:
     """Refuse the name of a value that the case does not state.
 
+    Parameters
+    ----------
+    tables : Tables   of the case
+    field : str       key under which the name stands, for the message
+    value : str       dotted name
+
     Raises
     ------
     InputError
@@ -107,8 +114,14 @@ def require_known(tables: Tables, field: str, value: str) -> None:
 
 
 def put_sources(case: Tables, field: str, table: TomlValue, entries: Tables) -> None:
-    """Write the sources `entries` of the numbers of a table, with the dotted name `field`, into the
-    case in place, where it states none.
+    """Write sources of numbers into ``[sources]`` of a case, in place, where it states none.
+
+    Parameters
+    ----------
+    case : Tables      changed
+    field : str        dotted name of the table of the numbers
+    table : table      the table; a source of a key that it lacks is left out
+    entries : Tables   sources by key
     """
     stated, numbers = case.setdefault("sources", {}), set(values_in(table, field))
     if isinstance(stated, dict):
@@ -118,8 +131,13 @@ def put_sources(case: Tables, field: str, table: TomlValue, entries: Tables) -> 
 
 
 def forget_sources(tables: Tables, part: str) -> None:
-    """Remove, in place, sources and confirmations of the values of a part, by its dotted name, that
-    is replaced.
+    """Remove sources and confirmations of the values of a part that is replaced from the tables of
+    a case, in place.
+
+    Parameters
+    ----------
+    tables : Tables   changed
+    part : str        dotted name of the part
     """
 
     def kept(value: TomlValue) -> bool:

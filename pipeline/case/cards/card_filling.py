@@ -103,7 +103,14 @@ def _fill_places(case: Tables, folder: Path | None) -> None:
 
 
 def known_cards(folder: Path | None) -> Cards:
-    """Cards by kind and name: the shipped ones, and those of `folder`, which take precedence."""
+    """Cards by kind and name: the shipped ones, and those in ``cards.toml`` of `folder`, which take
+    precedence; None: shipped ones alone.
+
+    Raises
+    ------
+    InputError
+        If the file is unreadable, has an unknown kind, or a card is no table or states no source.
+    """
     cards = {kind: dict(cards) for kind, cards in _shipped().items()}
     path = None if folder is None else folder / USER_FILE
     if path is None or not path.is_file():
@@ -181,7 +188,13 @@ def _places(case: Tables) -> Iterator[tuple[str, str, Tables]]:
 
 def _with_material(case: Tables, name: TomlValue, cards: Mapping[str, Tables]) -> None:
     """Put the card of the material that a bush names among the materials of the case, in place,
-    unless one has its name.
+    unless the case has one of its name.
+
+    Parameters
+    ----------
+    case : Tables     changed
+    name : value      of the material, as the bush states it
+    cards : mapping   cards of materials by name
     """
     materials = case.setdefault("materials", {})
     if isinstance(materials, dict) and isinstance(name, str) and name not in materials:
@@ -200,8 +213,8 @@ def _from_card(name: str, source: TomlValue) -> TomlValue:
 
 
 def _oil_words(words: Mapping[str, Source]) -> dict[str, Source]:
-    """Sources of the values of a lubricant by key, from those of its oil; its viscosity has those
-    of the values it is interpolated from.
+    """Sources of the values of a lubricant by key, from those of the values of its oil; the
+    viscosity, which is interpolated, has those of the values it is made of.
     """
     made_of = ("viscosity_40", "viscosity_100", "density")
     used = dict.fromkeys(words[key] for key in made_of if key in words)
@@ -239,8 +252,15 @@ def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
 
 
 def _wire(card: Tables, table: Tables, name: str, field: str) -> Tables:
-    """Values of a wire's card by key, after a check that the wire of `table` has a diameter and a
-    temperature for which the card holds.
+    """Values of the card of a spring wire by key, after a check that the card holds for the
+    diameter and temperature of the spring.
+
+    Parameters
+    ----------
+    card : Tables    of the wire
+    table : Tables   `[spring.design]`, as stated
+    name : str       of the card
+    field : str      dotted name of the table, for messages
 
     Raises
     ------
@@ -283,7 +303,9 @@ def wire_values(card: Tables) -> Tables:
 
 
 def _positive(card: Tables, key: str, field: str) -> float:
-    """Value of a key of a card, a number above zero without unit; InputError otherwise."""
+    """Value of a key of a card that is a number above zero without a unit; InputError, with the
+    dotted name `field` of the card, for any other.
+    """
     value = _entry(card, key, field)
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 < value < math.inf:
         raise InputError(f"{field}.{key}", str(value), "> 0, a number without a unit")

@@ -72,8 +72,13 @@ def catalogue_of(folder: Path | None) -> Catalogue:
 
 
 def _bush(name: str, entry: Tables) -> CatalogueBush:
-    """Bush of a card, its values converted to SI; its greatest friction is the stated friction
-    where the card has no bound.
+    """Bush of a card by its name, values in SI; its greatest friction is the stated friction where
+    the card has no bound.
+
+    Raises
+    ------
+    InputError
+        If the card lacks friction, pressure limit, pv limit or material.
     """
     field, marks = f"cards.bushes.{name}", marks_of(Guide)
     for key in ("friction", "pressure_limit", "pv_limit", "material"):

@@ -11,10 +11,11 @@ from camwright.pipeline.case.toml_text import TomlValue
 
 
 def read_part(part: type[PartType], table: TomlValue, field: str) -> PartType:
-    """Part read from a table, with units and bounds checked.
+    """Part of a machine read from a table, with units and bounds checked.
 
     Parameters
     ----------
+    part : type          class of the part
     table : TOML value   refused unless a table
     field : str          dotted name of the table, for messages
 

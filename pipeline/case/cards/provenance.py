@@ -64,11 +64,14 @@ def numbers_of(card: Tables) -> Iterator[str]:
 
 
 def provenance_of(card: Tables, key: str, field: str) -> Provenance | None:
-    """Provenance of a card value; None if the card states no provenance.
+    """Provenance of a value of a card: the first entry whose pattern fits the key; None if the card
+    states no provenance.
 
     Parameters
     ----------
-    field : str   dotted name of the card, for messages
+    card : Tables   with its table `provenance`
+    key : str       of the value
+    field : str     dotted name of the card, for messages
 
     Raises
     ------

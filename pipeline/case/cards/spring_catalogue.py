@@ -103,9 +103,14 @@ class SpringDemand(Generic[Number]):
         return rest._replace(greatest=room.greatest * rest.greatest)
 
     def kept(self, wire: WoundWire[Number]) -> Mapping[str, NDArray[np.bool_]]:
-        """Whether springs (...) keep each limit, by the name of the limit in messages.
+        """Whether springs (...) keep each limit of the demand, by the name of the limit in
+        messages.
 
-        Relaxation is judged where the wire states it.
+        Relaxation is judged where the wire states it, surge where the demand has a speed.
+
+        Parameters
+        ----------
+        wire : WoundWire   winding and strength of the springs (...)
         """
         work, room = self.work(wire), self.room
         fatigued = work._replace(preload=room.least * work.preload)
@@ -166,10 +171,15 @@ def wire_sources() -> Iterator[tuple[str, Source]]:
 
 
 def sources_in(path: Path, name: str) -> tuple[TomlValue, Tables]:
-    """Sources of a catalogue spring by name: the entry of its wire, "" without one, and entries by
-    key of the numbers of wire and spring.
+    """Sources of a spring of a catalogue: that of its wire, "" without one, and those of the
+    numbers of wire and spring by key.
 
     The numbers of its wire have those of their provenance.
+
+    Parameters
+    ----------
+    path : Path   of the catalogue
+    name : str    of the spring
     """
     catalogue = read_toml(path, "catalogue", _BYTES)
     entries, wires = catalogue.get("spring"), catalogue.get("wires")
@@ -221,7 +231,20 @@ def _wire(field: str, entry: TomlValue) -> _Wire:
 
 
 def _spring(field: str, entry: TomlValue, wires: Mapping[str, _Wire]) -> HelicalSpring:
-    """Spring of an entry of the catalogue: its own keys and those of the wire that it names."""
+    """Spring of an entry of a catalogue: its own keys and those of the wire that it names.
+
+    Parameters
+    ----------
+    field : str       dotted name of the entry, for messages
+    entry : table     the entry
+    wires : mapping   wires of the catalogue by name
+
+    Raises
+    ------
+    InputError
+        If a key is unknown, the wire is none of the catalogue, or the spring has no name or is
+        impossible.
+    """
     if not isinstance(entry, dict):
         raise InputError(field, str(entry), "a table")
     own = dict(entry)
@@ -237,7 +260,9 @@ def _spring(field: str, entry: TomlValue, wires: Mapping[str, _Wire]) -> Helical
 
 
 def _require_own_keys(field: str, entry: Tables) -> None:
-    """Refuse keys of a spring that are unknown or those of its wire."""
+    """Refuse, by InputError, keys of an entry of a catalogue that a spring does not have, or that
+    are those of its wire.
+    """
     of_wire = {each.name for each in fields(_Wire)}
     known = {each.name for each in fields(HelicalSpring)} - of_wire | {"wire"}
     for key in entry:

@@ -100,7 +100,10 @@ def put_force(case: Tables) -> None:
 
 
 def _law(spring: Tables) -> SpringShape | None:
-    """Spring whose table gives rate and preload; None: they are stated, or it is refused later."""
+    """Force law of the spring of a case from its table: gas or torsion spring, or one with a link
+    or on a rocker; None where rate and preload are stated, or the table is missing and refused
+    later.
+    """
     kind = spring.get("kind", "coil")
     part = SHAPES.get(kind) if isinstance(kind, str) else None
     if part is not None and str(kind) not in spring:
@@ -116,7 +119,14 @@ def _law(spring: Tables) -> SpringShape | None:
 
 
 def _reduced(law: SpringShape, case: Tables) -> SpringShape:
-    """Spring on arm and rocker; of a case whose arm or its lack is refused later an arm of 1 m."""
+    """Force law of a spring reduced to the follower by arm and rocker of the case; an arm of 1 m
+    where the case lacks its length, which is refused later.
+
+    Parameters
+    ----------
+    law : SpringShape   of the spring at its own place
+    case : Tables       with follower and rocker
+    """
     follower, rocker = case.get("follower"), case.get(Rocker.table)
     arm = follower.get("arm") if isinstance(follower, dict) else None
     length = 1.0 if law.carried == "arm" else None
@@ -130,8 +140,18 @@ def _reduced(law: SpringShape, case: Tables) -> SpringShape:
 
 
 def _demand(case: Tables, spring: Tables) -> SpringDemand[float] | None:
-    """Demand of a case on its spring, by rate, preload and greatest travel; None if its rate or
-    preload is missing or not positive.
+    """Demand of a case on its spring: rate, greatest preload, travel, tolerances and limits; None
+    if its rate or preload is missing or not positive.
+
+    Parameters
+    ----------
+    case : Tables     with load cases and limits
+    spring : Tables   `[spring]`
+
+    Raises
+    ------
+    InputError
+        If the greatest travel is not above zero.
     """
 
     def number(table: Tables, key: str, default: float) -> float:
@@ -170,7 +190,9 @@ def _demand(case: Tables, spring: Tables) -> SpringDemand[float] | None:
 
 
 def _path(name: TomlValue, folder: Path | None) -> Path:
-    """Path of a catalogue by its name: the shipped one, or a file in the folder of the case."""
+    """Path of a catalogue by its name in the case: the shipped one, or a file in `folder`, that of
+    the case; InputError for any other.
+    """
     if name == SHIPPED:
         return CATALOGUE
     if not isinstance(name, str) or not name:

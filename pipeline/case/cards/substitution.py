@@ -68,7 +68,7 @@ def travel_of(spring: HelicalSpring, case: Case) -> float:
     """Maximum lift, m, that a spring allows within its limits in a case; 0 if there is none.
 
     All limits of `SpringDemand` without surge, as in the checks: at the upper bounds of rate and
-    preload.
+    preload, with the greatest preload where this is a variable.
     """
     spring_now, limits = case.spring, case.limits
     free = case.smoothing.preload_range if "preload" in case.smoothing.free else None
@@ -137,8 +137,15 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
 
 
 def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -> Case:
-    """Case with another roller, by the name of its card, on the same base circle; the moving mass
-    changes with it.
+    """Case with another roller on the same base circle; pin, fork, cam width and moving mass change
+    with it.
+
+    Parameters
+    ----------
+    case : Case          with a roller
+    name : str           of the card of the other roller
+    card : BearingCard   the card
+    folder : Path        of the cards of the user; None: shipped cards alone
 
     Raises
     ------
@@ -182,7 +189,14 @@ def with_cam_material(case: Case, name: str, folder: Path | None) -> Case:
 
 def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
     """Write another roller into the tables of a case, in place: bearing, radius, pin, fork and end,
-    scaled from those of the old one.
+    scaled from those of the old one; width of cam and overhang with it.
+
+    Parameters
+    ----------
+    data : Tables        changed
+    case : Case          with the old roller
+    card : BearingCard   of the new one
+    name : str           of the card
     """
     old, radius = case.roller, 0.5 * card.outer_diameter
     roller = table_in(data, "roller")
@@ -275,7 +289,14 @@ def _put_bush(data: Tables, table: str, name: str) -> None:
 
 def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None:
     """Write into the tables of a case, in place, that its lift is synthesised with a free prime
-    radius; radius : of the new roller, m.
+    radius, from the least that bore and offset allow to `WIDEST_PRIME` times that of the case.
+
+    Parameters
+    ----------
+    data : Tables     changed
+    case : Case       with its smoothing
+    choice : Choice   with the limit of the cam radius, if any
+    radius : float    of the new roller, m
     """
     smoothing = case.smoothing
     kept = [n for n in smoothing.free if n not in ("spring_rate", "prime_radius")]
