@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthesis_problems import OF_ROLLER, REFINED
+from arm_problems import arm_case
+from synthesis_problems import OF_ROLLER, REFINED, nominal, thinned
 from synthesis_ratings import named, rated
 from synthesis_scenarios import changed, loaded_with
 
@@ -23,7 +24,7 @@ from camwright.pipeline.checks.contact_strength import (
 )
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
 from camwright.pipeline.checks.key_strength import KeywayRoot
-from camwright.pipeline.checks.registry import CHECKS, checks_of
+from camwright.pipeline.checks.registry import CHECKS, DECLARED, checks_of
 from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.traction import Drag
@@ -38,6 +39,7 @@ from camwright.pipeline.smoothing.allowables import (
 from camwright.pipeline.smoothing.cam_state import Mean, loaded
 from camwright.pipeline.smoothing.cone_program import ConeSolution
 from camwright.pipeline.smoothing.constraints import (
+    CONSTRAINTS,
     shape_utilisations,
     utilisations_of,
 )
@@ -300,38 +302,80 @@ def test_gradients_match_differences(free, duty):
         energy=(0.0, 0.0), coefficients=24, points=180, jerk_weight=1e-2,
         objective=objective_of({"torque": 1.0, "speed": 0.5}),
     )  # fmt: skip
+    seen = of_true_gradient(given)
+    assert seen == {each.check for each in OF_ROLLER} | {LEAST_ENERGY, INITIAL_ENERGY}
+
+
+def of_true_gradient(given):
+    """Names of the limits of a problem, whose changes are differences of fourth order: 1e-8."""
     search = Search(given, extra=np.array([0.31, 2.17]))
     state = search.state(search.start + 2.0, given.variables)
-    size, h = 24 + len(free), 1e-5
-    step = np.random.default_rng(5).normal(size=size)
+    step, h = np.random.default_rng(5).normal(size=24 + len(given.freed)), 1e-4
     step[24:] *= 1e-2  # the rest moves as much for a hundredth of k, P and r0
 
     summit = search.summit(state)
     every = {name: np.ones(value.shape, dtype=bool) for name, value in state.pointwise.items()}
     means = {name: np.ones(value.shape, dtype=bool) for name, value in state.means.items()}
-    up, down = (search.state(*search.after(state, side * h * step)) for side in (1, -1))
+    beside = [search.state(*search.after(state, side * h * step)) for side in (1, -1, 2, -2)]
+
+    def differences(values):
+        up, down, further_up, further_down = map(values, beside)
+        return (8.0 * (up - down) - (further_up - further_down)) / (12.0 * h)
+
     seen = set()
     for limit in (*search.rows(state, summit, every), *search.means(state, summit, means)[0]):
+        name, at = limit.name, limit.scenario
         exact = limit.change(step)
-        if limit.mean:
-            one, other = (each.means[limit.name][limit.scenario] for each in (up, down))
-        else:
-            one, other = (each.pointwise[limit.name][limit.scenario, limit.point]
-                          for each in (up, down))  # fmt: skip
-        size = max(np.abs(exact).max(), 1e-3)
-        smooth = np.abs((one - other) / (2 * h) - exact) < 1e-6 * size
+        change = differences(
+            (lambda each, name=name, at=at: each.means[name][at])
+            if limit.mean
+            else (lambda each, name=name, at=(at, limit.point): each.pointwise[name][at])
+        )
+        smooth = np.abs(change - exact) < 1e-8 * max(np.abs(exact).max(), 1e-3)
         # |s'|, |alpha| and the sign of the motion turn at a few points
-        assert smooth.mean() > 0.95, limit.name
-        seen.add(limit.name)
+        assert smooth.mean() > 0.95, name
+        seen.add(name)
     for limit in search.model(state).limits:
         if limit.name in (LEAST_ENERGY, INITIAL_ENERGY):
             sign = -1.0 if limit.name == LEAST_ENERGY else 1.0
-            one, other = (search.turn.energy(each.coefficients)[0][limit.point]
-                          for each in (up, down))  # fmt: skip
-            differences = sign * (one - other) / (2 * h * search.scale)
-            np.testing.assert_allclose(limit.change(step), differences, atol=1e-8)
+            level = differences(
+                lambda each, at=limit.point: search.turn.energy(each.coefficients)[0][at]
+            )
+            change = sign * level / search.scale
+            np.testing.assert_allclose(limit.change(step), change, atol=1e-8)
             seen.add(limit.name)
-    assert seen == {each.check for each in OF_ROLLER} | {LEAST_ENERGY, INITIAL_ENERGY}
+    return seen
+
+
+ARMS = (
+    ("roller", "bush", "torsion_pivot"), ("roller", "needle_bearing", "link"),
+    ("flat", "bush", "link"), ("flat", "needle_bearing", "coil"),
+    ("curved", "bush", "link"), ("curved", "needle_bearing", "torsion_pivot"),
+)  # fmt: skip
+OF_BEARING = {
+    "bush": {"pivot_pressure", "pivot_pv", "pivot_speed", "pivot_temperature", "pivot_wear"},
+    "needle_bearing": {"pivot_static", "pivot_life"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("arm", ARMS, ids=" ".join)
+def test_gradients_of_arms_match_differences(arm):
+    """Of every limit of roller or face, arm and pivot, but those of the other bearing."""
+    case = arm_case(*arm)
+    given = thinned(nominal(problem_of(case, engine_torques(case))), 24, 180)
+    described = named(EVERY)
+    ratings = rated(
+        given.ratings, held_radius=case.cam.held_radius, gas_slope=0.03,
+        keyway=described.keyway, grease=described.grease if arm[0] == "roller" else None,
+    )  # fmt: skip
+    seen = of_true_gradient(replace(given, ratings=ratings, freed={"prime_radius": (0.03, 0.09)}))
+    kinds = {"", *ratings.kinds}
+    of_arm = {
+        each.check for each in CONSTRAINTS
+        if each.needs in kinds and DECLARED[each.check].part != "guides"
+    }  # fmt: skip
+    (others,) = (names for bearing, names in OF_BEARING.items() if bearing != arm[1])
+    assert of_arm - others <= seen, of_arm - others - seen
 
 
 def test_models_keep_the_other_peaks_of_the_lift_below_the_highest():
