@@ -45,6 +45,8 @@ from camwright.pipeline.checks.missing_keys import (
     unset,
 )
 from camwright.pipeline.contact import hertz, rolling_envelope
+from camwright.pipeline.contact.closed_form import in_full
+from camwright.pipeline.contact.conforming_line import ANGLE_MAX
 from camwright.pipeline.contact.rolling_envelope import smallest_sphere
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -309,14 +311,40 @@ def _judged(
 
 def _pressure_in_words(demand: Demand, solution: Solution) -> Demand:
     """Demand with the material of its limit and, with a crowned line of contact, the pressure in
-    its middle over plane strain.
+    its middle over plane strain; in a concave wall the conforming pressure beside that of Hertz.
     """
     figured = _with_endurance(demand, solution)
     if not solution.machine.is_crowned:
-        return figured
+        return replace(figured, note=conforming_sentence(solution))
     most = max((float(c.length.centre.max()) for c in solution.cycles if c.length), default=np.nan)
     note = f"in the middle of the crowned line, up to {most:.4g} times plane strain"
     return replace(figured, note=note)
+
+
+def conforming_sentence(solution: Solution) -> str:
+    """Sentence on the conforming contacts of a preview: the greatest pressure among them, its error
+    bar, half contact angle and pressure of Hertz, or where they are not known; "" without one.
+    """
+    solved = [each for each in solution.cycles if each.contact.conforming.any()]
+    lost = sum(int(each.contact.unsolved.sum()) for each in solved)
+    if lost:
+        widest = shown(ANGLE_MAX, "deg", 3)
+        return f"not known at {lost} angles, where the half contact angle exceeds {widest}"
+    if not solved:
+        return ""
+    worst = greatest(solved, lambda each: np.where(each.contact.conforming, each.contact.p0, 0.0))
+    cycle, k = row_of(solved, worst)
+    contact = cycle.contact
+    _, line = in_full(cycle.pair, contact.line_load[[k]], contact.relative_radius[[k]])
+    if line is None:
+        return ""
+    return (
+        f"where the wall is concave up to {shown(float(line.p0[0]), 'MPa')} +-"
+        f" {100.0 * float(line.error[0]):.2g} %, conforming contact over"
+        f" {shown(2.0 * float(line.half_angle[0]), 'deg', 3)} at"
+        f" {shown(float(cycle.theta[k]), 'deg')} in {cycle.load_case}; Hertz"
+        f" {shown(float(line.p0_hertz[0]), 'MPa')}"
+    )
 
 
 def _with_endurance(demand: Demand, solution: Solution) -> Demand:
@@ -339,6 +367,8 @@ def _stated_yield(machine: Machine) -> dict[str, float]:
 def _shakedown_in_words(demand: Demand, solution: Solution) -> Demand:
     """Demand with the material and the yield strength of its limit, and a note on traction."""
     note = "without traction; sliding at the surface lowers the limit"
+    if conforming := conforming_sentence(solution):
+        note = f"{note}; {conforming}"
     figures, stated = (shear_yield(solution.machine).source,), _stated_yield(solution.machine)
     return replace(demand, note=note, figures=figures, stated=stated)
 

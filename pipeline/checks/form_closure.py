@@ -248,12 +248,13 @@ def landing_speed(solution: Solution) -> Demand:
     title="Contact pressure at the landing on a wall",
     unit="MPa",
     source=Source("surface endurance of cam and follower, once a turn", confirmed=True),
-    method=f"{_FLIGHT}; stopped on the stiffness of the follower, pressure of Hertz under the"
-    " greatest force",
+    method=f"{_FLIGHT}; stopped on the stiffness of the follower, pressure under the greatest"
+    " force",
     lift_can_help=True,
     needs="roller",
     closed_by="form",
-    formula="p <= p_E / S; p: sqrt(N E*/(pi b R)) on the wall of the landing, N: F + sqrt(F^2 + k m"
+    formula="p <= p_E / S; p: sqrt(N E*/(pi b R)) on the wall of the landing, or of the conforming"
+    " contact where it is concave, N: F + sqrt(F^2 + k m"
     " v^2) over cos(alpha), F: axial force at the landing, v: landing speed, k: follower.stiffness"
     " or that of the parts between cam and mass in series, m: follower.mass, p_E: least endurance"
     " pressure of cam and roller, S: limits.contact_safety",

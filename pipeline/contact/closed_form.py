@@ -1,26 +1,41 @@
-"""Hertz contact over the cam turn in closed form."""
+"""Contact over the cam turn in closed form: Hertz, and in full in a concave wall of a groove."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.conforming_line import ConformingLine, concave_line
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.tiers import Tier
+
+CONFORMING = (
+    *("p0", "half_width", "tau_max", "tau_any_plane", "tau_depth"),
+    *("von_mises", "von_mises_depth"),
+)
+"""Figures of `ContactHistory` that a conforming contact has of its own."""
+
+_SHAPE = "pressure", "pressure_xi"
 
 
 def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) -> ContactHistory:
     """Hertz line contact at cam angles theta (n,), rad, under normal forces (n,), N; a negative
     force counts as none.
+
+    In a groove the contact of the roller with a concave wall is solved in full where its half-width
+    is not small against the radii, see `concave_line`.
     """
     load = np.maximum(normal_force, 0.0) / pair.width
     radius = pair.relative_radius(theta)
     half_width, p0 = hertz.line_contact(load, radius, pair.contact_modulus)
     mises, depth = hertz.von_mises_peak(pair.cam.poisson)
     nothing = np.zeros(theta.size)
-    return ContactHistory(
+    history = ContactHistory(
         line_load=load,
         relative_radius=radius,
         p0_hertz=p0,
@@ -41,3 +56,25 @@ def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) ->
         pressure_xi=half_width[:, None] * hertz.ELLIPSE_XI,
         tier=Tier.PREVIEW,
     )
+    return history if pair.wall is None else _with_conforming(pair, history)
+
+
+def in_full(
+    pair: ContactPair, line_load: Array, relative_radius: Array
+) -> tuple[NDArray[np.bool_], ConformingLine | None]:
+    """Where the contact of a roller in a groove is to be solved in full, and it; `concave_line`."""
+    radius = pair.contour.require_roller().follower_radius
+    return concave_line(line_load, relative_radius, radius, pair.follower.material, pair.cam)
+
+
+def _with_conforming(pair: ContactPair, history: ContactHistory) -> ContactHistory:
+    """The contact, in full in a concave wall where it is to be."""
+    full, line = in_full(pair, history.line_load, history.relative_radius)
+    if line is None:
+        return history
+    changed = {name: getattr(history, name).copy() for name in (*CONFORMING, *_SHAPE)}
+    for name in CONFORMING:
+        changed[name][full] = getattr(line, name)
+    xi = line.half_width[:, None] * hertz.ELLIPSE_XI
+    changed["pressure_xi"][full], changed["pressure"][full] = xi, line.pressure(xi)
+    return replace(history, **changed)

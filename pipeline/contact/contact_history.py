@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.display import Displayed
 from camwright.geometry.extrema import first_greatest
+from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.records.trial_contents import ContactFigure
@@ -18,6 +19,9 @@ from camwright.pipeline.records.trial_contents import ContactFigure
 TWO_SCALE = "two-scale finite elements: contact patch and bodies"
 GAP_ROUND_OFF_MAX = 1e-3
 """Relative round-off of the gap beyond which the contact is that of Hertz: p0 has four digits."""
+
+_HALF_PLANE = 1e-6
+"""Relative difference of the greatest shear up to which it is that of half-planes."""
 
 
 QUANTITIES = {
@@ -82,12 +86,25 @@ class ContactHistory(Displayed):
         return np.asarray(self.gap_round_off > GAP_ROUND_OFF_MAX)
 
     @property
+    def conforming(self) -> NDArray[np.bool_]:
+        """Where a concave contact of a preview is solved in full, as conforming (n,), bool: its
+        stresses are not those of half-planes.
+        """
+        if self.tier is not Tier.PREVIEW:
+            return np.zeros(self.p0.size, dtype=bool)
+        flat = hertz.SHEAR_MAX * self.p0
+        return np.asarray(~(np.abs(self.tau_max - flat) <= _HALF_PLANE * flat))
+
+    @property
     def method(self) -> str:
         """Method of the solution, in words."""
         if self.tier is None:
             return "none: the contour does not bound a body"
         if self.tier is Tier.PREVIEW:
-            return "closed form: Hertz line contact"
+            words = "closed form: Hertz line contact"
+            if count := int(self.conforming.sum()):
+                words += f"; conforming contact in the concave wall at {count} angles"
+            return words
         words = TWO_SCALE
         if count := int(self.unsolved.sum()):
             words += (

@@ -27,6 +27,7 @@ from camwright.pipeline.contact.elasticity import plane_stress_measures as stres
 _DEPTH_MAX = 3.0
 _DEPTHS = 61
 _SPHERE_STEPS = 2000
+_SHARE_MAX = 1.17  # shear in a conforming contact over half-planes, at 15 deg: beyond, not known
 STATIONS = 1440
 """Stations of the map along the contour, 0.25 deg apart."""
 
@@ -231,7 +232,9 @@ def swept(
     ----------
     pair : ContactPair
     theta : array (m,)              cam angles of the contact, rad, increasing within one turn
-    contact : ContactHistory        at theta; its ratios of finite elements to Hertz scale the map
+    contact : ContactHistory        at theta; its ratios of finite elements to Hertz scale the map,
+                                    and where it is conforming that of the greatest shear; NaN where
+                                    half of a conforming contact is wider than 15 deg
     stations : array (n,)           cam angles of the map, rad
     line_load : array (n,)          at the stations, N/m
     friction : float                traction over pressure
@@ -249,6 +252,11 @@ def swept(
     half_width, p0 = hertz.line_contact(load, pair.relative_radius(at), pair.contact_modulus)
     half_width = half_width * _between(at, turn, contact.half_width, contact.half_width_hertz)
     p0 = p0 * _between(at, turn, contact.p0, contact.p0_hertz)
+    if contact.conforming.any():
+        # The pass is that of half-planes: scaled to the greatest shear in the wall.
+        flat = hertz.SHEAR_MAX * contact.p0
+        share = _between(at, turn, contact.tau_max, flat)
+        p0 = p0 * np.where(share <= _SHARE_MAX, share, np.nan)
     unit = rolling_pass(pair.cam.poisson, friction)
     along = np.zeros(at.size)
     if body_stress is not None:

@@ -10,6 +10,8 @@ from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.conforming_line import concave_line
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.follower.crossover import Landing, landings
 from camwright.pipeline.follower.follower_forces import follower_loads
 
@@ -21,8 +23,8 @@ class WallImpact(NamedTuple):
     """Landing on a wall, with what it does there.
 
     flight; force : greatest normal force, N, of the mass on the stiffness of the follower, NaN
-    without one; pressure : of Hertz under it, Pa; slip : of the roller's surface on the wall as it
-    lands, m/s, 0 on the wall that it has left
+    without one; pressure : under it, Pa, of Hertz or conforming; slip : of the roller's surface on
+    the wall as it lands, m/s, 0 on the wall that it has left
     """
 
     flight: Landing
@@ -67,6 +69,11 @@ def _impact(machine: Machine, contour: Contour, flight: Landing) -> WallImpact:
     pressure = np.array([np.nan])
     if np.isfinite(force) and radius[0] > 0.0:
         _, pressure = hertz.line_contact(load, radius, machine.contact_modulus)
+        bodies = (
+            Elastic(card.E, card.nu) for card in (machine.roller.material, machine.cam.material)
+        )
+        _, line = concave_line(load, radius, machine.roller.radius, *bodies)
+        pressure = pressure if line is None else line.p0
     path = float(contour.pitch.speed_and_curvature(at)[0][0])
     slip = 2.0 * speed * path if flight.crosses else 0.0
     return WallImpact(flight, force, float(pressure[0]), slip)

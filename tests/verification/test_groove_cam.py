@@ -3,6 +3,7 @@
 The case is that of tests/data/groove_feeder.toml: two strokes a turn, no spring.
 """
 
+import re
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -15,6 +16,12 @@ from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.checks.form_closure import PLATE_MOMENT
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.closed_form import closed_form_history
+from camwright.pipeline.contact.conforming_line import CONFORMING_FROM, conforming_line
+from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
+from camwright.pipeline.contact.rolling_envelope import FatigueLimits
+from camwright.pipeline.contact.rolling_envelope import swept as stresses_of_turn
 from camwright.pipeline.cycle.crossover_history import impacts
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
@@ -118,6 +125,112 @@ def test_contact_on_both_walls_by_their_radii():
     pressure = np.sqrt(load * machine.contact_modulus * flat / np.pi)
     assert cycle.contact.p0 == pytest.approx(pressure, rel=1e-9, abs=1.0)
     assert pulled.any() and not pulled.all()
+
+
+def pressed(factor):
+    """Contact of the load case under a multiple of its forces, by preview."""
+    cycle, _ = running()
+    force = factor * cycle.loads.normal_force
+    return cycle, closed_form_history(cycle.pair, cycle.theta, force)
+
+
+def test_a_concave_wall_is_conforming_under_great_loads():
+    """Persson's closed form at its angle where half the contact is wider than 0.02 of the radii;
+    elsewhere bit for bit half-planes. Same elastic constants of roller and cam.
+    """
+    cycle, contact = pressed(400.0)
+    roller, modulus = cycle.machine.roller.radius, cycle.pair.contact_modulus
+    middle = cycle.contour.pitch.radius_of_curvature(cycle.theta)
+    pulled = cycle.loads.axial_force < 0.0
+    wall = np.where(pulled, middle, -middle) + roller  # > 0: concave
+    concave = (wall > roller) & (contact.line_load > 0.0)
+    mean = np.sqrt(roller * np.where(concave, wall, roller))
+    full = concave & (contact.half_width_hertz > CONFORMING_FROM * mean)
+    np.testing.assert_array_equal(contact.conforming, full)
+    assert 50 < full.sum() < 0.5 * full.size
+    for name in ("p0", "half_width"):
+        plane = getattr(contact, f"{name}_hertz")
+        np.testing.assert_array_equal(getattr(contact, name)[~full], plane[~full])
+    for k in np.flatnonzero(full)[::9]:
+        number = 2.0 * modulus * (wall[k] - roller) / contact.line_load[k]
+        angle = persson_contact_angle(number)
+        exact = persson_pressure(angle) * contact.line_load[k] / mean[k]
+        assert contact.p0[k] == pytest.approx(exact, rel=1e-6)
+        assert contact.half_width[k] == pytest.approx(mean[k] * np.sin(angle), rel=1e-6)
+        # the pressure of the record carries the load: trapezoids of 64 steps
+        place, pressure = contact.pressure_xi[k], contact.pressure[k]
+        load = np.trapezoid(pressure, place)
+        assert load == pytest.approx(contact.line_load[k], rel=2e-3)
+    assert (contact.p0 > contact.p0_hertz)[full].all()
+    assert "conforming contact in the concave wall" in contact.method
+    bare = closed_form_history(replace(cycle.pair, wall=None), cycle.theta, 0.0 * cycle.theta)
+    assert not bare.conforming.any() and bare.method == "closed form: Hertz line contact"
+
+
+def test_the_map_below_a_concave_wall():
+    """The stresses of its stations by the greatest shear of the contact; none of a wide one."""
+    cycle, contact = pressed(400.0)
+    load, limits = contact.line_load, FatigueLimits(400e6, 600e6)
+    full = np.flatnonzero(contact.conforming)
+    whole = stresses_of_turn(cycle.pair, cycle.theta, contact, cycle.theta, load, limits=limits)
+    shear = whole.tau_max.max(axis=1)
+    assert shear[full] == pytest.approx(contact.tau_max[full], rel=2e-3)
+    assert (shear[full] > 1.01 * hertz.SHEAR_MAX * contact.p0[full]).all()
+    _, wide = pressed(60000.0)
+    shear = stresses_of_turn(
+        cycle.pair, cycle.theta, wide, cycle.theta, wide.line_load
+    ).tau_max.max(axis=1)
+    beyond = wide.conforming & ~(wide.tau_max < 1.17 * hertz.SHEAR_MAX * wide.p0)
+    assert beyond.any()
+    np.testing.assert_array_equal(np.isnan(shear), beyond)
+
+
+def soft_roller():
+    """The case with a roller of nylon and ten times the mass, without ends."""
+    text = FILE.read_text(encoding="utf-8")
+    changes = {
+        'material = "bearing_steel"\n\n[roller.b': 'material = "nylon"\n\n[roller.b',
+        "[materials]\n": '[materials]\nnylon = { E = "2.8 GPa", nu = 0.4,'
+        ' yield_strength = "80 MPa", tensile_strength = "80 MPa",'
+        ' density = "1150 kg/m^3", expansion = "8e-5 1/K", source = "made up" }\n',
+        'mass = "3 kg"': 'mass = "30 kg"',
+        "positions = 720": "positions = 90",
+        'end = { kind = "sharp" }\n': "",
+        'end = { kind = "chamfer", size = "0.6 mm" }\n': "",
+    }
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new, 1)
+    return preview_case(parse_case(text), corners=False)
+
+
+def test_a_soft_roller_conforms_and_the_check_says_so():
+    """The note has conforming pressure, error bar and Hertz; landings by the same contact."""
+    found = soft_roller()
+    note = next(each for each in found.checks if each.id == "contact_pressure").note
+    assert re.search(
+        r"where the wall is concave up to [\d.]+ MPa \+- [\d.]+ %, conforming contact over"
+        r" [\d.]+ deg at [\d.]+ deg in over-speed; Hertz [\d.]+ MPa", note
+    )  # fmt: skip
+    cycle = max(found.cycles, key=lambda each: each.cam_speed)
+    bodies, roller = (cycle.pair.follower.material, cycle.pair.cam), cycle.machine.roller.radius
+    solved = 0
+    for one in cycle.impacts:
+        at = np.array([one.flight.landing])
+        middle = float(cycle.contour.pitch.radius_of_curvature(at)[0])
+        wall = roller - one.flight.wall * middle
+        load = np.array([one.force / cycle.machine.contact_width])
+        if wall > roller:
+            line = conforming_line(load, roller, np.array([wall]), *bodies)
+            if line.half_width_hertz[0] > CONFORMING_FROM * np.sqrt(roller * wall):
+                solved += 1
+                assert one.pressure == pytest.approx(line.p0[0], rel=1e-9)
+                continue
+        curvature = 1.0 / roller - 1.0 / wall
+        assert one.pressure == pytest.approx(
+            np.sqrt(load[0] * cycle.pair.contact_modulus * curvature / np.pi), rel=1e-9
+        )
+    assert solved
 
 
 def test_the_roller_turns_the_other_way_on_the_outer_wall():
