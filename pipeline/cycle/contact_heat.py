@@ -22,11 +22,16 @@ def flash_history(
     contact: ContactHistory,
     sliding: FaceSliding,
 ) -> Array | None:
-    """Flash temperature rise of a sliding face at each cam angle (n,), K; None without friction or
-    thermal data.
+    """Flash temperature rise of a sliding face at cam angles theta (n,), rad, equally spaced, (n,),
+    K; None without its friction or thermal data.
 
     Where the face reverses its motion through the contact it takes no heat: the cusp between two
     angles is that of the nearer.
+
+    Parameters
+    ----------
+    contact : ContactHistory   at theta: half-widths
+    sliding : FaceSliding      at theta: friction power and speed of the cam on the face
     """
     if machine.face.friction is None:
         return None

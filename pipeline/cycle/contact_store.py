@@ -23,11 +23,13 @@ _WALL_ANGLES = 720  # at which the wall that carries enters the key of a piece
 def kept_piece(
     store: ContactStore, load_case: str, index: int, key: str, compute: Callable[[], Arrays]
 ) -> Arrays:
-    """Arrays of a piece by name, from the store, or computed and stored.
+    """Arrays of a piece of the contact by name, from the store, or computed and stored.
 
     Parameters
     ----------
-    key : str   of `piece_key`; a piece of other inputs is computed again
+    index : int          number of the piece in its load case
+    key : str            of `piece_key`; a piece of other inputs is computed again
+    compute : function   arrays of the piece by name
 
     Raises
     ------

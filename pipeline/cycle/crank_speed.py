@@ -93,12 +93,15 @@ def follower_inertia(
 def mechanism_torque(
     pitch: FollowerPath, system: FollowerSystem, gear_ratio: float, count: int
 ) -> MechanismTorque:
-    """Function of crank speed (count,), rad/s, and acceleration (count,), rad/s2, for the torque of
-    spring, weight, external force and friction on the crank, N m.
+    """Function of crank speed (count,), rad/s, and acceleration (count,), rad/s2, at equal angles
+    of a cam turn, for the torque of spring, weight, external force and friction on the crank, N m.
 
-    J(theta) includes the inertia of the follower.
+    The inertia of the follower is in J(theta), not in this torque. Friction depends on the contact
+    force, and thus on speed and acceleration of the crank.
 
-    Friction depends on the contact force, and thus on speed and acceleration of the crank.
+    Parameters
+    ----------
+    gear_ratio : float   crank speed over cam speed
     """
     on_cam = torque_on_cam(pitch, system, uniform_turn(count))
 
@@ -124,12 +127,17 @@ def speed_study(
 
     Parameters
     ----------
-    torque : array (n,)          N m at equal shaft angles of a cam turn, without the torque of
-                                 `inertia`
-    inertia : Inertia            of the engine, at the same angles
-    mean_speed : float           rad/s
-    mechanism_inertia : float    kg m2, of the rotating parts of the mechanism, at the crank
-    span : float                 rad of the shaft in a cam turn
+    torque : array (n,)                            N m at equal shaft angles of a cam turn, without
+        the torque of `inertia`
+    inertia : Inertia                              of the engine, at the same angles
+    mean_speed : float                             of the crank, rad/s
+    pitch, system : FollowerPath, FollowerSystem   motion of the follower on the cam, and what acts
+        on it
+    gear_ratio : float                             crank speed over cam speed
+    mechanism_inertia : float                      kg m2, of the rotating parts of the mechanism, at
+        the crank
+    load : Load or MotorLine                       torque that the engine drives, by speed
+    span : float                                   rad of the shaft in a cam turn
 
     Raises
     ------
@@ -308,10 +316,12 @@ def consistency(
 
     Parameters
     ----------
-    demand : array (n,)   crank torque about its mean, N m, for which the lift is drawn; None where
-                          limits shape the lift: power and energy are then not compared, as
-                          for a torque of zero
-    measured : bool       the measured speed is that of this load case
+    study : SpeedStudy or None    for the work of the mechanism; None: not compared
+    demand : array (n,) or None   crank torque about its mean, N m, for which the lift is drawn;
+        None where limits shape the lift: power and energy are then not compared, as for a torque of
+        zero
+    rubbing : Rubbing or None     normal loads of the guides; None: those of point supports
+    measured : bool               the measured speed is that of this load case
     """
     ratio, shaft, torque = machine.gear_ratio, machine.crankshaft, machine.torque
     if torque is None:

@@ -58,6 +58,13 @@ def impacts(machine: Machine, contour: Contour) -> tuple[WallImpact, ...]:
 
 
 def _impact(machine: Machine, contour: Contour, flight: Landing) -> WallImpact:
+    """What a landing does to the wall: normal force, Hertz pressure and slip; NaN where the flight
+    does not end.
+
+    Parameters
+    ----------
+    flight : Landing   of the rigid follower, with wall, angle, speed and force at the landing
+    """
     at, speed = np.array([flight.landing % FULL_TURN]), machine.cam_speed
     if np.isnan(flight.landing):
         return WallImpact(flight, np.nan, np.nan, np.nan)

@@ -212,10 +212,11 @@ class Cycle(Tabled):
 
     @KeptResult
     def sideways(self) -> GuideReactions | None:
-        """Reactions of the guides across the plane of the cam, under the couple of a tilt of the
-        contact that they force.
+        """Reactions of the guides across the plane of the cam, under the couple that a forced tilt
+        of the contact bends the stem with.
 
-        Of the part of `follower_moment` that bends the stem; None where none is forced.
+        The part of `follower_moment` in that plane, at the angles with a forced tilt; None where
+        there is none.
         """
         forced = turn_of_line(self).tilt.forced > 0.0
         couple = np.where(forced, self.follower_moment, 0.0) * np.cos(self.loads.pressure_angle)

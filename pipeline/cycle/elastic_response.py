@@ -85,7 +85,7 @@ def elastic_history(
     lost: tuple[Flight, ...] = ()
     force = float(response.contact_force.max())
     if response.lost and flights:
-        k = _held(response.contact_force)
+        k = _start_position(response.contact_force)
         start = (float(response.position[k]), float(response.velocity[k]))
         first = float(response.theta[k])
         jump = bounce(lift, _law(cam_speed), follower, BOUNCE_TURNS, start, first)
@@ -93,12 +93,17 @@ def elastic_history(
     return ElasticHistory(response, at - response.position, lost, force, _method(cam_speed))
 
 
-def _held(contact_force: Array) -> int:
-    """Number of a position in the longest contact of a turn by the contact force (n,), N; that of
-    the greatest force where there is no contact.
+def _start_position(contact_force: Array) -> int:
+    """Number of the position from which the motion is integrated: within the longest contact of a
+    turn, `_START_BEFORE` of a turn before its end, at most half of the contact before it.
 
-    `_START_BEFORE` its end, at least in its middle: the response with the contact kept is least
-    disturbed there by what would follow a loss of contact.
+    The response with the contact kept is least disturbed there by what would follow a loss of
+    contact. Without any contact the position of the greatest force.
+
+    Parameters
+    ----------
+    contact_force : array (n,)   of the response with the contact kept, N; negative at a loss of
+        contact
     """
     lost, count = np.flatnonzero(contact_force < 0.0), contact_force.size
     if lost.size == count:

@@ -115,7 +115,14 @@ def pivot_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
 
 
 def loaded_length(knots: Array, line: Array) -> Array:
-    """Evenly spaced positions, m, over the loaded knots (k,) and their neighbours."""
+    """Evenly spaced positions (SLICES,), m, over the loaded knots of a guide and their neighbours;
+    over all knots without load.
+
+    Parameters
+    ----------
+    knots : array (k,)   positions along the guide, m, ascending
+    line : array (k,)    line load at the knots, N/m
+    """
     on = np.flatnonzero(line)
     if not on.size:
         return np.linspace(knots[0], knots[-1], SLICES)

@@ -86,7 +86,7 @@ class LengthHistory:
         freeze(self, centre=self.centre, level=self.level, tilted=self.tilted, moment=self.moment)
 
     def with_rows(self, rows: NDArray[np.intp], solved: FactorRange) -> LengthHistory:
-        """The history with the factors `solved` of the angles numbered `rows`."""
+        """The history with the factors `solved` (k,) at the positions numbered `rows` (k,)."""
         changed = {}
         for name, values in solved._asdict().items():
             column = getattr(self, name).copy()
@@ -135,8 +135,8 @@ class LengthHistory:
         )
 
     def sentence(self, place: int) -> str:
-        """Sentence on the kind of pressure along the line at the angle of this number, its moment
-        and tilt.
+        """Sentence on the kind of pressure along the line, its moment and tilt, at one position of
+        the turn; `place`: its number.
         """
         mean = shown(self.mean_length, "mm")
         what = "greatest pressure along the line, which is bounded"
@@ -157,7 +157,9 @@ class LengthHistory:
         )
 
     def tier(self, place: int) -> str:
-        """Model of the factor and its error bar at the angle of this number, in words."""
+        """Model of the factor and its error bar at one position of the turn, in words; `place`: its
+        number.
+        """
         bar = f"error bar {100.0 * self.error[place]:.2g} %"
         if self.correction is None:
             return f"by half-spaces with mirrored ends, {bar} as stated, finite elements not solved"
@@ -317,7 +319,13 @@ def length_histories(turns: Sequence[TurnOfLine]) -> tuple[LengthHistory | None,
 
 
 def _parts(turns: Sequence[TurnOfLine], members: Sequence[int]) -> Iterator[list[int]]:
-    """Members of up to `_CONTACTS_AT_ONCE` contacts; one turn at least."""
+    """Groups of turns to be evaluated together, by number: up to `_CONTACTS_AT_ONCE` positions in
+    all, one turn at least.
+
+    Parameters
+    ----------
+    members : sequence of int   numbers of turns of the same bodies
+    """
     part: list[int] = []
     contacts = 0
     for index in members:
@@ -471,8 +479,12 @@ def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:
 
 
 def factor_at_pressure(pair: FinitePair, pressure: float, mean_length: float) -> float:
-    """Pressure along an untilted line of contact over its plane-strain pressure `pressure`, Pa;
-    mean_length : over which the pressure at a corner is averaged, m.
+    """Stated pressure of an untilted line of contact over its plane-strain peak pressure.
+
+    Parameters
+    ----------
+    pressure : float      of plane strain, Pa: sets the force
+    mean_length : float   over which the pressure at a corner is averaged, m
     """
     half_width = 2.0 * pressure / (pair.contact_modulus * pair.curvature)
     force = 0.5 * np.pi * half_width * pressure * pair.contact_length

@@ -360,7 +360,12 @@ class LoadedCam:
         return pivot and replace(pivot, spring=self.spring_shape)
 
     def _about(self, pivot: ArmPivot, added: Value = 0.0) -> PivotBalance:
-        """Equilibrium about a pivot with its friction, and an added force of the spring, N."""
+        """Equilibrium of an arm about a pivot with its friction.
+
+        Parameters
+        ----------
+        added : float or array   force of the spring besides that of its travel, such as surge, N
+        """
         speed, motion = self.speed, self.motion
         acceleration = speed**2 * self.jet.lift_d2
         spring = self.spring_force + added
@@ -377,7 +382,9 @@ class LoadedCam:
 
     @cached_property
     def pivoted_worst(self) -> PivotBalance | None:
-        """The same at the maximum friction of the pivot; None where that is not known."""
+        """Axial force, load and friction of the pivot at its maximum friction coefficient; None
+        without a pivot or where that coefficient is not known.
+        """
         most = self.numbers.get(f"{FRICTION}_greatest")
         if self.pivot is None or most is None:
             return None
@@ -537,7 +544,7 @@ class LoadedCam:
 
     @cached_property
     def hot(self) -> OfGuides | None:
-        """Friction force of the guides at maximum friction, N; None where not known."""
+        """Friction forces of guides A and B at maximum friction, N; None where that is not known."""
         friction, jam = greatest_friction(self.numbers), self.jam_worst
         if friction is None or jam is None:
             return None

@@ -54,7 +54,9 @@ class Numbers:
     )
 
     def get(self, key: str) -> Value | None:
-        """Value at a dotted key, SI; None where the case omits it."""
+        """Value at a dotted key, SI: as changed, else as it follows from others in `DERIVED`, else
+        of the case; None where none of them has it.
+        """
         if key in self.changed:
             return self.changed[key]
         if key in DERIVED:
@@ -102,11 +104,18 @@ class Numbers:
     def each(
         self, figures: Callable[[Numbers], Sequence[Value]], keys: Sequence[str], most: int = 0
     ) -> tuple[Value, ...]:
-        """Figures of a part that `figures` gives for the numbers of one machine; of many designs
-        arrays (m, 1), made once for each different set of the numbers at `keys`.
+        """Figures of a part from the numbers of its machine; of many designs arrays (m, 1), m
+        designs, made once for each different set of the numbers at `keys`.
 
-        They depend on the case and on these numbers alone, and are made once for all designs of the
-        same numbers, load cases and checks; NaN of more than `most` different ones, if not 0.
+        They are kept and serve all checks and load cases of these numbers.
+
+        Parameters
+        ----------
+        figures : function       figures of one machine, which depend on its case and the numbers at
+            `keys` alone
+        keys : sequence of str   dotted keys of the numbers that vary
+        most : int               different sets up to which they are made, NaN for all beyond; 0:
+            any number
         """
         values = tuple(self.get(key) for key in keys)
         cached = self._figures.get(figures)
@@ -121,8 +130,14 @@ class Numbers:
         values: Mapping[str, Value | None],
         most: int,
     ) -> tuple[Value, ...]:
-        """Figures evaluated for each different row of the values, (m, 1) each; NaN for all of more
-        than `most` rows, if not 0.
+        """Figures of `each` made for each different row of the values, (m, 1) each; as floats where
+        no value is an array.
+
+        Parameters
+        ----------
+        values : mapping   numbers by key; arrays (m, 1) of m designs
+        most : int         different rows up to which they are made, NaN for all beyond; 0: any
+            number
         """
         arrays = {key: each for key, each in values.items() if isinstance(each, np.ndarray)}
         if not arrays:
@@ -190,7 +205,9 @@ def _of_pivot(name: str, numbers: Numbers) -> Value | None:
 
 
 def _pivot_friction(numbers: Numbers) -> Value | None:
-    """Maximum friction coefficient of a pivot."""
+    """Maximum friction coefficient of a pivot: as stated, else the nominal one with the tolerance;
+    None without a nominal one.
+    """
     nominal = numbers.get(FRICTION)
     if nominal is None:
         return None
@@ -257,7 +274,9 @@ def _size(numbers: Numbers) -> Value:
 
 
 def _ball_circle(numbers: Numbers) -> Value | None:
-    """Pitch diameter of the balls, m: of the bearing, else of its ring."""
+    """Pitch diameter of the balls, m: of the bearing, else of its ring; None where neither is
+    stated.
+    """
     stated: Value | None = None
     if numbers.case is not None:
         stated = value_of(numbers.case, "roller.bearing.pitch_diameter")
@@ -265,8 +284,8 @@ def _ball_circle(numbers: Numbers) -> Value | None:
 
 
 def _cleanliness_load(numbers: Numbers) -> Value | None:
-    """Contamination factor times fatigue load limit of the roller bearing, e_C P_u, N; None without
-    either.
+    """Contamination factor times fatigue load limit of the roller bearing, e_C P_u, N; None unless
+    cleanliness and fatigue load limit are known.
     """
     case = numbers.case
     cleanliness = None if case is None else value_of(case, "roller.bearing.contamination")
@@ -280,7 +299,7 @@ def _cleanliness_load(numbers: Numbers) -> Value | None:
 
 def _waviness(numbers: Numbers) -> Value | None:
     """Height of the waves of the track, m: stated, else usual for the process, at most the profile
-    tolerance.
+    tolerance; None where neither height nor tolerance is stated.
     """
     stated, band = numbers.get("cam.waviness_height"), numbers.get("cam.profile_tolerance")
     if stated is not None or band is None:

@@ -81,16 +81,17 @@ class RippleMap:
 def ripple_map(
     case: Case, states: Sequence[Machine], pitch: FollowerPath, rubbing: Rubbing
 ) -> RippleMap | None:
-    """Ripple map from slowest load case to over-speed; None without a running engine.
+    """Ripple map from slowest load case to over-speed; None without a running engine, and where its
+    torque without the cam does not vary.
 
     The cam torque is quasi-static at constant speed, with follower inertia, viscous drag and guide
-    friction, without surge. Of a cylinder model the load varies from that of the first running
-    load case to full load, at an intake pressure of that of the exhaust.
+    friction, without surge. Of a cylinder model the load varies from that of the first running load
+    case to full load, at an intake pressure of that of the exhaust.
 
     Parameters
     ----------
-    states : sequence    machine in each load case, with its torque
-    rubbing : Rubbing    of the guides, from the solved first load case
+    states : sequence   machine in each load case, with its torque
+    rubbing : Rubbing   of the guides, from the solved first load case
 
     Raises
     ------

@@ -401,10 +401,11 @@ def _with_ends(
 
 
 def bore_error(pair: ContactPair, cycles: tuple[Cycle, ...]) -> float | None:
-    """Relative error of the greatest bore stress, by a mesh of half the element size.
+    """Relative error of the greatest bore stress of all cycles, by a mesh of half the element size.
 
     3 times the change at the worst cam angle, under the same excluded zone: the grid convergence
-    index of two meshes at the order 1. None where no bore is solved.
+    index of two meshes at the order 1. None where a cycle has no bore stress or an unknown one, and
+    without load.
 
     References
     ----------

@@ -287,7 +287,13 @@ class _Resonant:
         return least, greatest
 
     def grid(self, machine: Machine, known: Array) -> Array:
-        """Cam speeds (m,), rad/s: equally spaced, the known ones, and about every resonance."""
+        """Cam speeds (m,), rad/s, ascending, from standstill to the greatest known one: equally
+        spaced, the known ones, and about every resonance of the spring and of the elastic follower.
+
+        Parameters
+        ----------
+        known : array (k,)   cam speeds that are included, rad/s
+        """
         top = float(known.max())
         speeds = [np.linspace(0.0, top, UNIFORM), known]
         enough = SIGNIFICANT * self.spring.preload
@@ -368,7 +374,15 @@ class _Follower:
         )
 
     def _pivoted(self, push: Array, speed: Array, surge: Array) -> Array:
-        """Axial force (m, n) of a force without friction, at speeds (m, 1), rad/s; as it is."""
+        """Axial force (m, n), N, from the one without friction: with the friction of a pivot;
+        unchanged without a pivot.
+
+        Parameters
+        ----------
+        push : array (m, n)    axial force without friction, surge included, N
+        speed : array (m, 1)   of the cam, rad/s
+        surge : array (m, n)   force of the surge on the follower, N
+        """
         pivot = self.machine.system.pivot
         if pivot is None or self.pulls is None:
             return push
@@ -410,7 +424,15 @@ class _Follower:
         }
 
     def elastic(self, speed: Array, moving: NDArray[np.complex128]) -> Array:
-        """Axial contact force (m, n) of the mass on its stem, N; the spring with its surge."""
+        """Axial contact force (m, n), N, of the mass on its elastic stem, by harmonics; the spring
+        with its surge.
+
+        Parameters
+        ----------
+        speed : array (m, 1)            of the cam, rad/s
+        moving : array (m, harmonics)   dynamic stiffness of the coils at the moving end less the
+            rate, N/m
+        """
         machine, spectrum = self.machine, self.spectrum
         stem, rate = machine.axial_stiffness, machine.spring.rate
         mass = machine.mass_without_spring
@@ -436,7 +458,8 @@ def _bent(spring: Spring, lift: Array) -> Array:
 
 
 def _met(modes: Array, peak: Array, enough: float, top: float) -> Array:
-    """Speeds up to `top` at which a harmonic meets a mode; the strongest.
+    """Cam speeds up to `top`, rad/s, at which a harmonic of the lift meets a natural frequency; the
+    strongest `_MET` of them.
 
     Parameters
     ----------

@@ -88,7 +88,9 @@ def turns(
 
     Parameters
     ----------
-    bounds : bool   solve the bounds of the friction at once, too, not when they are first read
+    positions : int   equal cam angles of the turn
+    coarse : bool     few knots in the guides and a constant cam speed, for ratios of demands
+    bounds : bool     solve the bounds of the friction at once, too, not when they are first read
     """
     theta, knots = uniform_turn(positions), COARSE_KNOTS if coarse else KNOTS
     strokes = _Strokes(inputs, theta, knots)

@@ -76,7 +76,8 @@ class ValveCam:
         return np.arctan2(self.motion(phi, 1) - self.offset, self.height_base + self.motion(phi))
 
     def contour_radius_square(self, phi: ArrayLike, derivative: int = 0) -> Array:
-        """Square r_A^2 of the contact radius (eq. 6.6), m^2, or its derivative, m^2/rad.
+        """Square r_A^2 of the contact radius (eq. 6.6), m^2, at cam angles phi (...), rad, or with
+        `derivative` 1 its derivative, m^2/rad.
 
         For a flat follower (r0 + s)^2 + s'^2.
         """
@@ -229,6 +230,11 @@ class ElasticValve:
         ----------
         s, slope : array (...)   m and m/rad
         speed : array (...)      omega, rad/s
+
+        Raises
+        ------
+        ContactError
+            If the exact equation has no real solution.
         """
         s, total = np.asarray(s, dtype=float), self._sum
         x1 = self.stiffness / total * np.asarray(slope)
@@ -247,10 +253,18 @@ class ElasticValve:
         return s - work / (2.0 * reach)
 
     def integrated(self, motion: SegmentMotion, speed: float, phi: ArrayLike) -> Array:
-        """Displacement (n,) by eq. 12 at constant speed, m, from rest at increasing angles, rad.
+        """Displacement (n,) by eq. 12 at constant speed, m, from rest on the compressed train.
+
+        Parameters
+        ----------
+        motion : SegmentMotion   lift s(phi), m
+        speed : float            of the cam, rad/s
+        phi : array (n,)         cam angles, rad, increasing within 0 and 2 pi
 
         Raises
         ------
+        InputError
+            If the angles do not increase.
         ContactError
             If the integration fails.
         """

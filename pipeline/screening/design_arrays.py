@@ -79,7 +79,7 @@ class Designs:
     results: dict[str, object] = field(default_factory=dict, init=False)
 
     def value(self, key: str) -> Array:
-        """Values at a key (m, 1), SI; NaN where the case omits it."""
+        """Values at a dotted key of the m designs (m, 1), SI; NaN where the case omits it."""
         if key in self.columns:
             return self.columns[key]
         if key in self.of_springs:
@@ -186,7 +186,9 @@ class Designs:
 
     @property
     def top(self) -> LoadedCam:
-        """The unloaded cams at their maximum lift, (m, 1); with the preloads of the load cases."""
+        """The unloaded cams at their maximum lift, (m, 1); with the greatest preload of the load
+        cases.
+        """
         lift = self.highest[:, None]
         preload = np.max([cam.state.preload for cam in self.cams], axis=0)
         numbers = self.numbers | {"spring.preload_greatest": preload}
@@ -274,9 +276,15 @@ class Designs:
         return np.asarray(state.torque_reduction) if state.torque_reduction else None
 
     def _power(self, number: int, state: LoadCase, speed: Array) -> Array | None:
-        """Mean power of the machine in a load case (m, 1), W; see `ScreenedState`.
+        """Mean power of the machine in load case `number` (m or 1, 1), W: as stated, else mean
+        torque times crank speed.
 
-        None without torque at a speed, NaN where the mean torque is lost in rounding.
+        None where the machine is not fired or stands still, and without torque; NaN where the mean
+        torque is lost in rounding.
+
+        Parameters
+        ----------
+        speed : array (m, 1)   of the crank in this load case, rad/s
         """
         throughput, torque = self.throughputs.get(number), self.torques.get(number)
         if not (state.fired and state.speed > 0.0):
@@ -337,7 +345,9 @@ class Designs:
 
     @KeptResult
     def unbalance(self) -> tuple[Array, Array]:
-        """Unbalance (m, 1), kg m, and direction, rad, of the cams; zero with a counter-hole."""
+        """Unbalance of the cams, kg m, and its direction, rad, both (m, 1); zero with a
+        counter-hole.
+        """
         cam, (along, across) = self.machine.cam, self.whole.motion.contact_point
         if cam.counter_hole is not None:
             return np.zeros((self.count, 1)), np.zeros((self.count, 1))

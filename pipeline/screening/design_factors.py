@@ -66,12 +66,15 @@ Factor = Array | Sequence[TomlValue]
 
 
 def is_array(case: Case, key: str, values: Factor) -> bool:
-    """Whether designs that differ in a key can be solved together as arrays.
+    """Whether designs that differ in a key can be solved together as arrays; `values`: of the key,
+    one a design.
 
-    False for a key in a table that the case leaves out, for a speed that is zero in a design, where
-    the engine has no torque, for rate and preload of a gas or torsion spring, for a key of an arm
-    that the case leaves out, on which the sections depend, for the length of an arm with a rocker,
-    and for an arm whose lift is that of an eccentric disc.
+    True for the keys of `ARRAYS` and for preload and speed of a load case. False still for a key in
+    a table that the case leaves out, for a smoothing that is constrained, for a speed that is zero
+    in a design, where the engine has no torque, for rate and preload of a gas or torsion spring,
+    for a key of an arm or of the link of its spring that the case leaves out, on which the sections
+    depend, and for centre distance and length of an arm with a rocker, or with the lift of an
+    eccentric disc.
     """
     on_arc = case.spring.shape is not None and not key.startswith("spring.link.")
     if on_arc and key.endswith((".preload", "spring.rate")):
@@ -131,8 +134,14 @@ def count_of(factors: Mapping[str, Factor]) -> int:
 
 
 def groups(case: Case, factors: Mapping[str, Factor]) -> Iterator[Group]:
-    """Designs of one group differ in keys of array paths alone; groups in order of first
-    appearance. A design whose case or values are refused is a group of its own with `refused`.
+    """Groups of designs that are solved together, in order of first appearance.
+
+    Designs of one group differ in keys of array paths alone. A design whose case or values are
+    refused is a group of its own with `refused`.
+
+    Parameters
+    ----------
+    factors : mapping   dotted key -> values, one a design
 
     Raises
     ------
@@ -163,7 +172,14 @@ def groups(case: Case, factors: Mapping[str, Factor]) -> Iterator[Group]:
 
 
 def _unread(quantities: Mapping[str, object], arrays: Mapping[str, Factor], row: int) -> str:
-    """Refusal of the first text of a design that is no number with a unit; "" without one."""
+    """Refusal of the first text of a design that is no number with a unit; "" without one.
+
+    Parameters
+    ----------
+    quantities : mapping   quantity of each key, which has its unit
+    arrays : mapping       dotted key -> values, one a design
+    row : int              number of the design
+    """
     for key, values in arrays.items():
         quantity, value = quantities[key], "" if _is_numeric(values) else _plain(values[row])
         if isinstance(quantity, In) and isinstance(value, str) and value:
@@ -179,7 +195,13 @@ def _is_numeric(values: Factor) -> bool:
 
 
 def _plain(value: object) -> TomlValue:
-    """A value of an array as one of a TOML file."""
+    """A value of an array as one of a TOML file.
+
+    Raises
+    ------
+    InputError
+        If it is no text, number, true or false.
+    """
     plain = value.item() if isinstance(value, np.generic) else value
     if isinstance(plain, (str, int, float, bool)):
         return plain
@@ -187,7 +209,13 @@ def _plain(value: object) -> TomlValue:
 
 
 def _numbers(quantity: object, values: Factor, rows: Sequence[int]) -> Array:
-    """Values of a factor in the given rows (m,), SI; NaN where a value cannot be read."""
+    """Values of a factor for the designs numbered `rows` (m,), SI; NaN where one cannot be read.
+
+    Raises
+    ------
+    InputError
+        If the values are no numbers and the key is not that of a number.
+    """
     if isinstance(values, np.ndarray) and _is_numeric(values):
         return np.asarray(values[rows], dtype=float)
     if not isinstance(quantity, In):
@@ -305,7 +333,9 @@ def _values(case: Case, values: Mapping[str, Array], count: int) -> At:
 def _suspects(
     case: Case, values: Mapping[str, Array], highest: Array, travel: Array | None
 ) -> NDArray[np.bool_]:
-    """Designs that may be refused (m,): out of bounds, or against one another."""
+    """Designs that may be refused (m,): a value out of bounds, or values that do not fit one
+    another; inputs as those of `refusals`.
+    """
     count = highest.size
     at = _values(case, values, count)
     wrong = np.zeros(count, dtype=bool)

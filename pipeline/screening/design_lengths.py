@@ -143,6 +143,9 @@ def factors_of(
         raised[contact] = raised_load(force[contact])
 
     def solve(chosen: NDArray[np.bool_]) -> None:
+        """Fill in the factors at the chosen designs and angles (m, n), one shape of contact after
+        another.
+        """
         for number, shape in enumerate(shapes):
             machine = _of_shape(designs.machine, dict(zip(varied, shape[1:].tolist(), strict=True)))
             at = (member == number)[:, None] & chosen

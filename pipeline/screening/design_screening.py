@@ -178,7 +178,14 @@ class _Blocks:
     def _solved(
         self, rows: NDArray[np.intp], values: Mapping[str, Array]
     ) -> Iterator[tuple[NDArray[np.intp], Mapping[str, Column | str]]]:
-        """Columns of designs; those that cannot be solved are found by halves and say why."""
+        """Rows and columns of designs; where they cannot be solved, of their halves, down to the
+        single designs that are refused, with the reason.
+
+        Parameters
+        ----------
+        rows : array (m,)   numbers of the designs
+        values : mapping    by key of an array path, SI, each (m,)
+        """
         try:
             yield rows, self._columns(values)
         except CamError as error:

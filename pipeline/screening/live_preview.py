@@ -280,7 +280,14 @@ class _Neighbours:
 
 
 def _in_range(case: Case, lift: Array) -> _Neighbours:
-    """Neighbours in the widest ranges whose ends and corners are accepted, with their torques."""
+    """Designs about that of a run, with their engine torques, in the widest ranges of the factors
+    whose ends and corners are accepted; without factors where the design of the run or every range
+    is refused.
+
+    Parameters
+    ----------
+    lift : array (N,)   of the run, m
+    """
     factors = list(_factors(case))
     steps = (0.25, 0.5, 0.75, 1.0)
     near = _Neighbours(case, lift, tuple(factors), {})
@@ -331,6 +338,9 @@ def _check_figures(screened: Screened) -> Measured:
     of_turns &= declared.id != TORQUE_REDUCTION.id  # of the load cases that require one
 
     def figures(designs: Designs) -> _Figures | None:
+        """Demands and limit of the check; None where the screening has a bound of it alone, lacks a
+        limit, or the limit differs between load cases.
+        """
         if screened.is_bound(designs) or declared.is_bound(Tier.SCREENING):
             return None
         states = range(len(designs.cams)) if of_turns else (-1,)
@@ -506,6 +516,11 @@ def live_record(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument 
 def _fitted(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | None:
     """Document of response surfaces about the design of a run, fitted to screened designs; None
     where no range or no surface can be had.
+
+    Parameters
+    ----------
+    lift : array (N,)          of the run, m
+    checks : sequence of str   ids of the checks to be followed
     """
     near = _in_range(case, lift)
     if not near.factors:
@@ -614,7 +629,15 @@ class _RunDesign(NamedTuple):
 
 
 def _check(name: str, sample: _Sample, fit: SurfaceFit, run: _RunDesign) -> LiveQuantity | str:
-    """A check, or why it is not followed."""
+    """Surfaces of the demand and the limit of a check; else the reason in words why it is not
+    followed.
+
+    Parameters
+    ----------
+    name : str         id of the check
+    sample : _Sample   values at the settings of the fit
+    run : _RunDesign   design of the run, for the deviation of the screening
+    """
     screened = SCREENED_BY_ID.get(name)
     if screened is None:
         return _DEEPER
@@ -683,7 +706,16 @@ class _Away(NamedTuple):
     def beyond(
         self, surface: LiveSurface, values: Array, demand: Array, valued: NDArray[np.bool_]
     ) -> bool:
-        """Whether a surface of demands or limits (m,), SI, errs by more than `WORST_ERROR`."""
+        """Whether a surface errs by more than `WORST_ERROR` of the greater of demand and limit at a
+        design with a value.
+
+        Parameters
+        ----------
+        surface : LiveSurface   record of the surface of `values`
+        values : array (m,)     demands or limits, SI
+        demand : array (m,)     demands, SI
+        valued : array (m,)     designs with a value
+        """
         size = np.fmax(np.abs(demand), np.abs(self.limit))[valued]
         error = surface["error"]
         away = error * np.abs(values[valued]) if surface["share"] else error / self.scale
@@ -693,15 +725,15 @@ class _Away(NamedTuple):
 def _parts(
     name: str, sample: _Sample, fit: SurfaceFit, rank: Mapping[int, Array], away: _Away
 ) -> list[LivePart]:
-    """Records of the surfaces of a quantity by load case, for those that govern at one design of
-    the sample at least.
-
-    rank : mapping   by load case, the values (m,) by which they are compared at each design: the
-    greatest governs; NaN never does
+    """Records of the surfaces of a quantity by load case, for those that govern, or nearly so, at
+    one design of the sample at least.
 
     Parameters
     ----------
-    rank : mapping   by load case: what is greatest (m,) where one governs
+    name : str       of the quantity in the sample
+    rank : mapping   by load case, the values (m,) by which they are compared at each design: the
+        greatest governs; NaN never does
+    away : _Away     unit, and deviation from the preview
     """
     valued = {k: sample.valued(name, k) for k in rank}
     ranked = {

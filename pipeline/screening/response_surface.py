@@ -31,7 +31,9 @@ def powers(count: int, degree: int = DEGREE) -> NDArray[np.intp]:
 
 
 def terms(places: Array, exponents: NDArray[np.intp]) -> Array:
-    """Products of Chebyshev polynomials (m, p) at places (m, d) in [-1, 1]."""
+    """Products of Chebyshev polynomials (m, p) at places (m, d) in [-1, 1]; exponents (p, d):
+    degree of each product along each axis, see `powers`.
+    """
     products = np.ones((len(places), len(exponents)))
     for axis, column in enumerate(places.T):
         products *= chebvander(column, int(exponents.max(initial=0)))[:, exponents[:, axis]]
@@ -187,10 +189,15 @@ def _exponent(value: float) -> int:
 
 
 def settings(count: int, axes: int, held_out: int, seed: int) -> Array:
-    """Places (count, axes) in [-1, 1]: a Halton sequence dense at the ends, random ones last.
+    """Places (count, axes) in [-1, 1]: a Halton sequence dense at the ends, then random ones.
 
     Dense as the nodes of Chebyshev, so that a polynomial does not swing there; those held out are
     uniform.
+
+    Parameters
+    ----------
+    held_out : int   of the places, the last, random ones
+    seed : int       of the random ones
     """
     fitted = count - held_out
     halton = np.stack([_radical_inverse(fitted, base) for base in _PRIMES[:axes]], axis=1)

@@ -58,6 +58,9 @@ def _by_measure(declared: Declaration, measure: Measure, how: Measured) -> Scree
         return np.ravel(how.applies(demand[:, None], numbers_of(designs)))
 
     def judged(designs: Designs) -> Judged | None:
+        """Demand and limit (m,); None where they need a key of a part outside the scope of the
+        case.
+        """
         numbers, shape = numbers_of(designs), (designs.count, 1)
         if not np.any(how.applies(np.full(shape, np.nan), numbers)):
             return None
@@ -88,7 +91,12 @@ def _of_strokes(
     either: Array, limit: Array, demands: Sequence[Array], limits: Sequence[Value]
 ) -> tuple[Array, Array]:
     """Demand and limit (m, 1) of the stroke, such as opening and closing, of the greatest
-    utilisation; `either` and `limit` where a stroke has no limit of its own.
+    utilisation; those of the whole turn where a stroke has no limit of its own.
+
+    Parameters
+    ----------
+    either, limit : array (m, 1)   demand and limit of the whole turn
+    demands, limits : sequence     of each stroke, (m, 1)
     """
     known = np.all([~np.isnan(each) & np.ones(limit.shape, dtype=bool) for each in limits], axis=0)
     demand, own = np.broadcast_arrays(demands[0], limits[0], either)[:2]
@@ -218,7 +226,7 @@ def _between(values: Array, step: int) -> Array:
 
 def _torque_reduction(designs: Designs) -> Judged | None:
     """Least reduction of the torque ripple (m,), as a share, over the load cases that require one,
-    and its limit.
+    and its limit; None where none requires one.
     """
     shares = [
         (demands.ripple_reduction(cam.state.torque, torque_after(designs, cam)), required)
@@ -365,7 +373,9 @@ def _gas_stroke_rate(designs: Designs) -> Judged | None:
 
 
 def _gas_heating(designs: Designs) -> Judged | None:
-    """Gas temperature of a gas spring over the load cases by duty (m,), and its limit, degC."""
+    """Gas temperature of a gas spring (m,), degC, over the load cases by their duty, and its limit,
+    degC.
+    """
     case, strokes, lift = designs.case, _strokes(designs), designs.highest[:, None]
     preload, rate = (designs.value(f"spring.{key}") for key in ("preload", "rate"))
     work = spring_energy(preload, rate, lift, designs.numbers.spring_shape)
