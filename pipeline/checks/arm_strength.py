@@ -105,8 +105,12 @@ def _sections(bar: ArmBar, place: str) -> tuple[ArmSection, ...]:
 
 
 def _strength(section: ArmSection, bar: ArmBar, reliability: float) -> tuple[float, ...]:
-    """Endurance of a section, Pa, and its factors of surface k_a, size k_b and reliability k_e; all
-    NaN without a strength of the material.
+    """Endurance strength of a section, Pa, and its factors of surface k_a, size k_b and reliability
+    k_e; all NaN where the material has no tensile or fatigue strength.
+
+    Parameters
+    ----------
+    reliability : float   share of the arms that survive, 0.5 to 1
     """
     card = bar.material
     tensile, endured = card.tensile_strength, card.fatigue_bending
@@ -118,7 +122,12 @@ def _strength(section: ArmSection, bar: ArmBar, reliability: float) -> tuple[flo
 
 
 def _arm_fatigue(place: Literal["pivot", "roller"], needs: Literal["", "roller"]) -> Declaration:
-    """Check of the fatigue of the arm at its pivot or roller."""
+    """Check of the fatigue of the arm at its pivot or roller.
+
+    Parameters
+    ----------
+    needs : str   kind of follower that has this place, see `Kind`; "": any
+    """
     notch = f"{place}_notch"
 
     @check(

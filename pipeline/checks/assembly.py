@@ -334,7 +334,9 @@ def machine_shaft_axis(shaft: Camshaft) -> tuple[float, float]:
 
 
 def room_beside_shaft(machine: Machine) -> float | None:
-    """Greatest cam radius that clears the machine shaft, m; None where it is not known."""
+    """Greatest cam radius that clears the machine shaft, m; None without a gear within the scope,
+    and where the diameter of the machine shaft is not stated or 0.
+    """
     shaft = machine.camshaft
     if shaft is None or shaft.gear is None or not machine.scope.covers("gear"):
         return None

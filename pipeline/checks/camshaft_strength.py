@@ -530,10 +530,15 @@ def _tooth_bending(
     teeth: str,
     kept_as: str,
 ) -> Declaration:
-    """Check of the tooth root stress of a wheel, camshaft gear or pinion, with its own form factor;
-    wheel : gives its number of teeth and its material.
+    """Check of the tooth root stress of a wheel, camshaft gear or pinion, with its own form factor.
 
-    key, teeth: of its bending limit and of its number of teeth
+    Parameters
+    ----------
+    name : str              id of the check
+    values : tuple of str   keys on which the check rests besides those of both wheels
+    key, teeth : str        dotted keys of the bending limit and of the number of teeth
+    wheel : callable        gear -> number of teeth and material of the wheel
+    kept_as : str           what the synthesis bounds, in words
     """
 
     def per_torque(numbers: Numbers) -> float:

@@ -275,9 +275,11 @@ class Measured(NamedTuple):
         return self.bound(float(limit), numbers)
 
     def use(self, measure: Measure, cam: LoadedCam, limit: float) -> Array | None:
-        """Constraint utilisation (..., n) of the measure at a limit in a synthesis, see `Kept`.
+        """Utilisation (..., n) of the measure of a cam at a limit, SI, the constraint of a
+        synthesis, see `Kept`.
 
-        Where each stroke has a limit, that of the first; the others are constraints of their own.
+        Where the case limits every stroke by itself, that of the first stroke; the others are
+        constraints of their own.
         """
         if self.limits_of_strokes(cam.numbers):
             measure = self.strokes[0].measure
@@ -379,7 +381,9 @@ class Declaration:
         """Check of a solution.
 
         None where it does not apply, its part is not described, its tier is a deeper one, or it
-        lacks a key of what the scope leaves out.
+        lacks a key of what the scope leaves out; also where the demand is a bound of which the
+        check does not fail.
+
         Whether a part is described has a check of its own, see `part_data`.
         """
         if solution.tier < self.fails_from or not self.concerns(solution.machine):
@@ -406,7 +410,9 @@ class Declaration:
         return group or (self.id if of_part or self.limit is None else self.limit.id)
 
     def deeper(self, solution: Solution) -> Check | None:
-        """The check marked as not evaluated below its tier; None at or above it."""
+        """The check marked as not evaluated below its tier; None at or above it, and where it does
+        not apply to the machine.
+        """
         if solution.tier >= self.tier or not self.concerns(solution.machine):
             return None
         word = self.tier.word

@@ -238,7 +238,7 @@ def least_poisson(machine: Machine) -> float:
 
 def estimated_length_factor(machine: Machine) -> float | None:
     """Greatest pressure along the line of contact over that of plane strain on the base circle,
-    untilted, estimated from the ends; None without ends.
+    untilted, estimated from the ends; None where the ends are not stated, or no strength is.
 
     At the greatest pressure that the endurance allows, or else the yield strength.
     """
@@ -782,10 +782,15 @@ def shakedown_factor(friction: float, poisson: float = 0.3) -> float:
     """Shakedown limit p0/k of a line contact with traction: 4 without traction.
 
     Residual stresses along and across the track depend on the depth alone. Below the surface they
-    compensate all but the shear stress along it: the limit is 1/max|tau_xz|. At the surface the
-    von Mises stress of a sliding contact varies through the passage, and the best residual
-    stresses leave the radius of the smallest sphere round its path in the space of the deviator,
-    centred at no shear stress: decisive above a traction of about 0.3, and 6 to 7 % below 1/mu.
+    compensate all but the shear stress along it: the limit is 1/max|tau_xz|. At the surface the von
+    Mises stress of a sliding contact varies through the passage, and the best residual stresses
+    leave the radius of the smallest sphere round its path in the space of the deviator, centred at
+    no shear stress: decisive above a traction of about 0.3, and 6 to 7 % below 1/mu.
+
+    Parameters
+    ----------
+    friction : float   traction over pressure
+    poisson : float    nu of the body
 
     References
     ----------

@@ -152,6 +152,7 @@ def _heat_of(cam: LoadedCam, place: Place) -> Array | None:
 
 
 def _heat_in(place: Place) -> Measure:
+    """Measure of the friction power of a bush at the greatest friction, W."""
     def heat(cam: LoadedCam) -> Array:
         """Friction power of a bush at the greatest friction, W."""
         power = _heat_of(cam, place)
@@ -224,6 +225,8 @@ def _at_temperature(
 
     Parameters
     ----------
+    side : Place          guide A or B, or the pivot of an arm
+    demand : float        to be judged, in the unit of the limit
     limit_at : callable   temperature, K -> limit; None without one, NaN beyond the card
     """
     cold = limit_at(ROOM)
@@ -393,6 +396,9 @@ def _guide_pv(side: Place) -> Declaration:
         load, speed = "pivot_load", f"follower_velocity {seat.table}.diameter/(2 {ARM_LENGTH})"
 
     def in_words(demand: Demand, solution: Solution) -> Demand:
+        """Demand with the lubrication that bears it and the PV value by the net reaction, in words,
+        and the source of its limit.
+        """
         guide = guide_of(solution.machine, side)
         notes = _lubrication(guide, (demand.at or NOWHERE).value)
         if side != "pivot":
@@ -566,6 +572,9 @@ def _guide_temperature(side: Place) -> Declaration:
         return Allowed(None if stated is None else celsius(stated))
 
     def in_words(demand: Demand, solution: Solution) -> Demand:
+        """Demand with the keys that it lacks, the source of its limit and the mean friction power
+        "Q", W.
+        """
         machine = solution.machine
         card = guide_of(machine, side).material
         missing = (*heat_path_lacks(machine, side), *lacking_of_card(card, "temperature_limit"))

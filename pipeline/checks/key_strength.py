@@ -113,7 +113,12 @@ def _key_check(
     """Check of a stress of the key against the yield strength of the weaker of the key and its
     mate, hub or shaft.
 
-    factor: allowed stress over the allowed normal stress
+    Parameters
+    ----------
+    name : str           id of the check
+    of : callable        stresses of the key -> the one that is judged, Pa
+    mate_of : callable   case -> part beside the key whose strength counts, too; None: not judged
+    factor : float       allowed stress over the allowed normal stress
     """
 
     def stress(numbers: Numbers) -> tuple[float]:

@@ -248,8 +248,8 @@ def _reduction(cycle: Cycle, phase: float) -> float:
 
 
 def _shifted(cycle: Cycle, phase: float) -> list[Array]:
-    """Crank torque with the cam (n,), N m, of an engine torque advanced and one delayed by a crank
-    angle, rad.
+    """Crank torques with the cam (n,), N m, of an engine torque advanced and of one delayed by a
+    crank angle, rad; a single one of NaN without an engine.
     """
     before, after = cycle.turn.torque_before, cycle.turn.torque_after
     if before is None or after is None:

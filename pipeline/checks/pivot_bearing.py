@@ -54,7 +54,7 @@ def _with_pin(demand: Demand, solution: Solution) -> Demand:
 
 
 def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
-    """With friction and diameter of the pivot, and the forces at the angle of the demand."""
+    """Demand with friction and diameter of the pivot, and the forces at its angle."""
     demand = _with_pin(demand, solution)
     if demand.at is None or not demand.at.load_case:
         return demand

@@ -191,7 +191,13 @@ def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, .
 
 
 def accepted(waiver: Waiver, unit: str) -> Waived:
-    """Demand that a waiver accepts, in SI, and who accepts it; unit : of the check."""
+    """Demand that a waiver accepts, in SI, and who accepts it; unit : of the check.
+
+    Raises
+    ------
+    InputError
+        If the accepted value has another unit.
+    """
     text = f"{waiver.name}, {waiver.date}: {waiver.reason}"
     quantity = In("" if unit == "-" else unit)
     try:

@@ -726,7 +726,9 @@ class Grease(NamedTuple):
 
 
 def grease_of(machine: Machine, numbers: Numbers) -> Grease | None:
-    """Data of a grease-life estimate; None if the life is stated, or data are missing."""
+    """Data of a grease-life estimate; None where the check does not apply, with oil, and where the
+    life is stated or data are missing.
+    """
     if not grease_life.concerns(machine):
         return None
     bearing = machine.roller.bearing

@@ -544,7 +544,9 @@ class LoadedCam:
 
     @cached_property
     def hot(self) -> OfGuides | None:
-        """Friction forces of guides A and B at maximum friction, N; None where that is not known."""
+        """Friction forces of guides A and B at maximum friction (..., n), N; None where it is not
+        known.
+        """
         friction, jam = greatest_friction(self.numbers), self.jam_worst
         if friction is None or jam is None:
             return None
