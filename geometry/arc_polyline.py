@@ -81,6 +81,11 @@ def arc_polyline(contour: Contour, error: float = ARC_ERROR) -> ArcPolyline:
 def _fitted(contour: Contour, error: float) -> ArcPolyline:
     """Polyline of tangent arcs within a distance `error`, m, of the contour; parts of the turn are
     halved until their pair of arcs is close enough.
+
+    Raises
+    ------
+    GeometryError
+        If the shortest parts are farther than this from the contour.
     """
     edges = np.linspace(0.0, FULL_TURN, _FIRST_PARTS + 1)
     start, stop = edges[:-1], edges[1:]

@@ -145,7 +145,9 @@ class ArmCam(RollerCam):
         return Arm(distance, self.length, self.sense)
 
     def _best_of_scan(self, use: Callable[[float], float]) -> float:
-        """Centre distance of the least use, m: a scan, then golden sections about its least."""
+        """Centre distance, m, at which `use` is least, a function of the centre distance, m: by a
+        scan, then golden sections about its least.
+        """
         distances = self.length * _SCANNED_DISTANCES
         k = int(np.argmin([use(float(each)) for each in distances]))
         low, high = distances[max(k - 1, 0)], distances[min(k + 1, distances.size - 1)]
@@ -162,7 +164,13 @@ class ArmCam(RollerCam):
         )
 
     def _sampled_least(self, limits: PitchLimits, distance: float) -> float:
-        """Smallest prime radius by the samples of the lift, m; `_NO_SIZE`: none."""
+        """Smallest prime radius, m, within the limits at the samples of the lift; `_NO_SIZE` where
+        none is.
+
+        Parameters
+        ----------
+        distance : float   centre distance, m
+        """
 
         def keeping(primes: Array) -> NDArray[np.bool_]:
             return np.maximum(*self._uses(limits, primes, distance)) <= 1.0
@@ -178,7 +186,14 @@ class ArmCam(RollerCam):
         return float(prime)
 
     def _uses(self, limits: PitchLimits, primes: ArrayLike, distance: float) -> tuple[Array, Array]:
-        """Use of the pressure angle and of the curvature over prime radii (m,), by the samples."""
+        """Greatest pressure angle over its limit, and greatest limit over radius of curvature, by
+        the samples of the lift, each (m,); `_NO_SIZE` where the arm does not reach so far.
+
+        Parameters
+        ----------
+        primes : array (m,)   prime radii, m
+        distance : float      centre distance, m
+        """
         s, s1, s2 = np.concatenate([part.samples for part in self.lift.parts], axis=1)
         arm = self._arm(distance)
         start = np.asarray(arm.angle(np.asarray(primes)))[:, None]

@@ -43,7 +43,7 @@ def sealed(values: Sealed) -> Sealed:
 
 
 def finite(field: str, values: ArrayLike) -> Array:
-    """`values` as a read-only array of finite floats.
+    """`values` as a read-only array of finite floats; `field`: their name in the message.
 
     Raises
     ------
@@ -58,7 +58,8 @@ def finite(field: str, values: ArrayLike) -> Array:
 
 
 def positive(field: str, values: ArrayLike, unit: str = "") -> Array:
-    """`values` as a read-only array of finite floats above zero.
+    """`values` as a read-only array of finite floats above zero; `field`: their name in the
+    message.
 
     Raises
     ------

@@ -401,13 +401,17 @@ class FlatFaceContour(PlaneContour):
 
 
 def require_face_width(width: float, needed: float, travel: str = OF_STEM) -> None:
-    """Check that a face of `width` covers the travel of the contact, `needed`, m.
+    """Check that a face of `width`, m, covers the travel of the contact.
 
-    travel: from the middle of the face, in words
+    Parameters
+    ----------
+    needed : float   twice the greatest distance of the contact from the middle of the face, m
+    travel : str     this distance, in words
 
     Raises
     ------
     InputError
+        If the face is not wider than this; NaN included.
     """
     if not width > needed:
         shown, least = in_millimetres(width, needed)

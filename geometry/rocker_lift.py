@@ -162,7 +162,12 @@ class RockerLinkage:
 
 def _taken_up(opening: Lift, ramp: float) -> Array:
     """Share of the lash that is taken up (n,) at the angles of a lift: 1 where the output moves, 0
-    at rest, rising over `ramp`, rad, before and falling after.
+    at rest, rising over `ramp`, rad of cam angle, before the motion and falling over it after.
+
+    Raises
+    ------
+    InputError
+        If `ramp` is not above 0, or is longer than half the shortest rest of the output.
     """
     values, theta = opening.values, opening.theta
     moves = values > _CLOSED * values.max()

@@ -163,7 +163,13 @@ class BodyMesh(Displayed):
 
 
 def _index(values: ArrayLike, rows: int, points: Array) -> Index:
-    """`values` as read-only node numbers (rows, k) of `points`."""
+    """`values` as read-only node numbers (rows, k) of `points` (2, n).
+
+    Raises
+    ------
+    MeshError
+        If they do not have that shape, or a number is not one of the n nodes.
+    """
     array = np.array(values, dtype=np.int64)
     if array.ndim != 2 or array.shape[0] != rows or array.shape[1] == 0:
         raise MeshError(f"node numbers of a mesh = {array.shape}, must be ({rows}, k)")
@@ -230,7 +236,8 @@ def roller_mesh(
 
 
 def block_mesh(width: float, depth: float, sizing: ElementSize) -> BodyMesh:
-    """Mesh of the rectangle [-width/2, width/2] x [-depth, 0], refined at the contact point.
+    """Mesh of the rectangle [-width/2, width/2] x [-depth, 0], m, refined at the contact point of
+    `sizing`, if it has one.
 
     Returns
     -------
@@ -256,9 +263,18 @@ def face_mesh(
     sizing: ElementSize,
     radius: float | None = None,
 ) -> BodyMesh:
-    """Mesh of the block of a face, the stem's cross-section as a boundary of its back.
+    """Mesh of the block of a follower's face; the cross-section of the stem is a boundary of its
+    back.
 
-    Its top touches y = 0 at the origin; radius: of a curved top, m, None of a flat one.
+    The face, on which the cam runs, is the top of the block and touches y = 0 at the origin.
+
+    Parameters
+    ----------
+    width : float            along the face, in x, m
+    thickness : float        of the block, in y, along the stem, m
+    stem_diameter : float    m; a stem wider than the face counts as wide as the face
+    sizing : ElementSize     refined at its contact point, on the top, if it has one
+    radius : float or None   of a curved face, m; None: flat
 
     Returns
     -------
@@ -338,7 +354,8 @@ def _rectangle(
 
 
 def half_disc_mesh(radius: float, sizing: ElementSize) -> BodyMesh:
-    """Mesh of the half disc y <= 0 about the origin, refined there: the contact patch.
+    """Mesh of the half disc y <= 0 of a radius, m, about the origin, refined there, where the
+    contact patch is.
 
     One quarter is meshed and mirrored: the mesh is symmetric about x = 0 to the last bit.
 

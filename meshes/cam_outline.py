@@ -103,7 +103,13 @@ def contour_piece(path: SampledContour, sizing: ElementSize) -> OutlinePiece:
 
 
 def _foot(path: SampledContour, point: Array, tolerance: float) -> float:
-    """Cam angle, rad, of the contour point nearest to `point`, at most `tolerance` (m) from it."""
+    """Cam angle, rad in 0..2 pi, of the contour point nearest to `point`, (2,), m.
+
+    Raises
+    ------
+    InputError
+        If the contour point is further than `tolerance`, m, from `point`.
+    """
     from scipy.optimize import brentq
 
     squared = ((path.points - point[:, None]) ** 2).sum(axis=0)
@@ -111,6 +117,7 @@ def _foot(path: SampledContour, point: Array, tolerance: float) -> float:
     step = 2.0 * FULL_TURN / _CONTOUR_SAMPLES
 
     def along(theta: float) -> float:
+        """Distance of the contour point from `point` along the tangent, m; 0 at the foot."""
         here = np.array([theta])
         normal = path.contour.normal(here)[:, 0]
         offset = path.contour.points(here)[:, 0] - point
@@ -130,10 +137,17 @@ def cam_size(
 ) -> SizeField:
     """Element size in the cam: the sizing, limited by bore, keyway, fillets, wall and curvature.
 
+    Parameters
+    ----------
+    path : SampledContour         contour of the cam
+    bore_radius : float           m
+    keyway : KeywayLike or None   None: no keyway
+    sizing : ElementSize          size at the contact and far from it
+
     Raises
     ------
     GeometryError
-        If the bore or the keyway reaches the contour.
+        If the wall between contour and bore or keyway is not above 0.01 of the bore radius.
     """
     wall, place = least_wall(path, bore_radius, keyway)
     if not wall > _WALL_MIN * bore_radius:
@@ -163,10 +177,16 @@ def cam_size(
 def rim_size(path: SampledContour, outer_radius: float, sizing: ElementSize) -> SizeField:
     """Element size in the rim around a groove: the sizing, limited by circle, rim and curvature.
 
+    Parameters
+    ----------
+    path : SampledContour   outer wall of the groove
+    outer_radius : float    of the disc, m
+    sizing : ElementSize    size at the contact and far from it
+
     Raises
     ------
     GeometryError
-        If the outer wall reaches the outer circle.
+        If the rim between wall and outer circle is not thicker than 0.01 of the outer radius.
     """
     thick = outer_radius - np.hypot(*path.points)
     if not (least := float(thick.min())) > _WALL_MIN * outer_radius:

@@ -268,7 +268,20 @@ def _named_edges(
 def _quadratic(
     points: Array, triangles: Index, named: Sequence[tuple[str, Index, Array]]
 ) -> Triangulation:
-    """Quadratic triangles from linear ones, mid-side nodes of outline edges on the curve."""
+    """Quadratic triangles from linear ones, mid-side nodes of outline edges on the curve.
+
+    Parameters
+    ----------
+    points : array (2, n)      corners, m
+    triangles : array (3, m)   corner numbers, counter-clockwise
+    named : sequence           of each piece of outline: name, corner numbers (2, k) of the ends of
+        its edges, points (2, k), m, of the curve at their middles
+
+    Raises
+    ------
+    MeshError
+        If an edge of the outline is not an edge of a triangle.
+    """
     count = points.shape[1]
     sides = np.stack([triangles, np.roll(triangles, -1, axis=0)])  # 01, 12, 20
     keys = sides.min(axis=0) * count + sides.max(axis=0)

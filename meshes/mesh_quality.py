@@ -102,7 +102,13 @@ def scaled_jacobians(mesh: BodyMesh) -> Array:
 
 
 def longest_facet(mesh: BodyMesh, contact_point: ArrayLike, half_width: float) -> float:
-    """Length of the longest boundary facet that overlaps the contact, m."""
+    """Length, m, of the longest boundary facet that overlaps the contact, or of the nearest one.
+
+    Parameters
+    ----------
+    contact_point : array (2,)   centre of the contact, m
+    half_width : float           of the contact, m
+    """
     point = finite("contact_point", contact_point)
     triples = np.hstack(list(mesh.boundaries.values()))
     start, end, middle = (mesh.points[:, row] for row in triples)

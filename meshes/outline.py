@@ -102,7 +102,10 @@ def facets(piece: OutlinePiece, size: SizeField) -> Facets:
 
 
 def _graded(at: Callable[[Array], Array], start: float, stop: float, size: SizeField) -> Array:
-    """Arc lengths from `start` to `stop` inclusive, m, spaced by the local element size."""
+    """Arc lengths from `start` to `stop`, m, spaced by the local element size, both ends included;
+    only `stop` where the span is at most 1e-3 of the element size. `at`: points (2, n), m, by arc
+    length.
+    """
     span = stop - start
     if not span > 1e-3 * float(size(at(np.array([start])))[0]):
         return np.array([stop])
@@ -159,7 +162,9 @@ def arc(
     centre: tuple[float, float] = (0.0, 0.0),
     zone: Zone | None = None,
 ) -> OutlinePiece:
-    """Circular outline piece between two angles, rad; clockwise if `stop` < `start`."""
+    """Circular outline piece of a radius, m, about `centre`, m, between two angles, rad; clockwise
+    if `stop` < `start`. `zone`: of equal facets.
+    """
     sense = 1.0 if stop > start else -1.0
 
     def at(s: Array) -> Array:

@@ -153,6 +153,7 @@ def _heat_of(cam: LoadedCam, place: Place) -> Array | None:
 
 def _heat_in(place: Place) -> Measure:
     """Measure of the friction power of a bush at the greatest friction, W."""
+
     def heat(cam: LoadedCam) -> Array:
         """Friction power of a bush at the greatest friction, W."""
         power = _heat_of(cam, place)

@@ -433,7 +433,14 @@ def _mesh(
     method: str = "worst over all elements of cam and follower",
     source: Source = VERIFICATION,
 ) -> Declaration:
-    """Check of a figure of the mesh quality, at least `allowed`."""
+    """Check of a figure of the mesh quality, at least `allowed`.
+
+    Parameters
+    ----------
+    name : str          id of the check
+    figure : callable   quality of the mesh -> figure, SI
+    stated : callable   mesh -> numbers of the formula by their symbols, SI
+    """
 
     @check(
         id=name,

@@ -289,7 +289,7 @@ spring_fatigue = check(
 
 def spring_fatigue_points(solution: Solution) -> list[FatiguePoint]:
     """Stress amplitude and mean of the wire, Pa, at its worst speed, for the Goodman diagram; empty
-    without a wound spring.
+    without a wound spring, and where a force is not known or the wire has no endurance.
     """
     design, sweep = solution.machine.spring.design, solution.hardest_spring
     if design is None or sweep is None or not np.isfinite(sweep.greatest).all():

@@ -617,7 +617,9 @@ def _estimate(
     values=given.bodies("*endurance_pressure", "hardness*"),
 )
 def endurance_rules(solution: Solution) -> Demand:
-    """Greatest ratio of two hardness-based estimates of the endurance pressure of one body."""
+    """Greatest ratio of two rules for the endurance pressure of one body, that of its card and
+    those by its hardness; not evaluated where no body has two.
+    """
     machine = solution.machine
     spread, notes, stated = None, [], dict[str, float]()
     for body, card in machine.bodies.items():

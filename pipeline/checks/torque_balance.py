@@ -71,7 +71,7 @@ NO_MEAN = 1e-6
 )
 def torque_reduction(solution: Solution) -> Demand | None:
     """Least relative reduction of the torque ripple by the cam over the load cases that require
-    one; None without an engine.
+    one; None where no load case with an engine torque does.
     """
     least = least_reduction(solution, _reduction)
     if least is None:
@@ -162,8 +162,9 @@ drive_torque = check(
     page="Torque",
 )
 def speed_reduction(solution: Solution) -> Demand | None:
-    """Least relative reduction of the crank speed ripple by the cam over the load cases; None
-    without a crankshaft.
+    """Least relative reduction of the crank speed ripple by the cam, over the load cases that
+    require one or, where none does, over those whose ripple counts; None without a crankshaft or
+    such a load case.
     """
     required = {
         machine.load_case: machine.speed_reduction

@@ -319,7 +319,9 @@ _NEAR_CENTRES = 1e-3
 
 
 def _values(case: Case, values: Mapping[str, Array], count: int) -> At:
-    """Function: values of a key (m,), SI; NaN where the case leaves it out."""
+    """Function that gives the values (m,) of a key in the `count` designs, SI: those of `values`,
+    else what the case states; NaN where it states nothing.
+    """
 
     def at(key: str) -> Array:
         if key in values:
