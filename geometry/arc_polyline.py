@@ -116,13 +116,18 @@ def _fitted(contour: Contour, error: float) -> ArcPolyline:
     return ArcPolyline(points, bulges, worst)
 
 
+def _heading(contour: Contour, theta: Array) -> Array:
+    """Unit tangents (2, n) along the cam angle; the tangent of an outer wall points against it."""
+    return np.asarray(np.sign(contour.speed(theta)) * contour.tangent(theta))
+
+
 def _pairs(contour: Contour, start: Array, stop: Array) -> tuple[Array, Array, Array, Array]:
     """Pairs of tangent arcs (biarcs) over the parts of the turn from `start` to `stop` (n,), rad:
     start points, m, and unit tangents there, points at which the two arcs of a pair meet, m, and
     unit tangents there; each (2, n).
     """
     p, q = contour.points(start), contour.points(stop)
-    t, u = contour.tangent(start), contour.tangent(stop)
+    t, u = _heading(contour, start), _heading(contour, stop)
     v = q - p
     along, square = np.sum(v * (t + u), axis=0), np.sum(v * v, axis=0)
     opening = 2.0 * (1.0 - np.sum(t * u, axis=0))
@@ -138,7 +143,7 @@ def _distance(contour: Contour, start: Array, stop: Array) -> Array:
     from `start` to `stop` (n,), rad; at samples within the part.
     """
     p, t, middle, joint = _pairs(contour, start, stop)
-    u, q = contour.tangent(stop), contour.points(stop)
+    u, q = _heading(contour, stop), contour.points(stop)
     theta = start[:, None] + _SAMPLES * (stop - start)[:, None]
     points = contour.points(theta.ravel()).reshape(2, *theta.shape)
     on_first = np.sum((points - middle[..., None]) * joint[..., None], axis=0) < 0.0

@@ -24,6 +24,9 @@ CUT = "cut"
 LAYERS = {CUT: True, "counter_hole": True, "pitch": False, "mark": False, "note": False}
 """Layers of the DXF file, and whether they plot."""
 
+GROOVE = "groove"
+"""Layer of the walls of a groove, which are milled to its depth."""
+
 _SPLINE_DEGREE = 3
 _SPLINE_PARTS = (22, 45, 90, 180, 360, 720, 1440, 2880, 5760, 11520)
 _MILLIMETRE = 1e-3
@@ -41,13 +44,28 @@ class CurveLike(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
+class GrooveCut:
+    """Groove in the face of a disc, around the contour, its inner wall.
+
+    wall : Contour         outer wall
+    depth : float          from the face to the floor, m
+    outer_radius : float   of the disc, m
+    """
+
+    wall: Contour
+    depth: float
+    outer_radius: float
+
+
+@dataclass(frozen=True, eq=False)
 class Outline:
-    """Outline of the cam: contour, bore radius (m), keyway and counter-hole."""
+    """Outline of the cam: contour, bore radius (m), keyway, counter-hole, groove around it."""
 
     contour: Contour
     bore_radius: float
     keyway: KeywayLike | None = None
     counter_hole: HoleLike | None = None
+    groove: GrooveCut | None = None
 
 
 def clamped_spline(
@@ -92,6 +110,7 @@ def write_dxf(
     and the bore with its keyway as one closed polyline with arcs; a bore without keyway is a
     circle. ``counter_hole`` has the counter-hole, ``pitch`` the pitch curve, ``mark`` the line of
     cam angle zero and an arrow in the direction of turning, ``note`` the error and the `notes`.
+    Of a disc with a groove the layer ``cut`` has its circle, and ``groove`` both walls.
 
     Returns
     -------
@@ -112,21 +131,31 @@ def write_dxf(
     for colour, (layer, plots) in enumerate(LAYERS.items(), start=1):
         document.layers.add(layer, color=colour, plot=plots)
     space = document.modelspace()
-    _add_arcs(space, arcs.points, arcs.bulges)
+    curves, groove = [arcs.points], outline.groove
+    if groove is None:
+        _add_arcs(space, arcs.points, arcs.bulges)
+    else:
+        document.layers.add(GROOVE, color=len(LAYERS) + 1)
+        walls = arcs, arc_polyline(groove.wall, error)
+        for each in walls:
+            _add_arcs(space, each.points, each.bulges, GROOVE)
+        radius = groove.outer_radius / _MILLIMETRE
+        space.add_circle((0.0, 0.0), radius, dxfattribs={"layer": CUT})
+        curves.append(np.diag([groove.outer_radius, groove.outer_radius]))
     _add_bore(space, outline)
     if outline.counter_hole is not None:
         x, y = (outline.counter_hole.centre / _MILLIMETRE).tolist()
         radius = outline.counter_hole.radius / _MILLIMETRE
         space.add_circle((x, y), radius, dxfattribs={"layer": "counter_hole"})
-    curves = [arcs.points]
     if outline.contour.rolls:  # a face has no pitch curve
         curves.append(_add_spline(space, outline.contour.pitch, error, "pitch"))
     around = np.hstack(curves) / _MILLIMETRE
     reach = float(np.hypot(*around).max())
     _add_marks(space, reach)
     low, high = np.minimum(around.min(axis=1), -reach), np.maximum(around.max(axis=1), reach)
+    layer = CUT if groove is None else GROOVE
     lines = [
-        f"layer {CUT}: contour of {arcs.bulges.size} arcs within {error / _MILLIMETRE:.6g} mm; "
+        f"layer {layer}: contour of {arcs.bulges.size} arcs within {error / _MILLIMETRE:.6g} mm; "
         "units mm",
         *(" ".join(note.split()) for note in notes),
     ]
@@ -145,12 +174,12 @@ def write_dxf(
     return arcs
 
 
-def _add_arcs(space: Modelspace, points: Array, bulges: Array) -> None:
-    """Add a closed polyline to cut: vertices (2, n), m, and bulges (n,), tangent of a quarter of
-    the angle of the arc behind each vertex.
+def _add_arcs(space: Modelspace, points: Array, bulges: Array, layer: str = CUT) -> None:
+    """Add a closed polyline to a layer: vertices (2, n), m, and bulges (n,), tangent of a quarter
+    of the angle of the arc behind each vertex.
     """
     rows = np.vstack([points / _MILLIMETRE, bulges]).T.tolist()
-    space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs={"layer": CUT})
+    space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs={"layer": layer})
 
 
 def _add_spline(space: Modelspace, curve: CurveLike, error: float, layer: str) -> Array:

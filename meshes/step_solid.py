@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, positive, uniform_turn
-from camwright.geometry.cad_drawing import Outline, clamped_spline
+from camwright.geometry.cad_drawing import CurveLike, GrooveCut, Outline, clamped_spline
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import keyway_corners
 from camwright.geometry.errors import GeometryError, ResultError
@@ -32,6 +32,8 @@ _REMARKS = (
     "angle zero: the seam of the face contour, on the axis +x; angles grow counter-clockwise",
 )
 
+_SHARP = "the groove is open to the upper face, its floor without fillets: see the drawing"
+
 
 class Side(Protocol):
     """Side of the cam's outline with its wall in a STEP solid, mm; the material is on its left."""
@@ -46,8 +48,10 @@ class Side(Protocol):
     def curve(self, file: Entities, z: float) -> str:
         """STEP reference of the side's curve at height `z`, mm."""
 
-    def wall(self, file: Entities, width: float) -> tuple[str, bool]:
-        """STEP reference of the wall surface, and whether its normal points out of the solid."""
+    def wall(self, file: Entities, low: float, high: float) -> tuple[str, bool]:
+        """STEP reference of the wall surface between two heights, mm, and whether its normal points
+        out of the solid.
+        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +69,7 @@ class _Line:
     def curve(self, file: Entities, z: float) -> str:
         return _line(file, (*self.corners[0], z), (*self._along, 0.0))
 
-    def wall(self, file: Entities, width: float) -> tuple[str, bool]:  # noqa: ARG002
+    def wall(self, file: Entities, low: float, high: float) -> tuple[str, bool]:  # noqa: ARG002
         x, y = self._along
         return file.add(
             "PLANE", "''", file.frame((*self.corners[0], 0.0), (y, -x, 0.0), (x, y, 0.0))
@@ -84,13 +88,23 @@ class _Arc:
     def curve(self, file: Entities, z: float) -> str:
         return file.add("CIRCLE", "''", self._frame(file, z, _DOWN), real(self.radius))
 
-    def wall(self, file: Entities, width: float) -> tuple[str, bool]:  # noqa: ARG002
+    def wall(self, file: Entities, low: float, high: float) -> tuple[str, bool]:  # noqa: ARG002
         frame = self._frame(file, 0.0, _UP)
         return file.add("CYLINDRICAL_SURFACE", "''", frame, real(self.radius)), False
 
     def _frame(self, file: Entities, z: float, axis: Sequence[float]) -> str:
         first = (self.corners[0] - self.centre) / self.radius
         return file.frame((*self.centre, z), axis, (*first, 0.0))
+
+
+class _Rim(_Arc):
+    """Circle of a disc, counter-clockwise, with the material within."""
+
+    def curve(self, file: Entities, z: float) -> str:
+        return file.add("CIRCLE", "''", self._frame(file, z, _UP), real(self.radius))
+
+    def wall(self, file: Entities, low: float, high: float) -> tuple[str, bool]:
+        return super().wall(file, low, high)[0], True
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,18 +129,18 @@ class _Spline:
         form = (".UNSPECIFIED.", ".T.", ".F.", repeats, knots, ".UNSPECIFIED.")
         return file.add("B_SPLINE_CURVE_WITH_KNOTS", "''", self.spline.k, controls, *form)
 
-    def wall(self, file: Entities, width: float) -> tuple[str, bool]:
+    def wall(self, file: Entities, low: float, high: float) -> tuple[str, bool]:
         # The height comes first: OpenCASCADE integrates volumes along the second parameter edge by
         # edge, and along the first at once, which erred by 1 % along a contour.
-        """STEP reference of the spline surface from z = 0 to `width`, mm, and False: its normal
+        """STEP reference of the spline surface between two heights, mm, and False: its normal
         points into the solid.
         """
         controls = listed(
-            listed(file.point((*point, z)) for point in self.spline.c) for z in (0.0, width)
+            listed(file.point((*point, z)) for point in self.spline.c) for z in (low, high)
         )
         repeats, knots = self._knots
         form = (".UNSPECIFIED.", ".F.", ".T.", ".F.")
-        ends = ("(2,2)", repeats, listed(map(real, (0.0, width))), knots, ".UNSPECIFIED.")
+        ends = ("(2,2)", repeats, listed(map(real, (low, high))), knots, ".UNSPECIFIED.")
         degrees = (1, self.spline.k)
         return file.add(
             "B_SPLINE_SURFACE_WITH_KNOTS", "''", *degrees, controls, *form, *ends
@@ -142,7 +156,8 @@ class _Spline:
 def write_step(path: Path, outline: Outline, width: float, title: PartTitle) -> None:
     """STEP file of the cam: one solid from z = 0 to its width, mm, named as its title.
 
-    The contour is one face. Its seam, on the axis +x, marks angle zero.
+    The contour is one face. Its seam, on the axis +x, marks angle zero. A groove is open to the
+    upper face; its fillets are left out.
 
     Parameters
     ----------
@@ -162,9 +177,14 @@ def write_step(path: Path, outline: Outline, width: float, title: PartTitle) -> 
     outline.contour.require_no_undercut()
     _require_wall(outline)
     file = Entities()
-    solid = _solid(file, _loops(outline), width / MILLIMETRE, title.name)
+    loops = _loops(outline)
+    remarks = _REMARKS if outline.groove is None else (*_REMARKS, _SHARP)
+    if outline.groove is None:
+        solid = _solid(file, loops, width / MILLIMETRE, title.name)
+    else:
+        solid = _grooved(file, loops, outline.groove, width / MILLIMETRE, title.name)
     try:
-        path.write_text(step_text(title, _REMARKS, file, solid), encoding="ascii", newline="\n")
+        path.write_text(step_text(title, remarks, file, solid), encoding="ascii", newline="\n")
     except OSError as failure:
         raise ResultError(f"{path}: {failure.strerror or failure}") from None
 
@@ -180,6 +200,14 @@ def _require_wall(outline: Outline) -> None:
     wall = float(wall_at(points, outline.bore_radius, outline.keyway).min())
     if not wall > 0:
         raise GeometryError(f"wall around the bore = {wall / MILLIMETRE:.4g} mm, must be > 0 mm")
+    if outline.groove is None:
+        return
+    outer = outline.groove.wall
+    outer.require_no_undercut()
+    if outer.self_intersections():
+        raise GeometryError("outer wall of the groove = intersects itself, must be one curve")
+    if not (rim := outline.groove.outer_radius - float(outer.radius_max().value)) > 0:
+        raise GeometryError(f"rim around the groove = {rim / MILLIMETRE:.4g} mm, must be > 0 mm")
 
 
 # --- outline, mm
@@ -190,13 +218,32 @@ def _loops(outline: Outline) -> list[list[Side]]:
     keyway, counter-hole; mm.
     """
     start = _angle_zero(outline.contour)
-    spline = clamped_spline(outline.contour, _STEP_ERROR, start, start + FULL_TURN)
-    spline.c = spline.c / MILLIMETRE
-    loops: list[list[Side]] = [[_Spline("contour", spline)], _bore(outline)]
+    contour = _spline("contour", outline.contour, start)
+    loops: list[list[Side]] = [[contour], _bore(outline)]
     if outline.counter_hole is not None:
         hole = outline.counter_hole
         loops.append([_circle("counter-hole", hole.centre / MILLIMETRE, hole.radius / MILLIMETRE)])
     return loops
+
+
+def _spline(name: str, curve: CurveLike, start: float) -> _Spline:
+    """Closed side along a curve from a cam angle, rad."""
+    spline = clamped_spline(curve, _STEP_ERROR, start, start + FULL_TURN)
+    spline.c = spline.c / MILLIMETRE
+    return _Spline(name, spline)
+
+
+@dataclass(frozen=True, eq=False)
+class _Clockwise:
+    """Closed curve run through against its angle."""
+
+    curve: CurveLike
+
+    def points(self, theta: Array) -> Array:
+        return self.curve.points(-theta)
+
+    def velocity(self, theta: Array) -> Array:
+        return -self.curve.velocity(-theta)
 
 
 def _angle_zero(contour: Contour) -> float:
@@ -234,25 +281,70 @@ def _solid(file: Entities, loops: Sequence[Sequence[Side]], width: float, name: 
     """STEP reference of the solid between z = 0 and `width`, mm: walls on all sides of the loops,
     and both end faces.
     """
-    walls: list[str] = []
-    below: list[list[str]] = []
-    above: list[list[str]] = []
-    for sides in loops:
-        below.append([])
-        above.append([])
-        for side in sides:
-            low, high = _edges(file, side, 0.0), _edges(file, side, width)
-            rise, fall = (_upright(file, side.corners[end], width) for end in (-1, 0))
-            around = [(edge, True) for edge in (*low, rise)]
-            around += [(edge, False) for edge in (*reversed(high), fall)]
-            surface, outward = side.wall(file, width)
-            walls.append(_face(file, side.name, [_loop(file, around)], surface, outward))
-            below[-1] += low
-            above[-1] += high
-    floor = [_loop(file, [(edge, False) for edge in reversed(edges)]) for edges in below]
-    top = [_loop(file, [(edge, True) for edge in edges]) for edges in above]
+    parts = [_walls(file, sides, 0.0, width) for sides in loops]
+    floor = [_turned(file, low) for _, low, _ in parts]
+    top = [_loop(file, [(edge, True) for edge in high]) for _, _, high in parts]
     ends = [_end(file, "bottom", floor, 0.0, _DOWN), _end(file, "top", top, width, _UP)]
-    shell = file.add("CLOSED_SHELL", "''", listed([*walls, *ends]))
+    return _shell(file, [*(face for faces, _, _ in parts for face in faces), *ends], name)
+
+
+def _grooved(
+    file: Entities, loops: Sequence[Sequence[Side]], cut: GrooveCut, width: float, name: str
+) -> str:
+    """STEP reference of a disc with a groove in its upper face around the contour, mm.
+
+    loops: of the contour, inner wall of the groove, and of the holes
+    """
+    floor = width - cut.depth / MILLIMETRE
+    radius = cut.outer_radius / MILLIMETRE
+    outer = _spline("outer wall", _Clockwise(cut.wall), -_angle_zero(cut.wall))
+    inner, *holes = (
+        _walls(file, sides, floor if k == 0 else 0.0, width) for k, sides in enumerate(loops)
+    )
+    wall = _walls(file, [outer], floor, width)
+    rim = _walls(
+        file, [_Rim("rim", np.array([[radius, 0.0]] * 2), np.zeros(2), radius)], 0.0, width
+    )
+    upward = [[(edge, True) for edge in high] for _, _, high in (rim, wall, inner, *holes)]
+    around, within, island, *bores = (_loop(file, edges) for edges in upward)
+    faces = [
+        *(face for faces, _, _ in (rim, wall, inner, *holes) for face in faces),
+        _end(file, "bottom", [_turned(file, low) for _, low, _ in (rim, *holes)], 0.0, _DOWN),
+        _end(file, "floor", [_turned(file, low) for _, low, _ in (wall, inner)], floor, _UP),
+        _end(file, "rim face", [around, within], width, _UP),
+        _end(file, "top", [island, *bores], width, _UP),
+    ]
+    return _shell(file, faces, name)
+
+
+def _walls(
+    file: Entities, sides: Sequence[Side], low: float, high: float
+) -> tuple[list[str], list[str], list[str]]:
+    """STEP references of the wall faces of a loop of sides between two heights, mm, and of the
+    edges at its foot and its top.
+    """
+    faces: list[str] = []
+    below: list[str] = []
+    above: list[str] = []
+    for side in sides:
+        foot, top = _edges(file, side, low), _edges(file, side, high)
+        rise, fall = (_upright(file, side.corners[end], low, high) for end in (-1, 0))
+        around = [(edge, True) for edge in (*foot, rise)]
+        around += [(edge, False) for edge in (*reversed(top), fall)]
+        surface, outward = side.wall(file, low, high)
+        faces.append(_face(file, side.name, [_loop(file, around)], surface, outward))
+        below += foot
+        above += top
+    return faces, below, above
+
+
+def _turned(file: Entities, edges: Sequence[str]) -> str:
+    """Reference of a loop of edges against their directions."""
+    return _loop(file, [(edge, False) for edge in reversed(edges)])
+
+
+def _shell(file: Entities, faces: Sequence[str], name: str) -> str:
+    shell = file.add("CLOSED_SHELL", "''", listed(faces))
     return file.add("MANIFOLD_SOLID_BREP", quoted(name), shell)
 
 
@@ -287,10 +379,10 @@ def _edges(file: Entities, side: Side, z: float) -> list[str]:
     return [file.add("EDGE_CURVE", "''", *ends, curve, ".T.") for ends in pairwise(vertices)]
 
 
-def _upright(file: Entities, at: Array, width: float) -> str:
+def _upright(file: Entities, at: Array, low: float, high: float) -> str:
     """Reference of the edge of two walls; of the seam of one wall all round."""
-    ends = (_vertex(file, at, 0.0), _vertex(file, at, width))
-    return file.add("EDGE_CURVE", "''", *ends, _line(file, (*at, 0.0), _UP), ".T.")
+    ends = (_vertex(file, at, low), _vertex(file, at, high))
+    return file.add("EDGE_CURVE", "''", *ends, _line(file, (*at, low), _UP), ".T.")
 
 
 def _vertex(file: Entities, at: Array, z: float) -> str:

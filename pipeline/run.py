@@ -111,7 +111,6 @@ class CaseRun:
         began: float | None = None,
     ) -> None:
         """Options of the run; nothing is read or written before the context is entered."""
-        case.require_force_closure("a run folder; `check` judges a groove")
         self.case = case if positions is None else case.with_positions(positions)
         self.out, self.depth = Path(out), depth
         self._jobs, self._resume, self._replace = jobs, resume, replace

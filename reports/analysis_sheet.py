@@ -211,8 +211,18 @@ def _outline(turn: SheetTurn) -> SheetFigure | None:
         _roller_outline(turn, worst) if turn.rolls else _face_outline(turn, worst), name,
         turn.length("cam", "bore_radius"),
         turn.keyway,
-        worst, f"at {theta:.4g} deg", turn.counter_hole,
+        worst, f"at {theta:.4g} deg", turn.counter_hole, *_groove(turn, worst),
     )  # fmt: skip
+
+
+def _groove(turn: SheetTurn, at: int) -> tuple[tuple[Array, float] | None, Array | None]:
+    """Outer wall (2, n) of a groove with the radius of the disc, and the point on it that touches
+    at row `at` of the contour where this wall carries at the maximum contact pressure, mm.
+    """
+    wall, walls, radius = turn.outer_wall, turn.walls, turn.length("cam", "groove", "outer_radius")
+    if wall is None or walls is None or radius is None:
+        return None, None
+    return (wall, radius), wall[:, at] if walls[turn.worst] < 0.0 else None
 
 
 def _balance(turn: SheetTurn) -> str:

@@ -20,12 +20,19 @@ from camwright.reports.drawing.arrangement import (
     FORCES,
     DrawnArm,
     DrawnBush,
+    DrawnGroove,
     DrawnMechanism,
     DrawnMotion,
     DrawnSector,
 )
 from camwright.reports.drawing.drawing_shapes import Drawing
-from camwright.reports.drawing.spring_shapes import DRAWN, Coil, DrawnSpring, SpringPlaces
+from camwright.reports.drawing.spring_shapes import (
+    DRAWN,
+    Coil,
+    DrawnSpring,
+    NoSpring,
+    SpringPlaces,
+)
 from camwright.reports.sheet_turn import SheetTurn
 
 _COLUMNS = {"contact": "normal_force_N", "spring": "spring_force_N",
@@ -75,6 +82,7 @@ def motion_of(turn: SheetTurn) -> DrawnMotion:
         turn.load_case, np.radians(c["cam_angle_deg"]), turn.crank, turn.words.shaft,
         c["lift_mm"], np.radians(c["pressure_angle_deg"]), c.get("face_contact_offset_mm"),
         {name: np.nan_to_num(c[_COLUMNS[name]]) for name in FORCES if _COLUMNS[name] in c},
+        turn.walls,
     )  # fmt: skip
 
 
@@ -97,8 +105,17 @@ def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
         stroke, roller, _pin(turn, roller or 0.0), _face(turn) if roller is None else None, stem,
         end, guides, spring, seat,
         _sizes(turn, (axis, lowest, stroke, stem, end - lowest), guides, spring, seat),
-        _counterweight(turn), _arm(turn),
+        _counterweight(turn), _arm(turn), _groove(turn),
     )  # fmt: skip
+
+
+def _groove(turn: SheetTurn) -> DrawnGroove | None:
+    """Groove around the contour; None without one."""
+    wall = turn.outer_wall
+    radius, depth = (turn.length("cam", "groove", key) for key in ("outer_radius", "depth"))
+    if wall is None or radius is None or depth is None:
+        return None
+    return DrawnGroove(wall, radius, depth)
 
 
 def _arm(turn: SheetTurn) -> DrawnArm | None:
@@ -249,7 +266,10 @@ def _sizes(
                each.bore + 2.0 * (turn.length("guides", name, "wall") or 0.0))
         for name, each in zip("ab", guides, strict=True)
     ]  # fmt: skip
-    sleeves.append(Sleeve(spring.seat - seat - highest, spring.top - highest, 2.0 * spring.reach))
+    if not isinstance(spring, NoSpring):
+        sleeves.append(
+            Sleeve(spring.seat - seat - highest, spring.top - highest, 2.0 * spring.reach)
+        )
     half = max(turn.length("roller", "radius") or 0.0, 0.5 * cheeks)
     deep = 0.5 * (turn.length("roller", "width") or 0.0)
     if not turn.rolls:
@@ -262,7 +282,8 @@ def _sizes(
         held = turn.case["roller"]["pin"].get("mounting") == "overhung"
         deep = max(deep, span + cheek if held else 0.5 * (span + cheek))
     deep += turn.length("roller", "axial_offset") or 0.0
-    radius = float(np.hypot(turn.contour["contour_x_mm"], turn.contour["contour_y_mm"]).max())
+    edge = np.hypot(turn.contour["contour_x_mm"], turn.contour["contour_y_mm"])
+    radius = turn.length("cam", "groove", "outer_radius") or float(edge.max())
     width = turn.length("cam", "width") or 0.0
     return MechanismSizes(radius, width, axis, lowest, lift, (half, deep), diameter, end,
                           tuple(sleeves), _discs(turn))  # fmt: skip
@@ -359,6 +380,8 @@ def _spring(
     lowest, stroke = places
     kind = turn.case.get("spring", {}).get("kind", "coil")
     end = turn.length("follower", "stem_length")
+    if not turn.sprung:
+        return NoSpring(_top(guides[0]))
     if kind in DRAWN:
         between, above = (_top(guide) + seat + 0.3 * stem for guide in guides)
         stated = turn.length("spring", "seat_height")

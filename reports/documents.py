@@ -22,7 +22,14 @@ from camwright.pipeline.results.run_reader import results_sha256
 from camwright.reports import pdf
 from camwright.reports.arrangement_data import arrangement_at
 from camwright.reports.drawing.drawing_shapes import Drawing
-from camwright.reports.drawing.part_view import DrawnCam, Track, crown_words, scale_words, views
+from camwright.reports.drawing.part_view import (
+    DrawnCam,
+    GrooveView,
+    Track,
+    crown_words,
+    scale_words,
+    views,
+)
 from camwright.reports.report_content import Report, Signatures, report_content, verdict_of
 from camwright.reports.report_data import ReportMaterial, title_block
 from camwright.reports.report_tables import (
@@ -321,6 +328,12 @@ def _content(material: ReportMaterial, record: Record) -> ShopDrawing:
         for end, name in (("greatest", "radius_max"), ("least", "radius_min"))
     ]  # fmt: skip
     radii = [(f"{degrees}°", f"{radius:.4f}") for degrees, radius in record["radii_mm"].items()]
+    if (groove := record.get("groove")) is not None:
+        notes[0] = notes[0].replace("layer cut", "layer groove")
+        notes.append(_groove_note(groove))
+        outer = groove["outer_radii_mm"]
+        radii = [(f"{at} in", inner) for (at, inner) in radii]
+        radii += [(f"{degrees}° out", f"{radius:.4f}") for degrees, radius in outer.items()]
     notes.append(_mating(record["tracks"]))
     swing = _swing(record.get("arm"))
     if swing:
@@ -374,7 +387,27 @@ def _part(material: ReportMaterial, record: Record) -> DrawnCam:
         None if keyway is None else keyway["root_radius_mm"],
         number(record["profile_tolerance_mm"]), str(record["datum"]),
         "" if roughness is None else number(roughness), _track(record["tracks"]["cam"]),
+        _groove(material, record.get("groove")),
     )  # fmt: skip
+
+
+def _groove(material: ReportMaterial, record: Record | None) -> GrooveView | None:
+    """Groove to draw from its record; None without one."""
+    wall = material.turn.outer_wall
+    if record is None or wall is None:
+        return None
+    names = ("width_mm", "depth_mm", "corner_radius_mm", "outer_radius_mm")
+    return GrooveView(wall, *(float(record[name]) for name in names))
+
+
+def _groove_note(record: Record) -> str:
+    """Note on the groove: fit of its roller, and the files of its walls."""
+    return (
+        f"Groove: the contour is its inner wall; outer wall in contour_outer.csv, inspection of "
+        f"each in inspection.csv and inspection_outer.csv, paths of the cutter in cutter.csv and "
+        f"cutter_outer.csv; roller with {quantity(record['clearance_mm'], 'mm')} clearance, disc "
+        f"⌀{number(2.0 * record['outer_radius_mm'])}."
+    )
 
 
 def _track(record: Record) -> Track:
@@ -442,6 +475,8 @@ def _tables(material: ReportMaterial) -> dict[str, Excerpt | None]:
     files: dict[str, Excerpt | None] = {
         f"{material.run.final.path.name}/5_cycle.csv": None,
         "workshop/contour.csv": None,
+        "workshop/contour_outer.csv": None,
+        "workshop/inspection_outer.csv": Excerpt("every 10 deg", CAM_ANGLE.header, 10.0, {}),
         "workshop/inspection.csv": Excerpt(
             "every 10 deg",
             CAM_ANGLE.header,

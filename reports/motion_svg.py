@@ -204,7 +204,11 @@ def _panels(turn: SheetTurn) -> list[_MotionPanel]:
 
     They are not where the follower may leave the cam.
     """
-    forces = [_MotionCurve(label, turn.columns[name], colour) for label, name, colour in _FORCES]
+    forces = [
+        _MotionCurve(label, turn.columns[name], colour)
+        for label, name, colour in _FORCES
+        if turn.sprung or label != "spring"
+    ]
     panels = [_MotionPanel("Force", "N", forces, np.nan)]
     for figure in (each for _, group in groups(turn) for each in group):
         if figure.id == _PRESSURE and isinstance(figure, Figure):

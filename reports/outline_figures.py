@@ -46,7 +46,8 @@ class OutlineFigure:
 
     `pitch` is the pitch curve of a roller follower, `follower` the outline of roller or face at
     row `worst`; None if unknown. `keyway` is width and depth, mm, and angle, rad; `counter_hole`
-    centre x, y and radius, mm, and whether it is drilled.
+    centre x, y and radius, mm, and whether it is drilled; `groove` outer wall (2, n) and radius of
+    the disc, mm. `touches` is the point of contact, of the contour where None.
     """
 
     id: str
@@ -61,14 +62,28 @@ class OutlineFigure:
     worst: int
     worst_label: str
     counter_hole: tuple[float, float, float, bool] | None = None
+    groove: tuple[Array, float] | None = None
+    touches: Array | None = None
+
+    @property
+    def _disc(self) -> list[OutlineCurve]:
+        """Disc with a groove around the contour, its inner wall; none without one."""
+        if self.groove is None:
+            return []
+        wall, radius = self.groove
+        return [
+            OutlineCurve(circle((0.0, 0.0), radius), "blue", "", 1.4, fill="steel"),
+            OutlineCurve(closed(wall), "blue", "outer wall", 1.4, fill="card"),
+        ]
 
     @property
     def curves(self) -> tuple[OutlineCurve, ...]:
         """All curves, from the bottom layer to the top one."""
         angle = np.linspace(0.0, 360.0, self.contour.shape[1] + 1)
+        name = "cam contour" if self.groove is None else "inner wall"
         curves = [
-            OutlineCurve(closed(self.contour), "blue", "cam contour", 1.4, fill="steel",
-                         angle=angle),
+            *self._disc,
+            OutlineCurve(closed(self.contour), "blue", name, 1.4, fill="steel", angle=angle),
             *self._openings(),
         ]  # fmt: skip
         if self.pitch is not None:
@@ -87,7 +102,8 @@ class OutlineFigure:
             label = f"{self.follower_name} {self.worst_label}"
             curves.append(OutlineCurve(self.follower, "vermillion", label, 1.2))
         touch = slice(self.worst, self.worst + 1)
-        curves.append(OutlineCurve(self.contour[:, touch], "vermillion", marker="dot"))
+        contact = self.contour[:, touch] if self.touches is None else self.touches[:, None]
+        curves.append(OutlineCurve(contact, "vermillion", marker="dot"))
         if self.pitch is not None:
             curves.append(OutlineCurve(self.pitch[:, touch], "vermillion", marker="cross"))
         return tuple(curves)
@@ -132,7 +148,8 @@ class OutlineFigure:
     def reach(self) -> float:
         """Half the side of the square about the shaft that is shown, mm."""
         shown = [c for c in (self.contour, self.pitch, self.follower) if c is not None]
-        return 1.06 * max(float(np.abs(points).max()) for points in shown)
+        disc = 0.0 if self.groove is None else self.groove[1]
+        return 1.06 * max(disc, *(float(np.abs(points).max()) for points in shown))
 
     @property
     def alt(self) -> str:

@@ -27,11 +27,12 @@ def endurance(turn: SheetTurn) -> tuple[LimitLine, ...]:
 
 def _forces(turn: SheetTurn) -> Figure | None:
     """Figure of the force components on the follower over the turn, N."""
+    spring = (("spring_force_N", "spring"),) if turn.sprung else ()
     curves = curves_of(
-        turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
+        turn, *spring, ("inertia_force_N", "inertia"),
         ("side_force_N", "side force"), ("guide_friction_A_N", "friction A"),
         ("guide_friction_B_N", "friction B"), ("viscous_force_N", "viscous drag"),
-        ("applied_force_N", "applied"), dashed=(6,),
+        ("applied_force_N", "applied"), dashed=(len(spring) + 5,),
     )  # fmt: skip
     shown = "applied_force_N" in turn.columns
     applied = " Applied: weight and external force." if shown else ""
@@ -51,7 +52,7 @@ def _spring_force(turn: SheetTurn) -> Figure | None:
     """
     spring = turn.case.get("spring", {})
     lift, first = np.unique(turn.columns["lift_mm"], return_index=True)
-    if lift.size < 2:
+    if lift.size < 2 or not turn.sprung:
         return None
     force = turn.columns["spring_force_N"][first]
     at = np.linspace(lift[0], lift[-1], _TRAVEL_POINTS)

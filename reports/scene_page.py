@@ -22,6 +22,7 @@ from camwright.reports.interactive import script_safe_json, scripts
 from camwright.reports.page import environment
 from camwright.reports.pressure_figures import Record
 from camwright.reports.report_data import ReportMaterial
+from camwright.reports.scene_groove import SceneGroove, scene_groove
 from camwright.reports.scene_solids import (
     Lattice,
     Solid,
@@ -151,10 +152,16 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
     lab = view.lab_origin()
     rows = material.run.final.cycle.of_load_case(view.load_case)
     mechanism = mechanism_of(turn)
-    carried = [_cam(view, width), *_counterweight(mechanism)]
-    bodies = {"flank": _flank(material, view, width), "cam": joined(carried).as_record(_DIGITS)}
+    groove, middle = None, 0.0
+    if mechanism.groove is not None:
+        groove = scene_groove(turn, mechanism.groove, view.contour, view.bore, width)
+        middle, width = groove.middle, groove.roller
+    faces = _cam(view, width) if groove is None else groove.disc()
+    carried = [faces, *(each.deeper(middle) for each in _counterweight(mechanism))]
+    flank = _flank(material, view, width) if groove is None else _walls(material, view, groove)
+    bodies = {"flank": flank, "cam": joined(carried).as_record(_DIGITS)}
     holes = [ring(view.bore, width), *_drilled(mechanism, width)]
-    bodies["bore"] = joined(holes).as_record(_DIGITS)
+    bodies["bore"] = (joined(holes) if groove is None else groove.hole()).as_record(_DIGITS)
     arm = mechanism.arm
     end = mechanism.stem_end - mechanism.lowest if arm is None else arm.length
     stem = mechanism.stem if arm is None else 2.0 * arm.half
@@ -163,8 +170,12 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
         lean = arm.turn(rows["lift_mm"][view.position])
         if not view.is_roller:
             lean, follower = view.to_lab + view.turn - np.pi, _face_on_arm(view, width, arm)
+    if groove is not None:
+        follower = groove.follower(stem, end, _pin_radius(view))
     bodies["follower"] = follower.as_record(_DIGITS)
-    bodies["guide"] = _frame(mechanism).as_record(_DIGITS)
+    bodies["guide"] = _frame(
+        mechanism, middle, 0.0 if groove is None else groove.cheek[0]
+    ).as_record(_DIGITS)
     lifts = rows["lift_mm"][view.position]
     envelope = mechanism.envelope
     spin = view.arc() / float(np.hypot(*view.follower).max()) if view.is_roller else 0.0
@@ -190,7 +201,7 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
             "side": float(np.abs(envelope.across).max()),
             "low": -float(envelope.along[0]),
             "top": float(envelope.along[1]),
-            "deep": float(np.abs(envelope.depth).max()),
+            "deep": float(np.abs(envelope.depth).max()) + abs(middle),
         },
         "ends": _ends(material),
     }
@@ -208,6 +219,29 @@ def _flank(material: ReportMaterial, view: TurnView, width: float) -> Json:
         words = [f"cam {a:.1f}°: {v:.4g} MPa" for a, v in zip(angle, greatest, strict=True)]
         record |= {"values": _rounded(np.tile(greatest, 2)), "words": words * 2}
     return record
+
+
+def _walls(material: ReportMaterial, view: TurnView, groove: SceneGroove) -> Json:
+    """Record of both walls of a groove, as of a flank; a point has the stress of the turn where its
+    wall carries there, else none.
+    """
+    count = groove.inner.shape[1]
+    record = groove.walls().as_record(_DIGITS) | {"loops": 4}
+    greatest = _greatest(material, view, count)
+    rows = material.run.final.cycle.of_load_case(view.load_case)
+    if greatest is None or "wall" not in rows:
+        return record
+    angle = np.linspace(0.0, 360.0, count, endpoint=False)
+    wall = np.sign(np.interp(angle, rows["cam_angle_deg"], rows["wall"], period=360.0))
+    values, words = [], []
+    for name, side in (("inner", 1.0), ("outer", -1.0)):
+        stress = np.where(wall == side, greatest, 0.0)
+        text = [
+            f"{name} wall, cam {a:.1f}°: {v:.4g} MPa" for a, v in zip(angle, stress, strict=True)
+        ]
+        values += 2 * [stress]
+        words += 2 * text
+    return record | {"values": _rounded(np.concatenate(values)), "words": words}
 
 
 def _greatest(material: ReportMaterial, view: TurnView, stations: int) -> Array | None:
@@ -298,20 +332,21 @@ def _pin_radius(view: TurnView) -> float:
     return float(min(0.98 * away.min(), 0.52 * away.max()))
 
 
-def _frame(mechanism: DrawnMechanism) -> Solid:
+def _frame(mechanism: DrawnMechanism, disc: float = 0.0, before: float = 0.0) -> Solid:
     """Guides, space of the spring with its seats over the turn, shaft with bearings and gear.
 
-    Of an arm its pivot in place of the guides.
+    Of an arm its pivot in place of the guides. disc : place of the middle of the cam along the
+    shaft, mm; before : that of the stem
     """
     highest, arm = mechanism.lowest + mechanism.stroke, mechanism.arm
     if arm is None:
         solids = [
-            _sleeve(each, mechanism.stem, highest).shifted(mechanism.axis)
+            _sleeve(each, mechanism.stem, highest).shifted(mechanism.axis).deeper(before)
             for each in mechanism.sizes.sleeves
         ]
     else:
         solids = [pin(0.5 * arm.bearing, 2.0 * mechanism.sizes.follower[1]).raised(arm.pivot)]
-    discs = mechanism.sizes.discs
+    discs = [each._replace(place=each.place + disc) for each in mechanism.sizes.discs]
     solids += [pin(0.5 * each.diameter, 0.5 * each.width).deeper(each.place) for each in discs]
     if discs:
         ends = [each.place + side * 0.5 * each.width for each in discs for side in (-1, 1)]

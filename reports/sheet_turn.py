@@ -19,6 +19,7 @@ from camwright.reports.report_tables import Record, in_unit
 _FLAT = 0.02
 """Share of the greatest curve of a panel below which another one looks like zero."""
 _UNDERFLOW = 1e-12  # in the unit of the panel
+_NO_FORCE = 1e-6  # N, of what stands for the spring that a groove does without
 _LOW_HEIGHT = 0.6  # of a panel for small curves
 
 
@@ -119,6 +120,25 @@ class SheetTurn:
         if width is None or depth is None:
             return None
         return width, depth, self.length("cam", "keyway", "angle", unit="rad") or 0.0
+
+    @property
+    def outer_wall(self) -> Array | None:
+        """Outer wall of a groove (2, n), mm; None of a cam whose contour is its edge."""
+        if "outer_x_mm" not in self.contour:
+            return None
+        return np.array([self.contour["outer_x_mm"], self.contour["outer_y_mm"]])
+
+    @property
+    def sprung(self) -> bool:
+        """Whether a spring acts on the follower: a groove may hold it without one."""
+        if self.outer_wall is None:
+            return True
+        return bool(np.abs(self.columns["spring_force_N"]).max() > _NO_FORCE)
+
+    @property
+    def walls(self) -> Array | None:
+        """Wall of a groove that carries at each row: 1 the inner, -1 the outer; None without."""
+        return self.columns.get("wall")
 
     @property
     def rolls(self) -> bool:

@@ -502,7 +502,6 @@ def _checked_case(
         measurement_words,
     )
     from camwright.pipeline.case.plausibility import implausible
-    from camwright.pipeline.contact.tiers import Tier
     from camwright.pipeline.preview import preview_case
     from camwright.pipeline.results.check_records import judgement, to_be_confirmed
     from camwright.pipeline.results.junit_report import Clock
@@ -549,6 +548,5 @@ def _checked_case(
         "scope": case.scope.as_record(),
         "measurement": measurement_record(case),
         "checks": checks,
-        "deepest": (Tier.PREVIEW if case.cam.pulls else Tier.CERTIFIED).word,
     }
     return document, Clock(utc(seconds), seconds)

@@ -345,6 +345,14 @@ class Cycle(Tabled):
         turn, contact = _at_every(self.turn, count, step), _at_every(self.contact, count, step)
         return _ThinnedCycle(turn, self.contour, self.pair, self.bodies, contact, self, step)
 
+    @property
+    def _wall_column(self) -> dict[Column, Cells]:
+        """Wall of a groove that carries at each angle; nothing of a cam that only pushes."""
+        if not self.loads.held:
+            return {}
+        words = "Wall of the groove that carries: 1 the inner, -1 the outer"
+        return {Column("wall", "", words): self.loads.wall}
+
     def columns(self) -> dict[Column, Cells]:
         """Columns of ``5_cycle.csv``, SI; `table` has them in their units.
 
@@ -370,6 +378,7 @@ class Cycle(Tabled):
             PITCH_RADIUS: self.contour.pitch.radius_of_curvature(self.theta),
             CONTOUR_RADIUS: self.contour.radius_of_curvature(self.theta),
             Column("normal_force", "N", "Normal force on the cam"): loads.normal_force,
+            **self._wall_column,
             contact_column(
                 "line_load", "N/mm", "Normal force over width of the line contact"
             ): contact.line_load,

@@ -409,6 +409,8 @@ class _Follower:
             torque = np.maximum(push, 0.0, out=push)
         torque *= self.arm
         elastic = self.elastic(speed, moving)
+        if self.machine.system.held:
+            elastic = np.abs(elastic)
         lowest, soft = first_greatest_of_rows(-normal), first_greatest_of_rows(-elastic)
         return {
             "contact_force_min": normal.min(axis=1),

@@ -8,7 +8,6 @@ from camwright.pipeline.base.verdict import Status
 from camwright.pipeline.records.check_record import CheckRecord
 from camwright.pipeline.records.forms import (
     Count,
-    Depth,
     JsonBound,
     Least0,
     Sha256,
@@ -130,8 +129,6 @@ class CheckDocument(StatedVerdict, BindingRecord):
     """Key figures of a run."""
     figures: NotRequired[CamFigures]
     """Figures of a previewed cam; null: not known."""
-    deepest: NotRequired[Depth]
-    """Greatest depth at which a cam such as that of the case file is judged."""
     consistency: NotRequired[list[Finding]]
     """Inputs beside the values that the others imply."""
     measurement: NotRequired[Measurement | None]

@@ -10,6 +10,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import first_greatest, greatest, sampled_peak
+from camwright.geometry.form_closure import groove_wall
 from camwright.geometry.lift import Lift
 from camwright.meshes.mesh_quality import Quality
 from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, Cells, Column, Values
@@ -142,7 +143,7 @@ def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
     theta = drawn_angles(case)
     pitch, normal = contour.pitch.points(theta), contour.normal(theta)
     surface = contour.points(theta)
-    return {
+    columns = {
         CAM_ANGLE: theta,
         Column("pitch_x", "mm", "Pitch curve in the cam frame"): pitch[0],
         Column("pitch_y", "mm", "Pitch curve in the cam frame"): pitch[1],
@@ -154,6 +155,14 @@ def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
         PITCH_RADIUS: contour.pitch.radius_of_curvature(theta),
         CONTOUR_RADIUS: contour.radius_of_curvature(theta),
     }
+    if case.cam.groove is not None:  # the contour is its inner wall
+        track = contour.require_roller()
+        outer = groove_wall(track, "outer", track.roller_radius).points(theta)
+        columns |= {
+            Column(f"outer_{axis}", "mm", "Outer wall of the groove in the cam frame"): values
+            for axis, values in zip("xy", outer, strict=True)
+        }
+    return columns
 
 
 def cycle_columns(cycles: tuple[Cycle, ...]) -> dict[Column, Cells]:
@@ -258,7 +267,8 @@ def figures(trial: Trial) -> CamFigures:
     Extremes are refined between the samples. Of a load case in which the follower leaves the cam
     or locks the speed and the least contact force alone are stated, the others are None.
     """
-    contour = trial.contour
+    contour, groove = trial.contour, trial.case.cam.groove
+    disc = None if groove is None else groove.outer_radius
     convex = greatest(contour.curvature, contour.lift.search_count).value
 
     def peak(values: Array, scale: float = 1.0) -> float | None:
@@ -290,7 +300,7 @@ def figures(trial: Trial) -> CamFigures:
         "lift_max_mm": _MM * trial.lift.highest.value,
         "pressure_angle_max_deg": float(np.degrees(contour.pressure_angle_max().value)),
         "convex_radius_min_mm": _MM / convex if convex > 0.0 else None,
-        "cam_radius_max_mm": _MM * contour.radius_max().value,
+        "cam_radius_max_mm": _MM * (contour.radius_max().value if disc is None else disc),
         "load_cases": rows,
     }
 

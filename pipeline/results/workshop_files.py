@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import radians
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.cad_drawing import Outline, write_dxf
+from camwright.geometry.cad_drawing import GrooveCut, Outline, write_dxf
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import radius_at
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import CamError, ResultError
+from camwright.geometry.form_closure import Side, groove_wall
 from camwright.meshes.step_solid import write_step
 from camwright.meshes.step_text import PartTitle, stamped
 from camwright.pipeline.base.files import Json, json_text, read_text, write_atomic
@@ -25,7 +27,8 @@ from camwright.pipeline.base.tables import CAM_ANGLE, Column, table
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.cycle.cam_balance import drilled_hole
+from camwright.pipeline.case.workshop_section import WorkshopOrder
+from camwright.pipeline.cycle.cam_balance import drilled_hole, groove_of
 from camwright.pipeline.cycle.cycle import LIFT, PRESSURE_ANGLE
 
 _INSPECTION = (
@@ -39,6 +42,9 @@ SOLID = "cam.step"
 DIMENSIONS = "dimensions.json"
 CROWN = "crown_{}.csv"
 """Drop of the crown of a body, by its word."""
+_OUTER = "_outer"
+_WALLS: Mapping[str, Side] = MappingProxyType({"": "inner", _OUTER: "outer"})
+"""Walls of a groove by the ending of their files."""
 RADII_STEP = 10
 """deg, between the radii of the dimensions."""
 _CROWN_SHARES = (0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)  # of half the flat
@@ -89,8 +95,42 @@ def dimensions_of(case: Case) -> CamDimensions:
     )  # fmt: skip
 
 
+def made_walls(case: Case, contour: Contour) -> dict[str, Contour]:
+    """Surfaces to make by the ending of their files: the contour; in a groove both walls, half a
+    clearance from where the roller runs on them.
+    """
+    if case.cam.groove is None:
+        return {"": contour}
+    track, half = contour.require_roller(), groove_of(case.cam, contour).half_width
+    return {end: groove_wall(track, side, half) for end, side in _WALLS.items()}
+
+
+def groove_record(case: Case, contour: Contour) -> dict[str, Json] | None:
+    """Groove in ``dimensions.json``: width, depth, fillet and clearance, circle of the disc, radii
+    of the outer wall by polar angle; None without one.
+    """
+    groove, walls = case.cam.groove, made_walls(case, contour)
+    if groove is None:
+        return None
+    outer = walls[_OUTER].polygon(_RADII_POINTS)
+    return {
+        "width_mm": in_unit(2.0 * case.roller.radius + groove.clearance, "mm"),
+        "clearance_mm": in_unit(groove.clearance, "mm"),
+        "depth_mm": in_unit(groove.depth, "mm"),
+        "corner_radius_mm": in_unit(groove.corner_radius, "mm"),
+        "outer_radius_mm": in_unit(groove.outer_radius, "mm"),
+        "outer_radii_mm": {
+            str(degrees): in_unit(radius_at(outer, radians(degrees)), "mm")
+            for degrees in range(0, 360, RADII_STEP)
+        },
+    }
+
+
 def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
-    """Record of ``dimensions.json``: sizes, tolerances, material, radii by polar angle."""
+    """Record of ``dimensions.json``: sizes, tolerances, material, radii by polar angle; in a
+    groove those of the inner wall, and of the outer one in its record.
+    """
+    groove, contour = groove_record(case, contour), made_walls(case, contour)[""]
     size, keyway, hole = dimensions_of(case), case.cam.keyway, drilled_hole(case.cam, contour)
     polygon = contour.polygon(_RADII_POINTS)
     record: dict[str, Json] = {
@@ -111,6 +151,8 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
         },
         "arm": swing_record(case, contour),
     }
+    if groove is not None:
+        record["groove"] = groove
     if keyway is not None and size.keyway_width is not None and size.keyway_depth is not None:
         root = size.root_radius
         record["keyway"] = {
@@ -217,6 +259,15 @@ def notes_of(case: Case) -> Iterator[str]:
         f" ISO 1101) to datum {size.datum}: axis of the bore"
         + ("" if size.keyway_width is None else ", middle plane of the keyway")
     )
+    groove = case.cam.groove
+    if groove is not None:
+        width = 2.0 * case.roller.radius + groove.clearance
+        yield (
+            f"groove {shown(width, 'mm', 7)} wide and {shown(groove.depth, 'mm')} deep, fillets"
+            f" {shown(groove.corner_radius, 'mm')} at its floor, roller"
+            f" {shown(2.0 * case.roller.radius, 'mm')} with {shown(groove.clearance, 'mm')}"
+            f" clearance; disc {shown(2.0 * groove.outer_radius, 'mm')} in diameter"
+        )
     arm, start = case.follower.arm, case.follower.arm_angle(np.zeros(()), case.cam.prime_radius)
     if arm is not None and start is not None:
         lengths = (
@@ -245,9 +296,11 @@ def _hardness(material: Material) -> str:
 
 
 def outline_of(case: Case, contour: Contour) -> Outline:
-    """Contour, bore, keyway and counter-hole of a case."""
-    cam = case.cam
-    return Outline(contour, cam.bore_radius, cam.keyway, drilled_hole(cam, contour))
+    """Contour, bore, keyway, counter-hole and groove of a case."""
+    cam, walls, cut = case.cam, made_walls(case, contour), None
+    if cam.groove is not None:
+        cut = GrooveCut(walls[_OUTER], cam.groove.depth, cam.groove.outer_radius)
+    return Outline(walls[""], cam.bore_radius, cam.keyway, drilled_hole(cam, contour), cut)
 
 
 def part_title(case: Case) -> PartTitle:
@@ -285,19 +338,15 @@ def write_workshop(
     """
     folder.mkdir(parents=True, exist_ok=True)
     outline, order = outline_of(case, contour), case.workshop_order
-    tool = order.tool_radius or contour.fitting_tool
     jobs: dict[str, Callable[[Path], object]] = {
-        "contour.csv": lambda path: write_atomic(path, contour_table(contour, order.theta)),
         DIMENSIONS: lambda path: write_atomic(path, dimensions_text(case, contour)),
         "contour.dxf": lambda path: write_dxf(
             path, outline, order.arc_error, tuple(notes_of(case))
         ),
         SOLID: lambda path: write_step(path, outline, case.cam.width, part_title(case)),
-        "cutter.csv": lambda path: write_atomic(path, cutter_table(contour, tool, order.theta)),
-        "inspection.csv": lambda path: write_atomic(
-            path, inspection_sheet(contour, order.theta, order.tolerance)
-        ),
     }
+    for end, wall in made_walls(case, contour).items():
+        jobs |= _jobs_of(wall, end, order)
     for word, part in (("cam", case.cam), (case.facing.word, case.facing)):
         if part.crown is not None:
             jobs[CROWN.format(word)] = partial(_write_crown, case, word)
@@ -309,6 +358,20 @@ def write_workshop(
         except CamError as error:
             (folder / name).unlink(missing_ok=True)
             note(f"{WORKSHOP}/{name} is left out: {error}")
+
+
+def _jobs_of(
+    contour: Contour, end: str, order: WorkshopOrder
+) -> dict[str, Callable[[Path], object]]:
+    """How to write the tables of a surface, by file: points, path of the cutter, inspection."""
+    theta, tool = order.theta, order.tool_radius or contour.fitting_tool
+    return {
+        f"contour{end}.csv": lambda path: write_atomic(path, contour_table(contour, theta)),
+        f"cutter{end}.csv": lambda path: write_atomic(path, cutter_table(contour, tool, theta)),
+        f"inspection{end}.csv": lambda path: write_atomic(
+            path, inspection_sheet(contour, theta, order.tolerance)
+        ),
+    }
 
 
 def _write_crown(case: Case, word: str, path: Path) -> None:

@@ -33,7 +33,7 @@ from camwright.reports.drawing.drawing_shapes import (
     rectangle,
     segment,
 )
-from camwright.reports.drawing.spring_shapes import Coil, DrawnSpring
+from camwright.reports.drawing.spring_shapes import Coil, DrawnSpring, NoSpring
 
 _EDGE, _THIN = 0.45, 0.22  # mm, of lines on a mechanism `_WHOLE` high
 _WHOLE = 260.0
@@ -71,6 +71,17 @@ class DrawnSector(NamedTuple):
     outer: float
     width: float
     position: float
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnGroove:
+    """Groove in a disc around the contour, its inner wall: outer wall (2, n), radius of the disc,
+    depth; mm.
+    """
+
+    wall: Array
+    radius: float
+    depth: float
 
 
 @dataclass(frozen=True)
@@ -173,6 +184,7 @@ class DrawnMechanism:
     sizes                    of all parts, by which the envelope goes
     counterweight            in the frame of the cam; None: none
     arm                      that carries the roller, in place of stem, guides and spring; or None
+    groove                   around the contour, in which the roller runs; or None
     """
 
     contour: Array
@@ -193,6 +205,12 @@ class DrawnMechanism:
     sizes: MechanismSizes
     counterweight: DrawnSector | None
     arm: DrawnArm | None = None
+    groove: DrawnGroove | None = None
+
+    @property
+    def sprung(self) -> bool:
+        """Whether a spring acts on the stem."""
+        return not isinstance(self.spring, NoSpring)
 
     @cached_property
     def envelope(self) -> Box:
@@ -220,7 +238,9 @@ class DrawnMechanism:
     @property
     def shown_forces(self) -> tuple[str, ...]:
         """Forces drawn, by their names in `FORCES`."""
-        return tuple(FORCES) if self.arm is None else ("contact",)
+        if self.arm is not None:
+            return ("contact",)
+        return tuple(name for name in FORCES if self.sprung or name != "spring")
 
     def reference(self, lift: Array) -> tuple[Array, Array]:
         """Roller centre or middle of the face (2, n), mm, at lifts (n,), mm, and the angle of its
@@ -238,7 +258,9 @@ class DrawnMechanism:
 
     @cached_property
     def radius_max(self) -> float:
-        """Greatest radius of the contour, mm."""
+        """Greatest radius of the cam, mm: of the contour, or of the disc with a groove."""
+        if self.groove is not None:
+            return self.groove.radius
         return float(np.hypot(*self.contour).max())
 
     @cached_property
@@ -273,7 +295,8 @@ class DrawnMotion:
 
     theta : cam angle, rad; lift, mm; pressure_angle, rad; contact_offset : of the contact from the
     axis of a flat face, mm, None of a roller; forces : N by the names of `FORCES`, reactions
-    positive where they act against a side force that is positive
+    positive where they act against a side force that is positive; wall : of a groove that carries,
+    1 the inner, -1 the outer, which pulls; None without a groove
     """
 
     load_case: str
@@ -284,6 +307,12 @@ class DrawnMotion:
     pressure_angle: Array
     contact_offset: Array | None
     forces: dict[str, Array]
+    wall: Array | None = None
+
+    @property
+    def pushes(self) -> Array:
+        """Sense (n,) of the contact force along the travel: 1 outwards, -1 of a cam that pulls."""
+        return np.ones(self.theta.shape) if self.wall is None else self.wall
 
     @cached_property
     def greatest_force(self) -> float:
@@ -432,7 +461,8 @@ def alt(m: DrawnMechanism, motion: DrawnMotion, row: int) -> str:
         f"{FORCES[key].lower()} {_newtons(motion, key, row)}" for key in m.shown_forces
     )
     carried = "face" if m.roller is None else "roller"
-    parts = "follower, guides and spring" if m.arm is None else f"{carried} and arm on its pivot"
+    stem = "follower, guides and spring" if m.sprung else "follower in its groove and guides"
+    parts = stem if m.arm is None else f"{carried} and arm on its pivot"
     if m.arm is not None and m.arm.second is not None:
         parts += ", second arm with its output"
     if m.arm is not None and m.arm.spring is not None:
@@ -499,8 +529,12 @@ def _cam(m: DrawnMechanism) -> list[Shape]:
     mark = np.outer(along, zero)
     words = Text("0°", tuple(0.78 * m.contour[:, 0] - 0.4 * m.text * np.array([0.0, 1.0])),
                  0.85 * m.text, "muted", "middle")  # fmt: skip
+    disc = [DrawnOutline((m.contour, *holes), edge)]
+    if m.groove is not None:
+        floor = DrawnOutline((m.groove.wall, m.contour), Pen("ink", edge.width, "shade"))
+        disc = [DrawnOutline((circle(m.groove.radius), *holes), edge), floor]
     return [
-        DrawnOutline((m.contour, *holes), edge),
+        *disc,
         *_counterweight(m),
         DrawnOutline((mark,), Pen("ink", 1.6 * edge.width), closed=False),
         words,
@@ -541,6 +575,8 @@ def _follower(m: DrawnMechanism) -> list[Shape]:
             DrawnOutline((rectangle(-half, thick, half, end),), edge),
             DrawnOutline((rectangle(-0.5 * width, 0.0, 0.5 * width, thick),), edge),
         ]
+    if not m.sprung:
+        return made
     seat, reach = m.spring.seat - m.lowest, min(m.spring.reach, 4.0 * m.stem)
     thick = m.seat
     if not isinstance(m.spring, Coil):
@@ -592,7 +628,8 @@ def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
         across = 0.0 if motion.contact_offset is None else motion.contact_offset
         return np.stack([centre[0] - across, centre[1]])
     angle = motion.pressure_angle - travel
-    return np.asarray(centre - radius * np.stack([np.sin(angle), np.cos(angle)]))
+    inwards = motion.pushes * np.stack([np.sin(angle), np.cos(angle)])
+    return np.asarray(centre - radius * inwards)
 
 
 def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arrow]:
@@ -606,7 +643,8 @@ def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arr
     scale = m.arrow_length / motion.greatest_force if motion.greatest_force > 0.0 else 0.0
     touch = contact_point(m, motion)[:, row]
     angle = float(motion.pressure_angle[row] - m.reference(motion.lift)[1][row])
-    at = {"contact": (touch, np.array([np.sin(angle), np.cos(angle)]))}
+    push = motion.pushes[row] * np.array([np.sin(angle), np.cos(angle)])
+    at = {"contact": (touch, push)}
     if m.arm is None:
         beside = m.axis + m.spring.reach + 1.6 * m.scale
         seat = np.array([beside, m.spring.seat + motion.lift[row]])
@@ -618,6 +656,8 @@ def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arr
         }
     made = []
     for name, (tip, along) in at.items():
+        if name not in m.shown_forces:
+            continue
         force = float(motion.forces[name][row])
         push = np.sign(force) * along
         end = tip - 0.5 * m.stem * push if name.startswith("guide") else tip
@@ -636,6 +676,7 @@ def label_places(mechanism: DrawnMechanism) -> dict[str, tuple[float, float]]:
     if m.arm is None:
         wanted |= {"guide-a": m.guides[0].middle, "spring": m.spring.seat + 0.5 * m.stroke,
                    "guide-b": m.guides[1].middle}  # fmt: skip
+    wanted = {name: height for name, height in wanted.items() if name in m.shown_forces}
     across, free = _column(m), m.reach + 0.6 * m.text
     places = {}
     for name, height in sorted(wanted.items(), key=lambda item: item[1]):

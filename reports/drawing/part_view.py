@@ -39,6 +39,7 @@ _EDGE, _THIN = 0.5, 0.25  # mm, lines of ISO 128
 _ARROW = 0.75  # mm, so that a head is 2.55 mm long; the line before it is thin
 _STEPS = (1.0, 2.0, 5.0)  # of scales, ISO 5455
 _TRACK = 46.0  # mm, greatest width of the section of the track
+_GROOVE = 34.0  # mm, greatest width of the section of a groove
 _CROWN_HEIGHT = 0.06  # greatest drop drawn, over the width of the flat
 _CROWNS = {
     "lundberg": "Lundberg", "johns_gohar": "Johns-Gohar", "iso16281": "ISO/TS 16281",
@@ -104,6 +105,21 @@ class Track:
 
 
 @dataclass(frozen=True, eq=False)
+class GrooveView:
+    """Groove around the contour, its inner wall; mm.
+
+    wall : array (2, n)   outer wall
+    width, depth, fillet  of the groove; radius of the disc
+    """
+
+    wall: Array
+    width: float
+    depth: float
+    fillet: float
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
 class DrawnCam:
     """Data of the cam to draw; lengths in mm, angles in rad.
 
@@ -126,6 +142,12 @@ class DrawnCam:
     datum: str
     roughness: str
     track: Track
+    groove: GrooveView | None = None
+
+    @property
+    def edge(self) -> Array:
+        """Outermost outline (2, n), mm: contour, or circle of the disc with a groove."""
+        return self.contour if self.groove is None else circle(self.groove.radius)
 
     @property
     def bore_radius(self) -> float:
@@ -140,13 +162,15 @@ class DrawnCam:
     @property
     def scale(self) -> float:
         """Scale of front view and section."""
-        reach = float(np.abs(self.contour).max())
+        reach = float(np.abs(self.edge).max())
         return min(standard_scale(0.5 * _FRONT - _LABELS, reach),
                    standard_scale(_SECTION, self.thickness))  # fmt: skip
 
     @property
     def track_scale(self) -> float:
         """Scale of the detail of the surface in contact."""
+        if self.groove is not None:
+            return standard_scale(_GROOVE, self.groove.width)
         return standard_scale(_TRACK, self.track.width)
 
     @property
@@ -171,11 +195,12 @@ def scale_words(scale: float) -> str:
 def views(part: DrawnCam) -> Drawing:
     """Front view at the top left, section beside it, bore detail below."""
     middle = (0.5 * _FRONT, HEIGHT - 0.5 * _FRONT - 12.0)
+    track = _track if part.groove is None else _groove
     groups = (
         ShapeGroup("front", tuple(_front(part, *middle))),
         ShapeGroup("section", tuple(_section(part, _FRONT + 8.0, middle[1]))),
         ShapeGroup("detail", tuple(_detail(part, 62.0, 36.0))),
-        ShapeGroup("track", tuple(_track(part, 186.0, 46.0))),
+        ShapeGroup("track", tuple(track(part, 186.0, 46.0))),
     )
     words = (
         "Cam in front view, section and details of its bore and of the section of its surface; "
@@ -210,11 +235,14 @@ def _front(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
     edge = Pen("ink", _EDGE)
     contour = scale * part.contour + centre
     yield DrawnOutline((contour,), edge)
+    if part.groove is not None:
+        for each in (part.groove.wall, part.edge):
+            yield DrawnOutline((scale * each + centre,), edge)
     yield DrawnOutline((scale * part.hole + centre,), edge)
     if part.counter_hole is not None:
         hole_x, hole_y, radius = (scale * each for each in part.counter_hole)
         yield DrawnOutline((circle(radius, (x + hole_x, y + hole_y)),), edge)
-    radii = scale * np.array([radius_at(part.contour, np.radians(k)) for k in range(0, 360, 5)])
+    radii = scale * np.array([radius_at(part.edge, np.radians(k)) for k in range(0, 360, 5)])
     for degrees in range(0, 360, _EVERY):
         out = float(radii[degrees // 5])
         ends = (_from_polar(out + gap, degrees, x, y) for gap in (0.8, 3.0))
@@ -295,13 +323,16 @@ def _section(part: DrawnCam, left: float, y: float) -> Iterator[Shape]:
     axis at height y, mm on paper.
     """
     scale = part.scale
-    high, low = (scale * radius_at(part.contour, turn) for turn in (0.5 * np.pi, 1.5 * np.pi))
+    high, low = (scale * radius_at(part.edge, turn) for turn in (0.5 * np.pi, 1.5 * np.pi))
     up, down = (scale * radius_at(part.hole, turn) for turn in (0.5 * np.pi, 1.5 * np.pi))
     right = left + scale * part.thickness
     for bottom, top in ((y + up, y + high), (y - low, y - down)):
         box = (left, bottom, right, top)
-        yield _thin(*hatching(box, 2.5))
-        yield DrawnOutline((rectangle(*box),), Pen("ink", _EDGE))
+        if part.groove is None:
+            yield _thin(*hatching(box, 2.5))
+            yield DrawnOutline((rectangle(*box),), Pen("ink", _EDGE))
+        else:
+            yield from _cut(part, part.groove, box, y)
     yield DrawnOutline((rectangle(left, y - down, right, y + up),), Pen("ink", _EDGE))
     yield _thin(segment((left - 3.0, y), (right + 3.0, y)), dash="dashdot")
     yield from _dimension(
@@ -311,6 +342,26 @@ def _section(part: DrawnCam, left: float, y: float) -> Iterator[Shape]:
     yield _thin(circle(0.5 * scale * part.thickness + 3.0, (middle, y + high)))
     yield Text("D", (right + 5.0, y + high - 5.0), _TEXT, bold=True)
     yield Text("C–C", (0.5 * (left + right), y - low - 8.0), _TEXT, align="middle", bold=True)
+
+
+def _cut(
+    part: DrawnCam, groove: GrooveView, box: tuple[float, float, float, float], y: float
+) -> Iterator[Shape]:
+    """Half of the section of a disc with its groove, open to the right, in a box of left, bottom,
+    right and top about an axis at height y, mm on paper.
+    """
+    scale, (left, bottom, right, top) = part.scale, box
+    turn = 0.5 * np.pi if bottom > y else 1.5 * np.pi
+    sign = 1.0 if bottom > y else -1.0
+    near, far = sorted(y + sign * scale * radius_at(wall, turn)
+                       for wall in (part.contour, groove.wall))  # fmt: skip
+    floor = right - scale * groove.depth
+    for piece in ((left, bottom, right, near), (left, near, floor, far),
+                  (left, far, right, top)):  # fmt: skip
+        yield _thin(*hatching(piece, 2.5))
+    x = np.array([left, right, right, floor, floor, right, right, left])
+    heights = np.array([bottom, bottom, near, near, far, far, top, top])
+    yield DrawnOutline((np.stack([x, heights]),), Pen("ink", _EDGE))
 
 
 def _detail(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
@@ -380,6 +431,50 @@ def _track(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
     if track.crown is not None:
         words = f"crown drawn {track.stretch:.6g}:1 over the width; drop as listed"
         yield Text(words, (x - 36.0, foot[1] - 5.0), _SMALL)
+
+
+def _groove(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
+    """Section of the groove across its path, open upwards, its middle at x and the face of the disc
+    at y: width, depth and fillets.
+    """
+    groove, scale = part.groove, part.track_scale
+    if groove is None:
+        return
+    half, depth, fillet = (scale * each for each in
+                           (0.5 * groove.width, groove.depth, groove.fillet))  # fmt: skip
+    rim, below = 0.35 * half, y - depth - 0.5 * half
+    turn = np.linspace(0.0, 0.5 * np.pi, _ARC)
+    corner = np.array([[x + half - fillet], [y - depth + fillet]]) + fillet * np.stack(
+        [np.sin(turn), -np.cos(turn)])  # fmt: skip
+    mirrored = corner[:, ::-1] * [[-1.0], [1.0]] + [[2.0 * x], [0.0]]
+    outer = half + rim
+    outline = np.hstack([
+        np.array([[x - outer, x - half], [y, y]]), mirrored, corner,
+        np.array([[x + half, x + outer, x + outer, x - outer], [y, y, below, below]]),
+    ])  # fmt: skip
+    floor = y - depth
+    for box in ((x - outer, below, x + outer, floor), (x - outer, floor, x - half, y),
+                (x + half, floor, x + outer, y)):  # fmt: skip
+        yield _thin(*hatching(box, 2.5))
+    yield DrawnOutline((outline,), Pen("ink", _EDGE))
+    yield _thin(segment((x, below - 2.0), (x, y + 3.0)), dash="dashdot")
+    yield from _dimension((x - half, x + half), y, y + 8.0, f"{groove.width:.7g}", above=True)
+    beside = x - outer - 7.0
+    yield _thin(segment((x - outer, y), (beside - 2.0, y)),
+                segment((x - half, y - depth), (beside - 2.0, y - depth)))  # fmt: skip
+    middle = y - 0.5 * depth
+    yield from _arrow((beside, middle), (beside, y))
+    yield from _arrow((beside, middle), (beside, y - depth))
+    words = f"{groove.depth:.6g}"
+    yield Text(words, (beside - 2.0, middle - 1.2), _TEXT, align="end")
+    foot = (x + outer + 5.0, below - 7.0)
+    touch = corner[:, _ARC // 2]
+    yield from _arrow(foot, (float(touch[0]), float(touch[1])))
+    yield _thin(segment((x - outer, foot[1]), foot))
+    words = f"fillets R {groove.fillet:.4g}" if groove.fillet else "corners sharp"
+    yield Text(words, (x - outer, foot[1] + 1.2), _TEXT)
+    title = f"D ({scale_words(scale)})"
+    yield Text(title, (x - outer - 12.0, y + 15.0), _TEXT, bold=True)
 
 
 def _dimension(

@@ -248,6 +248,26 @@ class Torsion:
         )
 
 
+@dataclass(frozen=True)
+class NoSpring:
+    """In place of a spring where a groove holds the follower, at the height of its seat, mm."""
+
+    seat: float
+    reach: float = 0.0
+
+    @property
+    def top(self) -> float:
+        return self.seat
+
+    def groups(
+        self,
+        axis: float,  # noqa: ARG002
+        lift: float,  # noqa: ARG002
+    ) -> tuple[tuple[ShapeGroup, ...], tuple[ShapeGroup, ...]]:
+        """Nothing is drawn."""
+        return (), ()
+
+
 class DrawnSpring(Protocol):
     """A spring of any kind; `seat`, `top` and `reach` in mm."""
 

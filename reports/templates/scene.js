@@ -91,7 +91,7 @@
     return made;
   }
 
-  const rim = edges(data.bodies.flank, 2), hole = edges(data.bodies.bore, 2);
+  const rim = edges(data.bodies.flank, data.bodies.flank.loops || 2), hole = edges(data.bodies.bore, 2);
 
   /* Coordinates at step n, in the order of the traces. */
   function coordinates(n) {
