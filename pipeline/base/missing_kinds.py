@@ -84,10 +84,10 @@ MISSING_KINDS = (
         keys=("groove_width", "groove_depth", "track", "track_width"),
     ),
     MissingKind(
-        "a conjugate (complementary) pair of cams", "cam",
-        ("conjugate", "complementary", "double", "double_disc", "dual", "twin", "counter_cam"),
-        _PLATE,
-        keys=("conjugate", "conjugate_cam", "second_cam", "counter_cam"),
+        "a pair of discs without [cam.conjugate]", "cam",
+        ("complementary", "double", "double_disc", "dual", "twin", "counter_cam"),
+        'cam.closure = "conjugate"',
+        keys=("conjugate_cam", "second_cam", "counter_cam"),
     ),
     MissingKind(
         "a desmodromic (positively driven) cam", "cam",

@@ -80,14 +80,18 @@ def tables_in(content: str | bytes) -> Tables:
 def completed(case: Case, folder: Path | None) -> Case:
     """Case with the files to which it refers read from `folder`; None: it may refer to none.
 
-    A face too narrow and a file without an external force are refused.
+    A face too narrow, a second roller that its disc does not reach and a file without an external
+    force are refused.
     """
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
     external_force(case)  # refuses a file without one
-    if case.lift is not None and case.follower.face is not None:
+    second = case.cam.second
+    if case.lift is not None and (case.follower.face is not None or second is not None):
         with refused_as_written(case):
-            case.contour(given_lift(case))  # refuses a face too narrow
+            contour = case.contour(given_lift(case))  # refuses a face too narrow
+            if second is not None:
+                second.of(contour.pitch)  # refuses a second roller beyond the cam axis
     return case
 
 

@@ -1,4 +1,4 @@
-"""Form closure in the tables of a case: what stands for the spring that a groove does without."""
+"""Closure in the tables of a case: what stands for the spring that a cam does without."""
 
 from __future__ import annotations
 
@@ -6,17 +6,18 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
-GROOVE = "groove"
-_NONE = Source("none: the groove holds the follower", confirmed=True)
+SPRINGLESS = ("groove", "conjugate")
+"""Closures that need no spring."""
+_NONE = Source("none: the cam holds the follower", confirmed=True)
 _NO_RATE, _NO_PRELOAD = 1e-6, 1e-9  # N/m, N
 
 
 def with_closure(tables: Tables) -> Tables:
-    """Tables of a case with, in place of the missing spring of a groove, one of negligible force;
-    other cases unchanged.
+    """Tables of a case with, in place of the missing spring of a cam that pulls its follower, one
+    of negligible force; other cases unchanged.
     """
     cam = tables.get("cam")
-    if not isinstance(cam, dict) or cam.get("closure") != GROOVE or "spring" in tables:
+    if not isinstance(cam, dict) or cam.get("closure") not in SPRINGLESS or "spring" in tables:
         return tables
     source: TomlValue = entry_of(_NONE)
     rate, preload = units.format(_NO_RATE, "kN/m"), units.format(_NO_PRELOAD, "N")

@@ -18,7 +18,7 @@ from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.limits import SPEED_REDUCTION, TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
 from camwright.pipeline.case.value_sources import require_known
-from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.contact.cam_body import CamBody, CamConjugate
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_file import SpeedTable
@@ -240,38 +240,73 @@ def _start(case: Case) -> Iterator[Rule]:
             yield Rule(f"load_case[{k}].{name}", _fixed(True), limit)
 
 
+_TRACKS = ("groove", "conjugate")
+"""Closures with a second track, each with a table of its own in [cam]."""
+
+
 def _closure(case: Case) -> None:
-    """Refuse what a case with a groove states and cannot have, and what it lacks: a groove guides
-    the roller of a stem by a stated lift.
+    """Refuse what a case whose cam pulls its follower states and cannot have, and what it lacks:
+    such a cam guides rollers by a stated lift.
 
     Raises
     ------
     InputError
-        If something is stated that a groove does not have, or that is not done for one.
+        If something is stated that such a cam does not have, or that is not done for one.
     """
     cam = case.cam
+    for name in _TRACKS:
+        if getattr(cam, name) is not None and cam.closure != name:
+            raise InputError(f"cam.{name}", "a table", f'left out, or cam.closure = "{name}"')
     if not cam.pulls:
-        if cam.groove is not None:
-            raise InputError("cam.groove", "a table", 'left out, or cam.closure = "groove"')
         return
-    if cam.groove is None:
-        raise InputError("cam.groove", "missing", 'given with cam.closure = "groove"')
-    if case.follower.kind != "roller":
-        limit = '"roller" with cam.closure = "groove", which is done for a stem alone'
+    stated_as = f'cam.closure = "{cam.closure}"'
+    if getattr(cam, cam.closure) is None:
+        raise InputError(f"cam.{cam.closure}", "missing", f"given with {stated_as}")
+    if cam.conjugate is not None:
+        _conjugate(case, cam.conjugate)
+    elif case.follower.kind != "roller":
+        limit = f'"roller" with {stated_as}, which is done for a stem alone'
         raise InputError("follower.kind", case.follower.kind, limit)
     if case.lift is None:
-        limit = 'given with cam.closure = "groove": its synthesis from a torque is not done'
+        limit = f"given with {stated_as}: its synthesis from a torque is not done"
         raise InputError("lift", "missing", limit)
     for key, stated in (("cam.counter_hole", cam.counter_hole), ("valve_train", case.valve_train)):
         if stated is not None:
-            raise InputError(key, "a table", 'left out with cam.closure = "groove"')
+            raise InputError(key, "a table", f"left out with {stated_as}")
     pin = case.roller.pin
-    if pin is not None and not pin.overhung:
-        limit = '"overhung" with cam.closure = "groove": a cheek on both sides cannot enter it'
+    if cam.groove is not None and pin is not None and not pin.overhung:
+        limit = f'"overhung" with {stated_as}: a cheek on both sides cannot enter it'
         raise InputError("roller.pin.mounting", pin.mounting, limit)
     ring = case.roller.bearing.ring
     if case.spring.absent and ring is not None and case.roller.bearing.C0 is None:
         raise InputError("roller.bearing.C0", "missing", "given with a ring and without a spring")
+
+
+def _conjugate(case: Case, second: CamConjugate) -> None:
+    """A second roller is on the stem, or on a second arm.
+
+    Raises
+    ------
+    InputError
+        If it is described for another follower than that of the case, or for none.
+    """
+    pair, arm = 'cam.closure = "conjugate"', case.follower.arm is not None
+    if case.roller_given is None or case.rocker is not None:
+        limit = f'"roller", or "oscillating" with a roller, with {pair}'
+        raise InputError("follower.kind", case.follower.kind, limit)
+    of_stem, of_arm = ("distance",), ("arm_length", "arm_angle")
+    for key in of_arm if arm else of_stem:
+        if getattr(second, key) is None:
+            raise InputError(f"cam.conjugate.{key}", "missing", f"given with {pair}")
+    for key in of_stem if arm else of_arm:
+        if (stated := getattr(second, key)) is not None:
+            limit = f"left out, of {'a stem' if arm else 'an arm'}"
+            raise InputError(f"cam.conjugate.{key}", f"{stated:g}", limit)
+
+
+def _discs() -> Iterator[Rule]:
+    """Both discs of a conjugate pair are beside one another."""
+    yield _at_least("cam.conjugate.spacing", lambda at: at("cam.width"), ">= {cam.width}")
 
 
 def _groove() -> Iterator[Rule]:
@@ -402,6 +437,8 @@ def _geometry(case: Case) -> Iterator[Rule]:
         yield from _arm(case)
     if case.cam.groove is not None:
         yield from _groove()
+    if case.cam.conjugate is not None:
+        yield from _discs()
     key = "limits.return_pressure_angle"
     yield _at_least(key, lambda at: at("limits.pressure_angle"), ">= {limits.pressure_angle}")
     yield from _ring(case)

@@ -447,6 +447,7 @@ class Machine(Displayed):
             face_friction=self.follower.side_friction,
             pivot=self.arm_pivot,
             held=self.cam.pulls,
+            second=self.cam.second,
         )
 
     @property

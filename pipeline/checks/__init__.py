@@ -14,7 +14,7 @@ In the order of the calculation:
 | `cam_shape`             | pressure angle, curvature, interference    | alpha, rad; rho, m       |
 | `jump_and_jamming`      | contact force, follower jump, jam index    | F_n, N; n, rad/s         |
 | `contact_strength`      | endurance, yield, shakedown                | p0, Pa                   |
-| `form_closure`          | walls of a groove, landings, slip          | sigma, p, Pa; v, m/s     |
+| `form_closure`          | groove, pair of discs, landings, slip      | sigma, p, Pa; v, m/s     |
 | `surface_durability`    | traction, oil film, fatigue, hardened case | T/F_n; lambda; sigma, Pa |
 | `roller_bearing`        | rating, life, speed, grease of the bearing | s0; L10, s; n, rad/s     |
 | `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |

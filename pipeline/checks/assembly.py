@@ -427,7 +427,7 @@ machine_shaft_gap = check(
     part="gear",
     load_cases=NONE,
     levers=(levers.one("cam.prime_radius", -1, 2.0), *levers.GENTLER),
-    closed_by="force",
+    closed_by="plate",
     page="Camshaft",
 ).measured(
     "contour",

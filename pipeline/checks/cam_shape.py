@@ -9,8 +9,9 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.cutter_path import tool_interference
-from camwright.geometry.extrema import Extremum
+from camwright.geometry.extrema import Extremum, first_greatest
 from camwright.geometry.pitch_curve import magnitude
+from camwright.geometry.second_track import CamDisc
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
@@ -277,8 +278,10 @@ undercut = check(
 )
 def self_intersection(solution: Solution) -> Demand:
     """Number of crossings of the contour with itself."""
-    crossings = solution.contour.self_intersections()
-    count, angle = float(len(crossings)), _place(crossings[0][0]) if crossings else None
+    crossings = [
+        disc.angle(each[0]) for disc in solution.discs for each in disc.contour.self_intersections()
+    ]
+    count, angle = float(len(crossings)), _place(crossings[0]) if crossings else None
     return Demand(count, 0.0, angle, stated={"n": count})
 
 
@@ -301,9 +304,10 @@ def second_contact(solution: Solution) -> Demand:
     """Greatest penetration of the follower into the contour away from the contact, m; 0 where it
     has a clearance.
     """
-    nearest = solution.contour.second_contact()
+    every = [(each, each.contour.second_contact()) for each in solution.discs]
+    disc, nearest = every[first_greatest([-one.clearance for _, one in every])]
     depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinite clearance is 0
-    angle, gap = _place(float(nearest.theta)), float(nearest.clearance)
+    angle, gap = _place(disc.angle(float(nearest.theta))), float(nearest.clearance)
     limit = solution.machine.limits[SECOND_CONTACT_DEPTH]
     return Demand(depth, limit, angle, stated={"g": gap})
 
@@ -323,7 +327,7 @@ def second_contact(solution: Solution) -> Demand:
     needs="round",
     load_cases=NONE,
     levers=(levers.TOOL, *levers.SHAPE),
-    closed_by="force",
+    closed_by="plate",
     page="Cam",
 ).measured(
     "contour",
@@ -335,8 +339,12 @@ def second_contact(solution: Solution) -> Demand:
     kept=Kept(_in_hollow, unit="mm"),
 )
 def concave_radius(cam: LoadedCam) -> Array:
-    """Measure: pitch curvature, 1/m; demand: least concave radius of the contour, m."""
-    return cam.motion.path_curvature
+    """Measure: pitch curvature, 1/m; demand: least concave radius of the contour, m.
+
+    That of another roller, of a second disc, as of the first at the same concave radius.
+    """
+    curvature, larger = cam.motion.path_curvature, cam.motion.size - cam.numbers["follower.surface"]
+    return curvature / (1.0 - curvature * larger)
 
 
 @check(
@@ -356,15 +364,21 @@ def concave_radius(cam: LoadedCam) -> Array:
     reason="A wheel that fits the concave radius can still cut a flank across it.",
     load_cases=NONE,
     levers=(levers.TOOL, *levers.SHAPE),
-    closed_by="force",
+    closed_by="plate",
     page="Cam",
 )
 def tool_gouge(solution: Solution) -> Demand:
     """Depth of the tool in the contour away from its contact, m; 0 for a convex cam. Not evaluated
     without a tool radius.
     """
-    contour, tool = solution.contour, solution.case.workshop_order.tool_radius
-    allowed = solution.machine.limits[SECOND_CONTACT_DEPTH]
+    tool = solution.case.workshop_order.tool_radius
+    every = [_gouged(disc, tool, solution) for disc in solution.discs]
+    return every[first_greatest([np.nan if one.value is None else one.value for one in every])]
+
+
+def _gouged(disc: CamDisc, tool: float | None, solution: Solution) -> Demand:
+    """Gouge depth on the contour of one disc."""
+    contour, allowed = disc.contour, solution.machine.limits[SECOND_CONTACT_DEPTH]
     concave = contour.concave_radius_min().value
     if np.isposinf(concave):
         touching = {} if tool is None else dict.fromkeys("RD", tool)
@@ -377,7 +391,7 @@ def tool_gouge(solution: Solution) -> Demand:
     return Demand(
         depth,
         allowed,
-        _place(float(nearest.theta)),
+        _place(disc.angle(float(nearest.theta))),
         note=f"tool of {shown(tool, 'mm')}",
         stated={"R": tool, "D": tool + float(nearest.clearance)},
     )

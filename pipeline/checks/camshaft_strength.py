@@ -12,6 +12,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest, first_least
+from camwright.geometry.second_track import discs_of
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
@@ -722,7 +723,8 @@ def _rotor(machine: Machine, contour: Contour) -> Rotor:
         section = np.pi * shaft.thinnest**4 / 32.0
         apart = abs(shaft.cam_position - shaft.gear_position)
         twist = min(twist, card.E / (2.0 * (1.0 + card.nu)) * section / apart)
-    ring = contour.polar_moment() - 0.5 * np.pi * cam.bore_radius**4
+    discs = discs_of(contour, cam.second)
+    ring = sum(each.contour.polar_moment() - 0.5 * np.pi * cam.bore_radius**4 for each in discs)
     return Rotor(
         gear=gear.inertia(shaft.gear_radius),
         cam=cam.material.density * cam.width * ring,

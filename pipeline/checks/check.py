@@ -288,6 +288,9 @@ class Measured(NamedTuple):
         return measure(cam) / limit if self.worst == "greatest" else 1.0 + limit - measure(cam)
 
 
+ClosedBy = Literal["", "force", "form", "plate", "groove", "conjugate"]
+
+
 @dataclass(frozen=True)
 class Declaration:
     """Declaration of a check: title, limit, formula, sources; calling it checks a solution.
@@ -312,7 +315,9 @@ class Declaration:
     error : str                origin of the error bar of the demand
     needs : str                kind of follower, see `Kind`; "": any
     closed_by : str            what keeps the follower on the cam: "force", of a spring or weight,
-                               or "form", of a groove; "": either
+                               or "form", of a second track;
+                               "plate": any cam of plates; "groove", "conjugate": that closure;
+                               "": any
     part : str                 part of the scope that it judges; "": cam or follower
     if_limited : bool          it is made only where the case sets its limit
     within : tuple             parts and subjects of the scope, without all of which it is not
@@ -358,7 +363,7 @@ class Declaration:
     moved_by_tolerance: bool
     error: Error
     needs: Kind
-    closed_by: Literal["", "force", "form"]
+    closed_by: ClosedBy
     part: PartName | Literal[""]
     within: tuple[ScopeName, ...]
     if_limited: bool
@@ -425,7 +430,7 @@ class Declaration:
         """
         if self.needs not in {"", machine.carrier, *machine.follower.kinds}:
             return False
-        if self.closed_by not in ("", "form" if machine.cam.pulls else "force"):
+        if self.closed_by not in ("", *machine.cam.closed_by):
             return False
         if self.if_limited and self.limit is not None and machine.limits[self.limit] is None:
             return False
@@ -491,7 +496,7 @@ def check(
     moved_by_tolerance: bool = True,
     error: Error = "sampling",
     needs: Kind = "",
-    closed_by: Literal["", "force", "form"] = "",
+    closed_by: ClosedBy = "",
     part: PartName | Literal[""] = "",
     within: tuple[ScopeName, ...] = (),
     if_limited: bool = False,

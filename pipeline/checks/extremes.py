@@ -13,8 +13,10 @@ from camwright.geometry import extrema
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import TIE, first_greatest, first_least
+from camwright.geometry.second_track import CamDisc
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.solved_cam import ContourCam, SolvedCam
 
@@ -343,19 +345,32 @@ def _worst(
         top = np.mod(contour.lift.highest.theta, FULL_TURN)
         return Extreme(value, "", None if reduce == "case" else float(top))
     if reduce == "contour":
-        shapes = _OF_CONTOURS.setdefault(contour, {})
-        if (shape := (measure, at_least)) not in shapes:
-            refined = extrema.least if at_least else extrema.greatest
-            found = refined(
-                lambda theta: measure(ContourCam.at(contour, numbers, theta, order)),
-                contour.lift.search_count,
-            )
-            shapes[shape] = Extreme(found.value, "", float(np.mod(found.theta, FULL_TURN)))
-        return shapes[shape]
+        every = [
+            _of_contour(disc, numbers, measure, at_least=at_least, order=order)
+            for disc in solution.discs
+        ]
+        sign = -1.0 if at_least else 1.0
+        return every[first_greatest([sign * each.value for each in every])]
     cached = _OF_CYCLES.setdefault(solution, {})
     if (key := (measure, reduce, at_least)) not in cached:
         cached[key] = _worst_of_cycles(solution, measure, reduce, at_least=at_least)
     return cached[key]
+
+
+def _of_contour(
+    disc: CamDisc, numbers: Numbers, measure: Measure, *, at_least: bool, order: int
+) -> Extreme:
+    """Extreme of a measure on the unloaded contour of a disc, at the cam angle of the first."""
+    contour = disc.contour
+    shapes = _OF_CONTOURS.setdefault(contour, {})
+    if (shape := (measure, at_least)) not in shapes:
+        refined = extrema.least if at_least else extrema.greatest
+        found = refined(
+            lambda theta: measure(ContourCam.at(contour, numbers, theta, order)),
+            contour.lift.search_count,
+        )
+        shapes[shape] = Extreme(found.value, "", disc.angle(found.theta))
+    return shapes[shape]
 
 
 def _worst_of_cycles(

@@ -1,4 +1,4 @@
-"""Checks of form closure: walls of a groove, landings of the roller in its clearance."""
+"""Checks of form closure: walls of a groove, pair of discs, landings in the clearance."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
+    ASSEMBLY_GAP,
     CAM_RADIUS,
     CONTACT_SAFETY,
     CROSSOVER_SLIP,
@@ -49,7 +51,7 @@ PLATE_MOMENT = 0.509
     method="least 1 + roller radius x pitch curvature, refined between samples",
     lift_can_help=True,
     needs="roller",
-    closed_by="form",
+    closed_by="groove",
     load_cases=NONE,
     levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
     page="Cam",
@@ -70,7 +72,7 @@ def outer_undercut(cam: LoadedCam) -> Array:
     lift_can_help=True,
     moved_by_tolerance=False,
     needs="roller",
-    closed_by="form",
+    closed_by="groove",
     load_cases=NONE,
     levers=levers.SHAPE,
     page="Cam",
@@ -110,7 +112,7 @@ def _of_wall(demand: Demand, solution: Solution) -> Demand:
     " same of any depth",
     lift_can_help=True,
     needs="roller",
-    closed_by="form",
+    closed_by="groove",
     formula="max(6 0.509 N/(R - |P|)^2) <= 2/((1/f + 1/R_m) S) where the outer wall carries; N:"
     " normal force, R: cam.groove.outer_radius, P: point of the outer wall, f, R_m: fatigue limit"
     " in bending and tensile strength of the cam, S: limits.fatigue_safety",
@@ -142,7 +144,7 @@ def groove_wall(cam: LoadedCam) -> Array:
     method="width of the profile tolerance, by which both walls together may narrow the groove",
     moved_by_tolerance=False,
     needs="roller",
-    closed_by="form",
+    closed_by="groove",
     formula="T/c <= 1; T: cam.profile_tolerance, c: cam.groove.clearance",
     symbols={"T": "cam.profile_tolerance", "c": "cam.groove.clearance"},
     reason="On both walls at once the roller slides on one of them, seizes or breaks.",
@@ -167,7 +169,7 @@ def groove_clearance(cam: LoadedCam) -> Array:
     method="radius of the disc as stated",
     moved_by_tolerance=False,
     needs="roller",
-    closed_by="form",
+    closed_by="groove",
     load_cases=NONE,
     levers=(levers.one("cam.groove.outer_radius", -1, 1.5),),
     page="Cam",
@@ -175,6 +177,35 @@ def groove_clearance(cam: LoadedCam) -> Array:
 def groove_radius(cam: LoadedCam) -> Array:
     """Radius of the disc, m."""
     return np.asarray(cam.numbers["cam.groove.outer_radius"])
+
+
+@check(
+    ASSEMBLY_GAP,
+    id="second_disc_gap",
+    title="Gap between each roller and the disc of the other",
+    formula="a - (B + b)/2 - |o| >= g; a: cam.conjugate.spacing, B: cam.width, b: roller.width, o:"
+    " roller.axial_offset, g: limits.assembly_gap",
+    symbols={
+        "a": "cam.conjugate.spacing",
+        "B": "cam.width",
+        "b": "roller.width",
+        "o": "roller.axial_offset",
+    },
+    reason="A roller that runs on both discs at once is blocked.",
+    method="distance of the discs along the shaft less half of disc, roller and its axial offset",
+    moved_by_tolerance=False,
+    needs="roller",
+    closed_by="conjugate",
+    load_cases=NONE,
+    levers=(levers.one("cam.conjugate.spacing"),),
+    page="Cam",
+).measured("case")
+def second_disc_gap(cam: LoadedCam) -> Array:
+    """Gap along the shaft, m."""
+    numbers = cam.numbers
+    spacing, offset = numbers["cam.conjugate.spacing"], numbers.get("roller.axial_offset")
+    beside = 0.0 if offset is None else magnitude(np.asarray(offset))
+    return np.asarray(spacing - 0.5 * (numbers["cam.width"] + numbers["roller.width"]) - beside)
 
 
 class _Worst(NamedTuple):
@@ -215,7 +246,8 @@ _FLIGHT = (
     "flight of the rigid mass under inertia, weight, external and spring force through the"
     " clearance, without rebound"
 )
-_CLEARANCE = (levers.one("cam.groove.clearance", -1), *levers.GENTLER)
+_CLEARANCES = "cam.groove.clearance", "cam.conjugate.clearance"
+_CLEARANCE = (*(levers.one(each, -1) for each in _CLEARANCES), *levers.GENTLER)
 
 
 @check(
@@ -231,7 +263,7 @@ _CLEARANCE = (levers.one("cam.groove.clearance", -1), *levers.GENTLER)
     " alone (9/2 c^2 j)^(1/3), j: jerk of the follower where its acceleration is zero",
     symbols={"v": f"{STATED} [mm/s]"},
     reason="The noise and the wear of a groove cam grow with it.",
-    values=(*given.LOADS, "cam.groove.clearance"),
+    values=(*given.LOADS, *_CLEARANCES),
     levers=_CLEARANCE,
     page="Follower",
 )
@@ -264,7 +296,7 @@ def landing_speed(solution: Solution) -> Demand:
         "S": "limits.contact_safety",
     },
     reason="Each landing is a blow on the same places of the walls.",
-    values=(*given.LOADS, *given.CONTACT, "cam.groove.clearance", "follower.stiffness"),
+    values=(*given.LOADS, *given.CONTACT, *_CLEARANCES, "follower.stiffness"),
     levers=_CLEARANCE,
     page="Contact",
 )
@@ -307,7 +339,7 @@ def landing_pressure(solution: Solution) -> Demand | None:
     " cam angle, at the landing on the other wall",
     symbols={"w": f"{STATED} [rad/s]", "v": f"{STATED} [mm]"},
     reason="It wears and heats roller and walls at the same places in each turn.",
-    values=(*given.LOADS, "cam.groove.clearance"),
+    values=(*given.LOADS, *_CLEARANCES),
     levers=(levers.one("cam.prime_radius", -1, 2.0),),
     page="Contact",
 )

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.units import shown
@@ -90,7 +91,7 @@ cam_radius = check(
     lift_can_help=True,
     load_cases=NONE,
     levers=(levers.one("cam.prime_radius", -1, 2.0), *levers.SPRING, *levers.GENTLER),
-    closed_by="force",
+    closed_by="plate",
     page="Cam",
 ).measured("contour", deviation=1e-4, kept=Kept(factor_max=FACTOR_MAX))(contour_radius)
 
@@ -175,23 +176,32 @@ def chord_error(solution: Solution) -> Demand:
     m.
     """
     limits, tolerance = solution.machine.limits, solution.machine.cam.profile_tolerance
-    theta, contour = solution.case.workshop_order.theta, solution.contour
-    points = contour.points(theta)
-    step = np.hypot(*(np.roll(points, -1, axis=1) - points))
-    curvature = np.abs(1.0 / contour.radius_of_curvature(theta))
-    curvature = np.maximum(curvature, np.roll(curvature, -1))
-    sag = step**2 * curvature / 8.0
+    theta = solution.case.workshop_order.theta
+    every = [_chords(each.contour, theta) for each in solution.discs]
+    number = first_greatest([float(sag.max()) for sag, _, _ in every])
+    (sag, step, curvature), disc = every[number], solution.discs[number]
     worst = first_greatest(sag)
     return Demand(
         float(sag[worst]),
         None if tolerance is None else limits[CHORD_SHARE] * tolerance,
-        Extreme(float(sag[worst]), "", float(theta[worst])),
+        Extreme(float(sag[worst]), "", disc.angle(float(theta[worst]))),
         lacking(solution.machine.cam.table, solution.machine.cam, "profile_tolerance"),
         note=f"{theta.size} points",
         stated={"l": float(step[worst]), "rho": 1.0 / float(curvature[worst])}
         if curvature[worst]
         else {},
     )
+
+
+def _chords(contour: Contour, theta: Array) -> tuple[Array, Array, Array]:
+    """Sag of the chord from each point of a contour (n,), its length, m, and the greater curvature
+    at its ends, 1/m.
+    """
+    points = contour.points(theta)
+    step = np.hypot(*(np.roll(points, -1, axis=1) - points))
+    curvature = np.abs(1.0 / contour.radius_of_curvature(theta))
+    curvature = np.maximum(curvature, np.roll(curvature, -1))
+    return step**2 * curvature / 8.0, step, curvature
 
 
 @check(

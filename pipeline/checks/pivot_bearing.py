@@ -85,6 +85,7 @@ def _friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     rests_on="contact",
     values=given.LOADS,
     levers=levers.LOCK,
+    closed_by="force",
     page="Pivot",
 ).measured(
     "angles", remark=_with_pin, deviation=0.01, kept=Kept(_friction_kept, factor_max=FACTOR_MAX)
@@ -117,6 +118,7 @@ def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     rests_on="contact",
     values=given.LOADS,
     levers=levers.LOCK,
+    closed_by="force",
     page="Pivot",
 ).measured("angles", remark=_at_greatest_friction, deviation=0.01, kept=Kept(_worst_friction_kept))
 def pivot_jam_index_friction_max(cam: LoadedCam) -> Array:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
+from camwright.geometry.errors import InputError
+from camwright.geometry.second_track import ConjugateArm, OppositeRoller, SecondRoller
 from camwright.pipeline.base.material import MadeOf
 from camwright.pipeline.base.quantities import Angle, In, Known, Length, Part, TableSource, Used
 from camwright.pipeline.base.source import NO_SOURCE
@@ -127,7 +129,7 @@ class BalanceHole(Part):
     """least wall between the hole and contour, bore or keyway"""
 
 
-Closure = Literal["spring", "groove"]
+Closure = Literal["spring", "groove", "conjugate"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,6 +154,47 @@ class CamGroove(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
+class CamConjugate(Part):
+    """Second disc on the same shaft, and its roller on the same stem or arm, which pull it back."""
+
+    table: ClassVar[str] = "cam.conjugate"
+    source: TableSource = NO_SOURCE
+
+    roller_radius: Annotated[Length, Known("drawing", "15 mm")]
+    """radius of the second roller, which is like the first otherwise"""
+    distance: Annotated[Length | None, Used("contour, cycle"), Known("drawing", "120 mm")] = None
+    """of a stem: between the centres of the opposite rollers"""
+    arm_length: Annotated[Length | None, Used("contour, cycle"), Known("drawing", "60 mm")] = None
+    """of an arm: length of its second arm, from the pivot to the roller centre"""
+    arm_angle: Annotated[
+        float | None, In("deg", above=0, below=360), Known("drawing", "80 deg")
+    ] = None
+    """of an arm: angle between both arms, across the line of centres"""
+    clearance: Annotated[
+        float, In("mm", above=0, at_most=1), Known("drawing, tolerance chain", "0.02 mm")
+    ]
+    """between the second disc and its roller while the first presses"""
+    spacing: Annotated[Length, Known("drawing", "20 mm")]
+    """of the second disc from the first along the shaft, between their middles, away from bearing
+    1"""
+
+    @property
+    def roller(self) -> SecondRoller:
+        """Second roller on its stem or arm.
+
+        Raises
+        ------
+        InputError
+            If neither is described.
+        """
+        if self.arm_length is not None and self.arm_angle is not None:
+            return ConjugateArm(self.arm_length, self.arm_angle, self.roller_radius)
+        if self.distance is not None:
+            return OppositeRoller(self.distance, self.roller_radius)
+        raise InputError("cam.conjugate.distance", "missing", "given for the second roller")
+
+
+@dataclass(frozen=True, kw_only=True)
 class CamBody(Part):
     """The cam disc."""
 
@@ -160,13 +203,17 @@ class CamBody(Part):
     defaults: ClassVar[Mapping[str, str]] = {
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
         "waviness_height": "of the process at the wavelength, within the profile tolerance",
-        "groove": "a spring keeps the follower on the cam",
+        "groove": "another closure",
+        "conjugate": "another closure",
     }
 
     closure: Annotated[Closure, Known("own choice", "groove")] = "spring"
-    """what keeps the follower on the cam: the force of a spring, or the outer wall of a groove"""
+    """what keeps the follower on the cam: the force of a spring, the outer wall of a groove, or the
+    second disc of a conjugate pair"""
     groove: Annotated[CamGroove | None, Used("contour, cycle, checks of the groove")] = None
     """groove of a roller, with `closure` groove"""
+    conjugate: Annotated[CamConjugate | None, Used("contour, cycle, checks of both discs")] = None
+    """second disc and its roller, with `closure` conjugate"""
     prime_radius: Annotated[Length, Known("drawing, or own choice", "60 mm")]
     """base circle radius plus roller radius; of a flat face the base circle radius"""
     offset: Annotated[float, In("mm", above=-10_000, below=10_000), Known("drawing")] = 0.0
@@ -215,7 +262,24 @@ class CamBody(Part):
     @property
     def pulls(self) -> bool:
         """Whether the cam pulls the follower as well, so that no force need close the contact."""
-        return self.closure == "groove"
+        return self.closure in ("groove", "conjugate")
+
+    @property
+    def closed_by(self) -> tuple[str, ...]:
+        """Kinds of closure to which it belongs, see `Declaration.closed_by`."""
+        force = "form" if self.pulls else "force"
+        return (self.closure, force) if self.groove is not None else (self.closure, force, "plate")
+
+    @property
+    def second(self) -> SecondRoller | None:
+        """Second roller, on a disc of its own; None without one."""
+        return None if self.conjugate is None else self.conjugate.roller
+
+    @property
+    def clearance(self) -> float:
+        """Clearance of the follower between both tracks, square to them, m; 0 of one track."""
+        stated = self.groove or self.conjugate
+        return 0.0 if stated is None else stated.clearance
 
     @property
     def held_radius(self) -> float:

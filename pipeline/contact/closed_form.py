@@ -62,7 +62,12 @@ def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) ->
 def in_full(
     pair: ContactPair, line_load: Array, relative_radius: Array
 ) -> tuple[NDArray[np.bool_], ConformingLine | None]:
-    """Where the contact of a roller in a groove is to be solved in full, and it; `concave_line`."""
+    """Where the contact of a roller in a groove is to be solved in full, and it; `concave_line`.
+
+    Nowhere on the plates of a conjugate pair.
+    """
+    if pair.second is not None:
+        return np.zeros(line_load.shape, dtype=bool), None
     radius = pair.contour.require_roller().follower_radius
     return concave_line(line_load, relative_radius, radius, pair.follower.material, pair.cam)
 

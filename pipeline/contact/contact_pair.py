@@ -12,6 +12,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import ContactError
+from camwright.geometry.second_track import SecondRoller
 from camwright.meshes.body_mesh import BodyMesh, cam_mesh, rim_mesh
 from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base.units import shown
@@ -40,6 +41,8 @@ class ContactPair:
     pulling: ContactPair | None = None
     wall: Callable[[Array], Array] | None = None
     """of a cam that pulls: cam angles (...) -> 1 where it pushes, -1 where it pulls"""
+    second: SecondRoller | None = None
+    """by which it pulls on a disc of its own, in a preview alone; None of a groove"""
 
     @property
     def held(self) -> str:
@@ -104,9 +107,14 @@ class ContactPair:
             If the contour is undercut: 1/R = 1/(r_r (1 - r_r kappa_p)) is positive elsewhere.
         """
         curvature = self._relative_curvature(theta)
-        if self.pulling is not None and self.wall is not None:
+        if self.wall is not None:
             pushes = self.wall(np.asarray(theta, dtype=float)) > 0
-            curvature = np.where(pushes, curvature, self.pulling._relative_curvature(theta))
+            if self.second is not None:
+                track = self.second.track(self.contour.pitch)
+                pulled = 1.0 / track.relative_radius(np.asarray(theta, dtype=float))
+                curvature = np.where(pushes, curvature, pulled)
+            elif self.pulling is not None:
+                curvature = np.where(pushes, curvature, self.pulling._relative_curvature(theta))
         if not (curvature > 0).all():
             worst = float(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))])
             name, place = self.follower.name, shown(worst, "deg")

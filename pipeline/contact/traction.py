@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, Value, Values, finite, freeze, positive, readonly
 from camwright.geometry.errors import InputError
@@ -175,8 +175,16 @@ class RollingContact:
     loss: float
 
     def __post_init__(self) -> None:
-        names = ("demand", "force", "slip", "creepage", "skidding", "utilisation")
-        freeze(self, **{name: getattr(self, name) for name in names})
+        freeze(self, **{name: getattr(self, name) for name in _OF_ANGLES})
+
+    def where(self, carries: NDArray[np.bool_], other: RollingContact) -> RollingContact:
+        """Contact of the roller that carries (n,): of another one where that does."""
+        pairs = {name: (getattr(other, name), getattr(self, name)) for name in _OF_ANGLES}
+        arrays = {name: np.where(carries, *pair) for name, pair in pairs.items()}
+        return RollingContact(**arrays, loss=self.loss + other.loss)
+
+
+_OF_ANGLES = ("demand", "force", "slip", "creepage", "skidding", "utilisation")
 
 
 def rolling_demand(

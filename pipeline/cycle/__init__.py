@@ -19,7 +19,7 @@ In the order of the calculation:
 | `length_history`     | pressure along the line: ends, crown, tilt      | K, -; M, N m           |
 | `contact_heat`       | flash temperature of a flat face                | T, K                   |
 | `rolling_history`    | traction, creep, rolling fatigue, bore stress   | tau, sigma, Pa; xi     |
-| `crossover_history`  | landings in a groove: force, pressure, slip     | v, m/s; F_n, N         |
+| `crossover_history`  | landings on a track: force, pressure, slip      | v, m/s; F_n, N         |
 | `cycle`              | turn with contact; columns of its table         |                        |
 | `speed_sweep`        | surge, contact force, torque over the speed     | F_n, N; T, N m         |
 | `valve_cam`          | machine motion of a valve cam                   | J*, kg m2; rad/s       |

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -11,6 +11,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.form_closure import Groove
+from camwright.geometry.second_track import discs_of
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.follower.camshaft_loads import (
@@ -97,10 +98,16 @@ def balance(cam: CamBody, contour: Contour) -> Balance:
 
 
 def undrilled(cam: CamBody, contour: Contour) -> Unbalance:
-    """Unbalance and mass of the cam with bore and keyway, without a counter-hole."""
+    """Unbalance and mass of the cam with bore and keyway, of both discs of a conjugate pair in one
+    plane, without a counter-hole.
+    """
     density = cam.material.density
     if cam.groove is None:
-        return unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
+        first, *others = (
+            unbalance(each.contour, cam.bore_radius, cam.keyway, cam.width, density)
+            for each in discs_of(contour, cam.second)
+        )
+        return sum(others, first)
     walls = groove_of(cam, contour)
     area, moment = walls.section()
     share = cam.groove.depth / cam.width
@@ -134,6 +141,8 @@ def camshaft_loads(
 ) -> ShaftLoads:
     """Forces on the camshaft and its bearings over a turn, with the centrifugal forces of cam and
     counterweight; cam_speed : rad/s.
+
+    A second disc presses the bearings from its own place; the centrifugal force is there with it.
     """
     manufactured, weight = _as_made(cam, contour), shaft.counterweight
     thrown = rotating_force(manufactured.product, manufactured.angle, cam_speed, loads.theta)
@@ -141,7 +150,12 @@ def camshaft_loads(
     if weight is not None:
         held = rotating_force(*weight.set_against(manufactured), cam_speed, loads.theta)
     along, across = loads.on_shaft
-    return shaft_loads(along, across, loads.cam_torque, shaft, thrown, held)
+    acting = along, across, loads.cam_torque
+    first = shaft_loads(*acting, shaft, thrown, held)
+    if cam.conjugate is None:
+        return first
+    beside = replace(shaft, cam_position=shaft.cam_position + cam.conjugate.spacing)
+    return first.where(loads.wall < 0.0, shaft_loads(*acting, beside, thrown, held))
 
 
 def rotor_unbalance(made: Unbalance, shaft: Camshaft | None) -> float:

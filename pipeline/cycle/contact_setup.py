@@ -41,10 +41,11 @@ def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
 
 
 def under_load(pair: ContactPair, loads: Loads) -> ContactPair:
-    """Contact pair of one load case: in a groove on the wall that carries at each cam angle."""
+    """Contact pair of one load case: on the track that carries at each cam angle."""
     if not loads.held:
         return pair
-    return replace(pair, wall=CarryingWall(loads.theta, loads.required_force))
+    wall = CarryingWall(loads.theta, loads.signed_force)
+    return replace(pair, wall=wall, second=loads.second)
 
 
 @dataclass(frozen=True, eq=False)

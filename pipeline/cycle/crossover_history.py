@@ -1,19 +1,21 @@
-"""Landings of the roller in its groove over a turn of one load case, with force, pressure, slip."""
+"""Landings of a follower between two tracks in a turn of a load case: force, pressure, slip."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.geometry.second_track import SecondRoller, discs_of, relative_radius
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.conforming_line import concave_line
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
-from camwright.pipeline.follower.crossover import Landing, landings
-from camwright.pipeline.follower.follower_forces import follower_loads
+from camwright.pipeline.follower.crossover import INNER, OUTER, Landing, landings
+from camwright.pipeline.follower.follower_forces import Carried, follower_loads
 
 FINE = 14400
 """Angles of a turn at which the force of a flight is evaluated."""
@@ -34,53 +36,78 @@ class WallImpact(NamedTuple):
 
 
 def impacts(machine: Machine, contour: Contour) -> tuple[WallImpact, ...]:
-    """Landings of a rigid follower in a groove; none at standstill and without a groove.
+    """Landings of a rigid follower between its tracks; none at standstill, and of one track.
 
-    The roller keeps its spin in flight: on the other wall it is to turn the other way, so that its
-    surface slips at twice the speed along the path. A mass m that lands at v under a force F on a
+    A roller keeps its spin in flight: on the other wall of a groove it is to turn the other way, so
+    that its surface slips at twice the speed along the path; that of a second disc has kept the
+    spin with which it last left the disc. A mass m that lands at v under a force F on a
     stiffness k is stopped by F + sqrt(F^2 + k m v^2); contact and walls are taken as rigid.
     """
-    groove = machine.cam.groove
-    if groove is None or not machine.speed > 0.0:
+    if not (machine.cam.pulls and machine.speed > 0.0):
         return ()
     theta, pitch = uniform_turn(FINE), contour.pitch
     rigid = machine.system.with_friction(0.0, 0.0)
     loads = follower_loads(pitch, rigid, machine.cam_speed, theta)
+    pulled = Carried.at(pitch, rigid, theta, np.full(theta.size, OUTER))
+    along = pulled.slide.lever * np.cos(pulled.pressure_angle)
     found = landings(
         loads.required_force,
-        groove.clearance / np.cos(loads.pressure_angle),
+        machine.cam.clearance / along,
         machine.mass,
         machine.cam_speed,
         stiffness=machine.spring.rate,
         damping=machine.viscous_damping,
     )
-    return tuple(_impact(machine, contour, one) for one in found)
+    return tuple(_impact(machine, contour, found, k) for k in range(len(found)))
 
 
-def _impact(machine: Machine, contour: Contour, flight: Landing) -> WallImpact:
-    """What a landing does to the wall: normal force, Hertz pressure and slip; NaN where the flight
-    does not end.
+def _impact(
+    machine: Machine, contour: Contour, flights: Sequence[Landing], number: int
+) -> WallImpact:
+    """What a landing does to its track: normal force, pressure and slip; NaN where the flight does
+    not end.
 
     Parameters
     ----------
-    flight : Landing   of the rigid follower, with wall, angle, speed and force at the landing
+    flights, number : landings of the rigid follower over the turn, in their order, and which
     """
-    at, speed = np.array([flight.landing % FULL_TURN]), machine.cam_speed
+    flight = flights[number]
+    at, wall = np.array([flight.landing % FULL_TURN]), np.array([flight.wall])
     if np.isnan(flight.landing):
         return WallImpact(flight, np.nan, np.nan, np.nan)
     pressed, struck = max(flight.force, 0.0), machine.axial_stiffness * machine.mass
     axial = pressed + np.sqrt(pressed**2 + struck * flight.speed**2)
-    force = float(axial / np.cos(contour.pitch.pressure_angle(at))[0])
-    radius = contour.require_roller().relative_radius(at, np.array([flight.wall]))
+    second = machine.cam.second
+    there = Carried.at(contour.pitch, machine.system, at, wall)
+    force = float((axial / (there.slide.lever * np.cos(there.pressure_angle)))[0])
+    radius = relative_radius(contour.require_roller(), second, at, wall)
     load = np.array([force / machine.contact_width])
     pressure = np.array([np.nan])
     if np.isfinite(force) and radius[0] > 0.0:
         _, pressure = hertz.line_contact(load, radius, machine.contact_modulus)
-        bodies = (
-            Elastic(card.E, card.nu) for card in (machine.roller.material, machine.cam.material)
-        )
-        _, line = concave_line(load, radius, machine.roller.radius, *bodies)
-        pressure = pressure if line is None else line.p0
-    path = float(contour.pitch.speed_and_curvature(at)[0][0])
-    slip = 2.0 * speed * path if flight.crosses else 0.0
+        if second is None:
+            bodies = (
+                Elastic(card.E, card.nu) for card in (machine.roller.material, machine.cam.material)
+            )
+            _, line = concave_line(load, radius, machine.roller.radius, *bodies)
+            pressure = pressure if line is None else line.p0
+    slip = machine.cam_speed * _slip(contour, second, flights, number) if flight.crosses else 0.0
     return WallImpact(flight, force, float(pressure[0]), slip)
+
+
+def _slip(
+    contour: Contour, second: SecondRoller | None, flights: Sequence[Landing], number: int
+) -> float:
+    """Slip of the roller that lands on the other track over the cam speed, m."""
+    flight = flights[number]
+    if second is None:
+        return 2.0 * float(contour.pitch.speed_and_curvature(np.array([flight.landing]))[0][0])
+    count = len(flights)
+    earlier = [flights[(number - k) % count] for k in range(1, count + 1)]
+    left = next((one for one in earlier if one.start == flight.wall), flight)
+    disc = discs_of(contour, second)[0 if flight.wall == INNER else 1]
+    track = disc.contour.require_roller()
+    angles = np.array([flight.landing, left.take_off]) + disc.turn
+    motion = track.pitch.centre_motion(track.lift.jet(angles, 2), track.roller_radius)
+    there, before = np.asarray(motion.rolling)
+    return float(track.roller_radius * abs(there - before))

@@ -156,7 +156,9 @@ class Cycle(Tabled):
             off = getattr(solved, name) - form[::BETWEEN]
             return np.asarray(form + np.interp(theta, self.theta, off, period=FULL_TURN))
 
-        return replace(closed, held=closed.held, **{name: corrected(name) for name in _ALONG})
+        held, second = closed.held, closed.second
+        arrays = {name: corrected(name) for name in _ALONG}
+        return replace(closed, held=held, second=second, **arrays)
 
     @cached_property
     def end(self) -> tuple[float, str] | None:
@@ -295,7 +297,7 @@ class Cycle(Tabled):
         if slope is None or loads is None:
             return np.zeros(self.theta.size)
         bent = slope.under(loads.cam, loads.gear, loads.counterweight)
-        return in_the_normal(bent, self.loads.pressure_angle - self.loads.travel)
+        return in_the_normal(bent, self.loads.normal_direction)
 
     @KeptResult
     def elastic(self) -> ElasticHistory:

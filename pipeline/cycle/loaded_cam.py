@@ -262,7 +262,13 @@ class LoadedCam:
         """Loads of guides on points over the axial force."""
         numbers, spacing = self.numbers, self.numbers["guides.spacing"]
         overhang = numbers["follower.overhang_at_max_lift"] + self.highest - self.jet.lift
+        overhang = overhang + self.reach
         return self.motion.reactions(levers(overhang, spacing), spacing)
+
+    @property
+    def reach(self) -> Value:
+        """Distance of the roller that carries from the first, away from the guides, m."""
+        return 0.0
 
     @cached_property
     def rubbing_share(self) -> OfGuides:
@@ -373,7 +379,8 @@ class LoadedCam:
         return self._balanced(pivot, self.required + added, pull)
 
     def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
-        return pivot.balanced(required, Pressed.of(self.motion), pull, self.direction)
+        outward = np.asarray(np.sign(np.real(self.slope)))
+        return pivot.balanced(required, Pressed.of(self.motion), pull, outward)
 
     @cached_property
     def pivoted(self) -> PivotBalance | None:
@@ -503,7 +510,7 @@ class LoadedCam:
     def surged(self) -> Array:
         """Contact force with the surge of the spring, N."""
         if self.pivot is not None:
-            return self._about(self.pivot, self.surge).axial * self.motion.gain
+            return self._about(self.pivot, self.surge).axial * self.wall * self.motion.gain
         return (self.axial + self.surge / self.share) * self.wall * self.motion.gain
 
     @cached_property
@@ -582,6 +589,11 @@ class LoadedCam:
         bent = slope.under(pushed + on_cam, gear_force(self.torque, shaft), held)
         return in_the_normal(bent, self.motion.pressure_angle - travel)
 
+    @property
+    def contact_radius(self) -> Value:
+        """Size of the contact of `Motion`, m, on either track."""
+        return magnitude(np.asarray(self.motion.size))
+
     @cached_property
     def follower_moment(self) -> Array:
         """Greatest moment of the contact about the middle of the follower, N m, >= 0.
@@ -600,7 +612,7 @@ class LoadedCam:
         """p0^2 by half-planes at an undercut factor of 1, Pa^2."""
         line_load = self.normal / self.numbers["contact.width"]
         modulus = self.numbers["contact.modulus"]
-        return peak_pressure_square(line_load, 1.0 / (self.wall * self.motion.size), modulus)
+        return peak_pressure_square(line_load, 1.0 / self.contact_radius, modulus)
 
     @cached_property
     def p0(self) -> Array:
@@ -617,7 +629,7 @@ class LoadedCam:
         """Half-width of the contact (..., n), m, less where the line has a greater pressure than in
         plane strain.
         """
-        numbers, size = self.numbers, self.wall * self.motion.size
+        numbers, size = self.numbers, self.contact_radius
         radius = size * (1.0 - self.motion.sharpness)
         force = np.where(np.real(self.normal) < _LEAST_FORCE, _LEAST_FORCE, self.normal)
         radius = np.where(np.real(radius) < _LEAST_RADIUS, _LEAST_RADIUS, radius)

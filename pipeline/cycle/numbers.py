@@ -338,7 +338,10 @@ def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
     if shaft is None:
         return None
     if thick:
-        disc = numbers.get("cam.groove.outer_radius")
+        stated, of_discs = (
+            numbers.get(key) for key in ("cam.groove.outer_radius", "cam.greatest_radius")
+        )
+        disc = of_discs if stated is None else stated
         outer = outer + numbers["spring.travel_max"] if disc is None else disc
     return FittedRing(numbers["cam.bore_radius"], outer, case.cam.material, shaft)
 

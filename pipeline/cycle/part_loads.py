@@ -11,6 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
+from camwright.geometry.second_track import relative_radius
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.elasticity.radial_compliance import Bush, SolidBar
@@ -215,7 +216,8 @@ class PivotPush(NamedTuple):
         bush, card = machine.pivot.bush, machine.pivot.pin_material
         if bush is None or card is None:
             return None
-        cos, sin = np.cos(loads.pressure_angle), np.sin(loads.pressure_angle)
+        normal = loads.pressure_angle - loads.turned
+        cos, sin = np.cos(normal), np.sin(normal)
         along, across = loads.pivot_load
         couple = moment + machine.arm.plane_offset * np.maximum(loads.normal_force, 0.0)
         pressed, aside = along * cos + across * sin, across * cos - along * sin
@@ -310,8 +312,8 @@ def _ring(
     ring = machine.follower.ring(contact_width, machine.spring.preload)
     if ring is None:
         return None, None, None
-    force, track = loads.normal_force, contour.require_roller()
-    radius = track.relative_radius(loads.theta, loads.wall)
+    force, wall = loads.normal_force, loads.wall
+    radius = relative_radius(contour.require_roller(), loads.second, loads.theta, wall)
     bending = ring.bending
     return (
         bending.stress_amplitude * force,

@@ -13,6 +13,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import TIE, first_greatest
+from camwright.geometry.second_track import CamDisc, discs_of
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
 from camwright.pipeline.base.kept_results import KeptResult
@@ -130,10 +131,19 @@ class Solution(Displayed):
         """The machine in the design load case."""
         return self.machines[0]
 
+    @property
+    def discs(self) -> tuple[CamDisc, ...]:
+        """CamDisc of the contour, and the second one of a conjugate pair."""
+        return discs_of(self.contour, self.machine.cam.second)
+
     @cached_property
     def numbers(self) -> Numbers:
         """Numbers of the machine in the design load case, and the greatest cam speed."""
-        return numbers_of(self.case, self.machines)
+        numbers = numbers_of(self.case, self.machines)
+        if self.machine.cam.second is None:
+            return numbers
+        tips = [each.contour.radius_max().value for each in self.discs]
+        return numbers | {"cam.greatest_radius": max(tips)}
 
     @cached_property
     def cams(self) -> Mapping[Cycle, SolvedCam]:
@@ -287,7 +297,7 @@ def solved_turns(
     pair = contact_pair(states[0], contour)
     mesh = bodies = None
     if body is None:
-        body = is_body(contour)
+        body = all(is_body(each.contour) for each in discs_of(contour, states[0].cam.second))
     if body and tier >= Tier.CYCLE:
         progress.stage(MESHING)
         mesh = meshed(pair, turns)

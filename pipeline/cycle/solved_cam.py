@@ -8,14 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.contour import Contour
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
+from camwright.geometry.second_track import CarriedMotion
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, on_wall
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, on_wall, roller_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.follower.follower_forces import Loads
@@ -122,8 +123,19 @@ class ForcesCam(ContourCam):
 
     @cached_property
     def motion(self) -> Motion:
-        unloaded = super().motion
-        return on_wall(unloaded, self.wall) if self.pulls else unloaded
+        unloaded, loads = super().motion, self.loads
+        if loads.second is None:
+            return on_wall(unloaded, self.wall) if self.pulls else unloaded
+        track = loads.second.track(self.contour.pitch)
+        second, touch = track.motion(loads.theta), track.touch(loads.theta)
+        return CarriedMotion.of(roller_of(unloaded), second, self.wall < 0.0, touch)
+
+    @property
+    def reach(self) -> Value:
+        second = self.loads.second
+        if second is None:
+            return 0.0
+        return np.asarray(second.track(self.contour.pitch).reach * (self.wall < 0.0))
 
     @property
     def wall(self) -> Array:

@@ -16,7 +16,13 @@ from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.limits import OVERSPEED
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.follower.follower_forces import Rubbing, follower_loads
+from camwright.pipeline.follower.follower_forces import (
+    Carried,
+    Rubbing,
+    follower_loads,
+    jam_index,
+    share_left,
+)
 from camwright.pipeline.follower.pivot_forces import Pressed, Pull
 from camwright.pipeline.follower.spring import (
     DynamicStiffness,
@@ -331,7 +337,9 @@ class _Follower:
     viscous: Array
     gain: Array
     arm: Array
+    pulled: tuple[Array, Array] | None
     pressed: Pressed
+    second: Pressed | None
     direction: Array
     pulls: tuple[Pull, Pull, Pull] | None
 
@@ -343,7 +351,19 @@ class _Follower:
         theta = uniform_turn(ANGLES)
         system = replace(machine.system, rubbing=rubbing)
         loads = follower_loads(pitch, system, 1.0, theta)
-        share, slide = loads.share, pitch.slide(theta, system.face_friction)
+        share, one, pulled, second = loads.share, np.ones(theta.size), None, None
+        carrying = Carried.at(pitch, system, theta, one)
+        slide, angle = carrying.slide, loads.pressure_angle
+        if system.held:
+            jams = (jam_index(pitch, system, theta, wall) for wall in (one, -one))
+            share, pulling = (
+                share_left(loads.lift_slope * wall, jam, slide.lock)
+                for wall, jam in zip((1.0, -1.0), jams, strict=True)
+            )
+            second = Carried.at(pitch, system, theta, -one)
+            normal = pulling * second.slide.lever * np.cos(second.pressure_angle)
+            pulled = 1.0 / normal, (loads.lift_slope + second.slide.torque) / pulling
+            angle = carrying.pressure_angle
         pulls, pivot = None, system.pivot
         if pivot is not None:
             external, slope = system.external.at(theta), loads.lift_slope
@@ -366,8 +386,10 @@ class _Follower:
             # The coils have their own inertia in the surge.
             inertia=loads.inertia_force - machine.spring_mass * loads.acceleration,
             viscous=loads.viscous_force,
-            gain=1.0 / (share * loads.lever * np.cos(loads.pressure_angle)),
+            gain=1.0 / (share * slide.lever * np.cos(angle)),
             arm=(loads.lift_slope + slide.torque) / share,
+            pulled=pulled,
+            second=None if second is None else Pressed.of(second.slide),
             pressed=Pressed.of(slide),
             direction=np.sign(loads.lift_slope),
             pulls=pulls,
@@ -389,6 +411,8 @@ class _Follower:
         still, thrown, sprung = self.pulls
         along = still.along + speed**2 * thrown.along + surge * sprung.along
         pull = Pull(along, still.across + speed**2 * thrown.across + surge * sprung.across)
+        if self.second is not None:
+            return pivot.between(push, (self.pressed, self.second), pull, self.direction)[0].axial
         return pivot.balanced(push, self.pressed, pull, self.direction).axial
 
     def extremes(self, cam_speed: Array) -> dict[str, Array]:
@@ -402,12 +426,14 @@ class _Follower:
             push += speed * self.viscous
         push += surge
         push = self._pivoted(push, speed, surge)
-        normal = push * self.gain
-        if self.machine.system.held:  # a groove has a wall for either sign
-            normal, torque = np.abs(normal), push
-        else:
+        if self.pulled is None:
+            normal = push * self.gain
             torque = np.maximum(push, 0.0, out=push)
-        torque *= self.arm
+            torque *= self.arm
+        else:  # a track for either sign
+            gain, arm = self.pulled
+            normal = np.abs(push * np.where(push < 0.0, gain, self.gain))
+            torque = push * np.where(push < 0.0, arm, self.arm)
         elastic = self.elastic(speed, moving)
         if self.machine.system.held:
             elastic = np.abs(elastic)

@@ -18,7 +18,7 @@ In the order of the calculation:
 | `guide_friction`        | friction bounds and power, temperature     | mu, -; W; K           |
 | `elastic_follower`      | elastic follower, periodic response        | x, m; N, N            |
 | `follower_flight`       | flights and landings in time               | m; m/s; J             |
-| `crossover`             | flight and landing in a groove             | t, s; v, m/s          |
+| `crossover`             | flight and landing between two tracks      | t, s; v, m/s          |
 | `roller_parts`          | bearing, outer ring, pin, fork             |                       |
 | `roller_motion`         | spin, traction demand, rating life         | rad/s; L10, s         |
 | `bearing_life`          | lubrication, modified life, grease life    | kappa; a_ISO; L, s    |

@@ -8,7 +8,7 @@ from math import pi
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, finite, freeze
 from camwright.geometry.contour import Contour
@@ -504,6 +504,12 @@ class ShaftLoads:
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
 
+    def where(self, pulls: NDArray[np.bool_], other: ShaftLoads) -> ShaftLoads:
+        """Forces of the disc that carries (n,): those of another one where that does."""
+        names = self.__dataclass_fields__
+        pairs = {name: (getattr(other, name), getattr(self, name)) for name in names}
+        return ShaftLoads(**{name: np.where(pulls, *pair) for name, pair in pairs.items()})
+
     @property
     def load_1(self) -> Array:
         """Load of the first bearing (n,), N, >= 0."""
@@ -577,6 +583,12 @@ class Unbalance:
 
     def __post_init__(self) -> None:
         freeze(self, moment=self.moment)
+
+    def __add__(self, other: Unbalance) -> Unbalance:
+        """Of two bodies on one shaft, as if in one plane."""
+        moment, mass = self.moment + other.moment, self.mass + other.mass
+        area = self.area + other.area
+        return Unbalance(area, moment, mass, mass / area * float(np.hypot(*moment)))
 
     @property
     def angle(self) -> float:

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze, readonly
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
-from camwright.geometry.follower_path import FollowerPath
+from camwright.geometry.follower_path import FollowerPath, Slide
+from camwright.geometry.second_track import SecondRoller, SecondTrack, Touch, touch_of
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
 from camwright.pipeline.follower.pivot_forces import ArmPivot, Pressed, Pull
 from camwright.pipeline.follower.rocker import RockerOutput
@@ -58,10 +59,12 @@ class Push:
     spacing: float | Array
 
     @classmethod
-    def of(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array) -> Push:
-        """Load through the roller centre, or of a face beside the stem axis with its friction."""
-        side = pitch.slide(theta, system.face_friction).side
-        return cls(side, pitch.push_arm(theta), system.guide_spacing)
+    def of(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array, wall: Array) -> Push:
+        """Load through the roller centre, or of a face beside the stem axis with its friction.
+
+        wall : array (n,)   track that carries, see `wall_of`
+        """
+        return Carried.at(pitch, system, theta, wall).push
 
     @property
     def side_factor(self) -> Array:
@@ -111,6 +114,8 @@ class FollowerSystem:
     pivot : ArmPivot                of an arm; None: of none, or of one without friction and weight
     held : bool                     the cam pulls the follower, too, as by the walls of a groove
     output : RockerOutput           that a rocker moves, its mass at zero lift part of `mass`; None
+    second : SecondRoller           by which it pulls on a track of its own; None: the same roller
+                                    does, if any
 
     Raises
     ------
@@ -132,6 +137,7 @@ class FollowerSystem:
     pivot: ArmPivot | None = None
     held: bool = False
     output: RockerOutput | None = None
+    second: SecondRoller | None = None
 
     def __post_init__(self) -> None:
         """Refuse a spacing that is not positive, and a negative mass, overhang, friction or
@@ -200,6 +206,44 @@ class FollowerSystem:
             return push.rubbing_on_points(overhang)
         return self.rubbing.at(theta)
 
+    def second_track(self, pitch: FollowerPath) -> SecondTrack | None:
+        """Track under the second roller, by the path of the first; None without one."""
+        return None if self.second is None else self.second.track(pitch)
+
+
+class Carried(NamedTuple):
+    """Contact of the track that carries at each cam angle (n,), over the axial force.
+
+    reach: by which its roller is farther from the guides than the first, m; turned: its direction
+    of travel from that of the first, rad
+    """
+
+    slide: Slide
+    push: Push
+    pressure_angle: Array
+    reach: Array | float
+    turned: Array
+
+    @classmethod
+    def at(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array, wall: Array) -> Carried:
+        """At cam angles, by the track that carries there, see `wall_of`."""
+        touch, second = touch_of(pitch, theta, system.face_friction), system.second_track(pitch)
+        reach: Array | float = 0.0
+        if second is not None:
+            pulls = wall < 0.0
+            touch = _either(pulls, second.touch(theta), touch)
+            reach = np.asarray(second.reach * pulls)
+        push = Push(touch.slide.side, touch.push_arm, system.guide_spacing)
+        return cls(touch.slide, push, touch.pressure_angle, reach, touch.turned)
+
+
+def _either(pulls: NDArray[np.bool_], second: Touch, first: Touch) -> Touch:
+    """Contact of the second track where that pulls, else of the first."""
+    pairs = zip(second.slide, first.slide, strict=True)
+    slide = Slide(*(np.where(pulls, *pair) for pair in pairs))
+    rest = zip(second[1:], first[1:], strict=True)
+    return Touch(slide, *(np.where(pulls, *pair) for pair in rest))
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Loads(Displayed):
@@ -217,11 +261,12 @@ class Loads(Displayed):
     of a face; `lock`: share that this friction takes of the axial force of an arm. `lever`: of the
     normal of a flat face over the length of the arm; `pressing`: contact force in the direction of
     the axial force over it. `travel`: that direction from the follower axis, counter-clockwise,
-    rad, of an arm; 0 of a stem. `pivot_load` (2, n): of the arm on its pivot, along and across the
+    rad, of an arm; 0 of a stem. `turned`: travel of the roller that carries from that of the first,
+    rad. `pivot_load` (2, n): of the arm on its pivot, along and across the
     travel, and `pivot_friction` the moment of its friction over the length of the arm, a magnitude;
     0 of a stem. With a pivot `jam_index` is that over the axial force. `held`: the cam
     pulls the follower, too: the axial force is negative where it does, the normal force its
-    magnitude.
+    magnitude. `second`: roller by which it does, whose pressure angle is that of its own travel.
     """
 
     theta: Array
@@ -256,10 +301,12 @@ class Loads(Displayed):
     pressing: Array = field(default_factory=lambda: readonly(1.0))
     pivot_load: Array = field(default_factory=lambda: readonly(np.zeros((2, 1))))
     pivot_friction: Array = field(default_factory=lambda: readonly(0.0))
+    turned: Array = field(default_factory=lambda: readonly(0.0))
     held: bool = False
+    second: SecondRoller | None = None
 
     def __post_init__(self) -> None:
-        arrays = (name for name in self.__dataclass_fields__ if name != "held")
+        arrays = (name for name in self.__dataclass_fields__ if name not in ("held", "second"))
         freeze(self, **{name: getattr(self, name) for name in arrays})
 
     @property
@@ -297,9 +344,23 @@ class Loads(Displayed):
         return required if self.held else np.asarray(np.maximum(required, 0.0))
 
     @property
+    def signed_force(self) -> Array:
+        """Force whose sign says which track carries, N: without friction of guides, which does not
+        change it, and with that of a pivot, which does.
+        """
+        return self.axial_force if self.pivot_friction.any() else self.required_force
+
+    @property
     def wall(self) -> Array:
-        """Wall of the cam that carries: 1 the inner, which pushes outward, -1 the outer."""
-        return wall_of(self.required_force, held=self.held)
+        """Track that carries: 1 the first or inner wall, which pushes outward, -1 the second or
+        outer.
+        """
+        return wall_of(self.signed_force, held=self.held)
+
+    @property
+    def normal_direction(self) -> Array:
+        """Angle of the contact normal from the follower axis, clockwise, rad."""
+        return np.asarray(self.pressure_angle - self.travel - self.turned)
 
     @property
     def driving_slope(self) -> Array:
@@ -409,7 +470,7 @@ def axial_of_surge(
     pivot = system.pivot
     if pivot is None:
         return np.asarray(surge / loads.share)
-    pressed = Pressed.of(pitch.slide(loads.theta, system.face_friction))
+    pressed = Pressed.of(Carried.at(pitch, system, loads.theta, loads.wall).slide)
     along, across = loads.pivot_load - loads.axial_force * np.stack([pressed.along, pressed.across])
     added, direction = pivot.of_spring(surge, loads.travel), np.sign(loads.lift_slope)
     pull = Pull(along + added.along, across + added.across)
@@ -504,7 +565,6 @@ def follower_loads(
     theta = finite("theta", theta)
     lift, slope, lift_d2 = pitch.lift.derivatives(theta, 2)
     slope = np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0)
-    push, pressure_angle = Push.of(pitch, system, theta), pitch.pressure_angle(theta)
     rate, speed = finite("cam_acceleration", cam_acceleration), _forward(cam_speed, theta)
     acceleration = lift_d2 * speed**2 + slope * rate
     spring_force, applied_force = system.spring_force(lift), system.applied_force(theta, lift)
@@ -512,19 +572,27 @@ def follower_loads(
     viscous_force = system.viscous_damping * slope * speed
     demand = spring_force + applied_force + inertia_force + viscous_force
 
-    overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
+    travel, pivot = pitch.travel(theta), system.pivot
+    wall, swung, pull = wall_of(demand, held=system.held), None, None
+    if pivot is not None:
+        pull = pivot.pull(
+            spring_force, system.external.at(theta), travel, slope * speed, acceleration
+        )
+        if system.held:
+            both = _both_pressed(pitch, system, theta)
+            swung, wall = pivot.between(demand, both, pull, np.sign(slope))
+    carrying = Carried.at(pitch, system, theta, wall)
+    slide, push, pressure_angle = carrying.slide, carrying.push, carrying.pressure_angle
+    overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift) + carrying.reach
     on_points = push.on_points(*levers(overhang, system.guide_spacing))
     rubbing_a, rubbing_b = system.rubbing_factors(push, overhang, theta)
     jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.side_factor
-    slide, wall = pitch.slide(theta, system.face_friction), wall_of(demand, held=system.held)
     carried = demand if system.held else np.maximum(demand, 0.0)
     axial_force = carried / share_left(slope * wall, jam_index, slide.lock)
-    travel, pivot = pitch.travel(theta), system.pivot
     pivot_load, pivot_friction = np.zeros((2, theta.size)), np.zeros(theta.size)
-    if pivot is not None:
-        pressed, external = Pressed.of(slide), system.external.at(theta)
-        pull = pivot.pull(spring_force, external, travel, slope * speed, acceleration)
-        held = pivot.clipped(demand, pressed, pull, np.sign(slope), JAM_FLOOR)
+    if pivot is not None and pull is not None:
+        pressed = Pressed.of(slide)
+        held = swung or pivot.clipped(demand, pressed, pull, np.sign(slope), JAM_FLOOR)
         axial_force, jam_index, pivot_friction = held.axial, held.jam_index, held.friction
         pivot_load = np.stack(pressed.total(axial_force, pull))
     side_load = axial_force * wall * push.side_factor
@@ -568,7 +636,9 @@ def follower_loads(
         pressing=np.asarray(slide.pressing),
         pivot_load=pivot_load,
         pivot_friction=pivot_friction,
+        turned=carrying.turned,
         held=system.held,
+        second=system.second,
     )
 
 
@@ -583,10 +653,15 @@ def torque_on_cam(
     """
     still = follower_loads(pitch, system, 0.0, theta)
     slope, lift_d2 = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
-    closing, jam, lock = still.closing_force, still.jam_index, still.lock
-    slide = pitch.slide(theta, system.face_friction)
-    arm = slope + slide.torque
-    pressed, external = Pressed.of(slide), system.external.at(theta)
+    closing, lock = still.closing_force, still.lock
+    external = system.external.at(theta)
+    pressed = _both_pressed(pitch, system, theta)
+    walls = still.wall, -still.wall
+    carrying = [Carried.at(pitch, system, theta, wall) for wall in walls]
+    arms = [slope + each.slide.torque for each in carrying]
+    jams = [still.jam_index, still.jam_index]
+    if system.second is not None and system.pivot is None:
+        jams[1] = jam_index(pitch, system, theta, walls[1])
 
     def torque(speed: Array, cam_acceleration: Array) -> Array:
         """Torque on the cam (n,), N m, at its speeds, rad/s, and accelerations, rad/s2, (n,)."""
@@ -594,16 +669,46 @@ def torque_on_cam(
         inertia_force = system.inertia_force(still.lift, slope * speed, acceleration)
         viscous_force = system.viscous_damping * slope * speed
         demand = closing + inertia_force + viscous_force
-        share = share_left(slope * wall_of(demand, held=system.held), jam, lock)
-        axial = (demand if system.held else np.maximum(demand, 0.0)) / share
+        wall = wall_of(demand, held=system.held)
+        changed = wall != walls[0]
+        jam, arm = np.where(changed, jams[1], jams[0]), np.where(changed, arms[1], arms[0])
+        axial = (demand if system.held else np.maximum(demand, 0.0)) / share_left(
+            slope * wall, jam, lock
+        )
         if system.pivot is not None:
             pull = system.pivot.pull(
                 still.spring_force, external, still.travel, slope * speed, acceleration
             )
-            axial = system.pivot.clipped(demand, pressed, pull, np.sign(slope), JAM_FLOOR).axial
+            if system.held:
+                axial = system.pivot.between(demand, pressed, pull, np.sign(slope))[0].axial
+            else:
+                axial = system.pivot.clipped(
+                    demand, pressed[0], pull, np.sign(slope), JAM_FLOOR
+                ).axial
         return np.asarray(inertia_force * slope - axial * arm)
 
     return torque
+
+
+def _both_pressed(
+    pitch: FollowerPath, system: FollowerSystem, theta: Array
+) -> tuple[Pressed, Pressed]:
+    """Contact forces of the first and of the second track at cam angles (n,)."""
+    one = np.ones(theta.shape)
+    first, second = (
+        Pressed.of(Carried.at(pitch, system, theta, wall).slide) for wall in (one, -one)
+    )
+    return first, second
+
+
+def jam_index(pitch: FollowerPath, system: FollowerSystem, theta: Array, wall: Array) -> Array:
+    """Jam index of the guides of a stem (n,) at cam angles (n,) on the track that carries."""
+    carrying = Carried.at(pitch, system, theta, wall)
+    overhang = pitch.lift.highest.value - pitch.lift(theta)
+    overhang = system.overhang_at_max_lift + overhang + carrying.reach
+    on_a, on_b = system.rubbing_factors(carrying.push, overhang, theta)
+    jam: Array = system.friction_a * on_a + system.friction_b * on_b
+    return jam * carrying.push.side_factor
 
 
 def _forward(cam_speed: ArrayLike, theta: Array) -> Array:

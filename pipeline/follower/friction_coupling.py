@@ -131,7 +131,12 @@ def guided_strokes(
     ]
     for each in points:
         require_fit(stem, guides, each.overhang, knots)
-    way = _joined([Push.of(s.pitch, s.system, s.theta) for s in strokes])
+    way = _joined(
+        [
+            Push.of(s.pitch, s.system, s.theta, each.wall)
+            for s, each in zip(strokes, points, strict=True)
+        ]
+    )
     wall = np.concatenate([each.wall for each in points])
     slope = np.concatenate([each.driving_slope for each in points])
     required = np.concatenate([each.frictionless_force for each in points])

@@ -109,7 +109,8 @@ def guide_shares(
     )
     points = replace(system, rubbing=None)
     on_points = follower_loads(pitch, points, cam_speed, loads.theta)
-    side_load = loads.axial_force * loads.wall * Push.of(pitch, points, loads.theta).side_factor
+    push = Push.of(pitch, points, loads.theta, loads.wall)
+    side_load = loads.axial_force * loads.wall * push.side_factor
     loaded = side_load > 0.0
     rubbing = Rubbing(
         loads.theta,

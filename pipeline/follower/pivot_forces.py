@@ -257,6 +257,26 @@ class ArmPivot:
         friction = np.where((axial > 0.0) & (direction != 0.0), rubbed, 0.0)
         return PivotBalance(axial, _size(pressed.total(axial, pull)), friction, free.jam_index)
 
+    def between(
+        self, required: Array, pressed: tuple[Pressed, Pressed], pull: Pull, direction: Array
+    ) -> tuple[PivotBalance, Array]:
+        """Equilibrium as by `balanced` on two tracks, and the one that carries: 1 the first, which
+        pushes, -1 the second; real arrays (..., n), required and pull in N.
+
+        None is pressed where the friction alone holds the arm.
+
+        Parameters
+        ----------
+        pressed : pair   of the first and of the second track
+        """
+        pushed, pulled = (self.balanced(required, one, pull, direction) for one in pressed)
+        wall = np.where(pushed.axial > 0.0, 1.0, -1.0)
+        first, axial = wall > 0.0, np.where(wall > 0.0, pushed.axial, np.minimum(pulled.axial, 0.0))
+        one = Pressed(*(np.where(first, *pair) for pair in zip(*pressed, strict=True)))
+        rubbed = np.where(direction == 0.0, 0.0, np.abs(one.share * axial - required))
+        jam = np.where(first, pushed.jam_index, pulled.jam_index)
+        return PivotBalance(axial, _size(one.total(axial, pull)), rubbed, jam), wall
+
 
 def _size(vector: tuple[Array, Array]) -> Array:
     """Size of a vector (..., n), real or complex."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour, RollerContour
@@ -249,9 +250,25 @@ class Roller(Part):
         return float(np.mean(np.abs(rolling_share(np.asarray(path), self.radius))))
 
     def rolling(self, contour: Contour, loads: Loads, speed: float) -> RollingRoller:
-        """Rolling without slip on the wall that carries; see `FollowerKind`."""
-        pitch = contour.require_roller().pitch
-        return roller_motion(pitch, self.radius, speed, loads.theta, wall=loads.wall)
+        """Rolling without slip on the wall that carries, of the roller that does; see
+        `FollowerKind`.
+        """
+        first, *others = self._rollers(contour, loads, speed)
+        motion = first.motion
+        for other in others:
+            motion = motion.where(other.carries, other.motion)
+        return motion
+
+    def _rollers(self, contour: Contour, loads: Loads, speed: float) -> list[_Turning]:
+        """Roller of each disc without slip, at a cam speed, rad/s."""
+        pitch, theta, pulls = contour.require_roller().pitch, loads.theta, loads.wall < 0.0
+        if loads.second is None:
+            motion = roller_motion(pitch, self.radius, speed, theta, wall=loads.wall)
+            return [_Turning(motion, self.radius, np.ones(theta.size, dtype=bool))]
+        track, first = loads.second.track(pitch), roller_motion(pitch, self.radius, speed, theta)
+        disc, there = track.contour, theta + track.turn
+        second = roller_motion(disc.pitch, disc.roller_radius, speed, there)
+        return [_Turning(first, self.radius, ~pulls), _Turning(second, disc.roller_radius, pulls)]
 
     def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:  # noqa: ARG002
         """Contact body: roller held at its hub, or outer ring on balls; see `FollowerKind`."""
@@ -267,7 +284,10 @@ class Roller(Part):
         of the cam, rad/s. See `FollowerKind`.
         """
         motion, force = self.rolling(contour, loads, speed), loads.normal_force
-        driven = self._driven(motion, contact, force, speed)
+        first, *others = self._rollers(contour, loads, speed)
+        driven = self._driven(first, contact, force, speed)
+        for other in others:
+            driven = driven.where(other.carries, self._driven(other, contact, force, speed))
         loaded = force > 0
         demand = np.abs(driven.demand) / np.where(loaded, force, np.nan)
         if self.friction is None:
@@ -292,17 +312,28 @@ class Roller(Part):
         )
 
     def _driven(
-        self, motion: RollingRoller, contact: ContactHistory, force: Array, speed: float
+        self, roller: _Turning, contact: ContactHistory, force: Array, speed: float
     ) -> RollingContact:
-        """Rolling contact under inertia and bearing drag."""
+        """Rolling contact of a roller under inertia and bearing drag, free where it carries no
+        load.
+        """
+        motion = roller.motion
         return rolling_contact(
-            force,
+            np.where(roller.carries, force, 0.0),
             motion.spin,
             motion.spin_acceleration,
             motion.rolling_speed,
             contact.half_width,
             contact.relative_radius,
             drag=self.drag,
-            radius=self.radius,
+            radius=roller.radius,
             period=FULL_TURN / speed,
         )
+
+
+class _Turning(NamedTuple):
+    """Roller of a disc: motion without slip, radius, m, and whether it carries (n,), bool."""
+
+    motion: RollingRoller
+    radius: float
+    carries: NDArray[np.bool_]

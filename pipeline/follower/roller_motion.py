@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, Values, finite, freeze
 from camwright.geometry.errors import InputError
@@ -32,6 +32,14 @@ class RollingRoller:
 
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+
+    def where(self, pulls: NDArray[np.bool_], second: RollingRoller) -> RollingRoller:
+        """Motion of the roller that carries: of the second one where that pulls (n,)."""
+        names = (name for name in self.__dataclass_fields__ if name != "theta")
+        pairs = {name: (getattr(second, name), getattr(self, name)) for name in names}
+        return RollingRoller(
+            self.theta, **{name: np.where(pulls, *pair) for name, pair in pairs.items()}
+        )
 
     @property
     def spin_mean(self) -> float:

@@ -51,7 +51,14 @@ _LOAD_END = {
 _NEEDS = {"arm": "an arm", "round": "a roller or curved face", "swung_face": "a face on an arm"}
 """Words of what a check needs."""
 
-_CLOSED = {"": "", "form": "; in a groove only", "force": "; not in a groove"}
+_CLOSED = {
+    "": "",
+    "form": "; with a second track only",
+    "force": "; not with a second track",
+    "plate": "; not in a groove",
+    "groove": "; in a groove only",
+    "conjugate": "; of a conjugate pair only",
+}
 """Words by what keeps the follower on the cam, see `Declaration.closed_by`."""
 
 

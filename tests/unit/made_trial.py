@@ -138,6 +138,18 @@ def groove_case() -> Case:
     return case_of(tables)
 
 
+@cache
+def pair_case() -> Case:
+    """The same case with a second disc and an opposite roller in place of the spring."""
+    tables = tomllib.loads(CASE_FILE.read_text())
+    del tables["spring"]
+    second = {"roller_radius": "8 mm", "distance": "110 mm", "clearance": "0.02 mm"}
+    second |= {"spacing": "30 mm", "source": "second"}
+    tables["cam"] |= {"closure": "conjugate", "conjugate": second}
+    tables["follower"]["stem_length"] = "300 mm"
+    return case_of(tables)
+
+
 def limits(**values: Any) -> Case:
     """The case with some of its limits replaced."""
     return case(limits=changed(_case().limits, **values))
@@ -481,6 +493,13 @@ def in_groove() -> Solution:
     solved = solving.solution(
         groove_case(), contour(), Tier.PREVIEW, torques={}, positions=POSITIONS
     )
+    return replace(solved, machines=solved.machines[:1], cycles=solved.cycles[:1])
+
+
+@cache
+def on_two_discs() -> Solution:
+    """A preview of the pair of discs likewise."""
+    solved = solving.solution(pair_case(), contour(), Tier.PREVIEW, torques={}, positions=POSITIONS)
     return replace(solved, machines=solved.machines[:1], cycles=solved.cycles[:1])
 
 

@@ -7,6 +7,7 @@ names the check. Rows of missing data have no demand; `test_part_data` tries the
 _ASSEMBLY = "unit/test_assembly.py"
 _CONTACT = "verification/test_contact_audit.py"
 _GROOVE = "verification/test_groove_cam.py"
+_PAIR = "verification/test_conjugate_cam.py"
 _GUIDES = "verification/test_guides_audit.py"
 _ARM = "verification/test_arm_strength.py"
 _PIVOT = "unit/test_pivot_checks.py"
@@ -33,6 +34,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_GROOVE, "test_landings_by_an_adaptive_integrator"): (
         "landing_speed", "landing_pressure", "crossover_slip",
     ),
+    (_PAIR, "test_both_discs_are_judged"): ("second_disc_gap",),
     (_GROOVE, "test_the_rim_is_a_cantilever_plate"): ("groove_wall",),
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",

@@ -16,12 +16,21 @@ from camwright.pipeline.cycle.solution import Solution
 
 CLEARANCE, OUTER = 20e-6, 0.090
 HALF = 0.5 * made.STROKE
+WIDTHS = 0.010, 0.010  # of disc and roller, m
 
 
 def changed(**values) -> Solution:
     """The groove with other values of its table."""
     base = made.in_groove()
     cam = replace(base.case.cam, groove=replace(base.case.cam.groove, **values))
+    return made.changed_solution(base, case=made.changed(base.case, cam=cam))
+
+
+def spaced(spacing: float) -> Solution:
+    """The pair of discs at another distance along the shaft, m."""
+    base = made.on_two_discs()
+    second = replace(base.case.cam.conjugate, spacing=spacing)
+    cam = replace(base.case.cam, conjugate=second)
     return made.changed_solution(base, case=made.changed(base.case, cam=cam))
 
 
@@ -185,6 +194,14 @@ by_limit(
     90.0,
     "as stated",
     base=made.in_groove,
+)
+by_limit(
+    "second_disc_gap",
+    "assembly_gap",
+    lambda: spaced(np.nan),
+    1e3 * (0.030 - 0.5 * (WIDTHS[0] + WIDTHS[1])),
+    "discs 30 mm apart, less half of a disc and half of a roller",
+    base=made.on_two_discs,
 )
 by_limit(
     "landing_speed",

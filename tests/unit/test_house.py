@@ -431,6 +431,7 @@ SPRINGS = Kinds(
 _READS, _DRAWS = "reads the tables of a case", "draws the parts of a run on disk"
 ASK_FOR_A_KIND = {
     FOLLOWERS: {
+        "geometry.second_track": "second roller of a stem, or of an arm",
         "pipeline.case.added_tables": _READS,
         "pipeline.case.case": _READS,
         "pipeline.case.case_file": "refuses a face too narrow for the lift of its case",

@@ -85,7 +85,7 @@ MEASURES = {
     for one in CHECKS
     if one.measured is not None and one.measured.reduce not in ("case", "contour", "top")
     for follower, word in WORDS.items()
-    if one.needs in ("", word) and not one.scales_with and one.closed_by != "form"
+    if one.needs in ("", word) and not one.scales_with and one.closed_by in ("", "force", "plate")
     if not (one.part == "guides" and follower == "arm")
     if not (one.part == "pivot" and follower != "arm")
     if not one.id.startswith(("guide_pressure", "edge_pressure"))

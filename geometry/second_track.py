@@ -1,0 +1,352 @@
+"""Second track of a cam that pulls its follower: a second disc under a second roller.
+
+The second roller is fixed to the first, on the same stem or arm; its disc is on the same shaft. The
+path of its centre follows from that of the first.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arm_path import Arm, ArmContour, ArmMotion, ArmPath
+from camwright.geometry.arrays import FULL_TURN, Array, Value, positive
+from camwright.geometry.contour import Contour, RollerContour, RoundContour
+from camwright.geometry.errors import GeometryError, InputError, in_millimetres
+from camwright.geometry.follower_path import FollowerPath, Slide
+from camwright.geometry.lift import Jet
+from camwright.geometry.pitch_curve import PitchCurve, RollerMotion, RoundMotion
+
+_HALF_TURN = np.pi
+
+
+class SecondRoller(ABC):
+    """Roller that is fixed to the first and pulls the follower back."""
+
+    radius: float
+    """m"""
+
+    @abstractmethod
+    def of(self, first: FollowerPath) -> SecondTrack:
+        """Track under it, from the path of the first roller."""
+
+    def track(self, first: FollowerPath) -> SecondTrack:
+        """`of`, computed once for a path."""
+        return _kept(self, first)
+
+
+@dataclass(frozen=True)
+class OppositeRoller(SecondRoller):
+    """Second roller on the same stem, opposite the first across the cam axis.
+
+    Both centres are a distance apart: r1(theta) + r2(theta + 180 deg) is constant.
+
+    Parameters
+    ----------
+    distance : float   between the roller centres, m
+    radius : float     m
+    """
+
+    distance: float
+    radius: float
+
+    def path(self, first: PitchCurve) -> PitchCurve:
+        """Path of the second roller in the cam frame; its cam angle is half a turn ahead.
+
+        Raises
+        ------
+        InputError
+            If the second roller would reach the cam axis.
+        """
+        positive("cam.conjugate.distance", self.distance, "m")
+        lift = first.lift
+        height = self.distance - first.height_base - lift.highest.value
+        if not height > 0.0:
+            shown, most = in_millimetres(self.distance, first.height_base + lift.highest.value)
+            raise InputError("cam.conjugate.distance", shown, f"> {most}: beyond the cam axis")
+        values = np.maximum(lift.highest.value - lift(lift.theta - _HALF_TURN), 0.0)
+        prime = float(np.hypot(height, first.offset))
+        return PitchCurve(replace(lift, values=values), prime, -first.offset)
+
+    def of(self, first: FollowerPath) -> SecondTrack:
+        if not isinstance(first, PitchCurve):
+            raise InputError("cam.conjugate.distance", "stated", "left out without a stem")
+        contour = RollerContour(self.path(first), self.radius)
+        return SecondTrack(first, contour, _HALF_TURN, 1.0, self.distance)
+
+
+@dataclass(frozen=True)
+class ConjugateArm(SecondRoller):
+    """Second arm on the same pivot, on the other side of the line of centres.
+
+    Parameters
+    ----------
+    length : float   pivot to roller centre, m
+    angle : float    from the second arm to the first, rad, > the greatest angle of the first
+    radius : float   of its roller, m
+    """
+
+    length: float
+    angle: float
+    radius: float
+
+    def path(self, first: ArmPath) -> ArmPath:
+        """Path of the second roller in the cam frame.
+
+        Its arm angle is that between the arms less the first one: it swings away from the cam where
+        the first swings towards it. Its lift is counted from its own innermost position.
+
+        Raises
+        ------
+        InputError
+            If the second arm does not stay on the other side of the line of centres.
+        """
+        positive("cam.conjugate.arm_length", self.length, "m")
+        top, lift = first.lift.highest.value, first.lift
+        start = self.angle - (first.start + top / first.arm.length)
+        if not start > 0.0:
+            limit = (
+                f"> {np.degrees(self.angle - start):.5g} deg, the greatest arm angle of the first"
+            )
+            raise InputError("cam.conjugate.arm_angle", f"{np.degrees(self.angle):.5g} deg", limit)
+        ratio = self.length / first.arm.length
+        values = np.maximum(ratio * (top - lift.values), 0.0)
+        arm = Arm(first.arm.centre_distance, self.length, -first.arm.sense)
+        return ArmPath(replace(lift, values=values), arm, float(start))
+
+    def of(self, first: FollowerPath) -> SecondTrack:
+        if not isinstance(first, ArmPath):
+            raise InputError("cam.conjugate.arm_length", "stated", "left out without an arm")
+        contour = ArmContour(self.path(first), self.radius)
+        return SecondTrack(first, contour, 0.0, float(first.arm.length / self.length), 0.0)
+
+
+class Touch(NamedTuple):
+    """Contact of one track (...): forces over the axial force at the first roller.
+
+    slide; push_arm: lever arm of the axial force about the axis of the stem, m; pressure_angle: in
+    the travel of its own roller, rad; turned: that travel from the one of the first, rad.
+    """
+
+    slide: Slide
+    push_arm: Array
+    pressure_angle: Array
+    turned: Array
+
+
+def touch_of(path: FollowerPath, theta: Array, friction: Value = 0.0) -> Touch:
+    """Contact of the first track at cam angles, rad, with the friction of a face."""
+    angle = path.pressure_angle(theta)
+    return Touch(path.slide(theta, friction), path.push_arm(theta), angle, np.zeros(angle.shape))
+
+
+@dataclass(frozen=True, eq=False)
+class SecondTrack:
+    """Disc under the second roller; all cam angles are those of the first roller, rad.
+
+    The axial force at the first roller is negative where this track carries.
+
+    Parameters
+    ----------
+    first : FollowerPath     path of the first roller
+    contour : RoundContour   contour of the disc, at the cam angles of the second roller
+    turn : float             by which these are ahead of those of the first, rad
+    leverage : float         force along the travel of the second over that of the first roller
+    reach : float            by which it is farther from the guides of a stem, m
+    """
+
+    first: FollowerPath
+    contour: RoundContour
+    turn: float
+    leverage: float
+    reach: float
+
+    def touch(self, theta: Array) -> Touch:
+        """Contact with the second roller, over the axial force at the first one."""
+        touch = touch_of(self.contour.pitch, theta + self.turn)
+        turned = self.turned(theta)
+        cos, sin = np.cos(turned), np.sin(turned)
+        side, scale = touch.slide.side, -self.leverage
+        slide = Slide(
+            side=scale * (side * cos - sin),
+            torque=np.zeros(side.shape),
+            lever=1.0 / self.leverage,
+            pressing=scale * (cos + side * sin),
+        )
+        return Touch(slide, touch.push_arm, touch.pressure_angle, turned)
+
+    def turned(self, theta: Array) -> Array:
+        """Direction of travel of the second roller from that of the first, rad."""
+        travel = self.contour.pitch.travel(theta + self.turn)
+        return np.asarray(travel + self.turn - self.first.travel(theta))
+
+    def relative_radius(self, theta: Array) -> Array:
+        """Relative radius of curvature of the contact, m; negative if undercut."""
+        return self.contour.relative_radius(theta + self.turn, np.asarray(1.0))
+
+    def motion(self, theta: Array, order: int = 2) -> RoundMotion:
+        """Kinematics of the second roller by itself."""
+        jet = self.contour.lift.jet(theta + self.turn, order)
+        return self.contour.pitch.centre_motion(jet, self.contour.roller_radius)
+
+
+class CamDisc(NamedTuple):
+    """Contour of a disc, and by how much its cam angles are ahead of those of the first, rad."""
+
+    contour: Contour
+    turn: float
+
+    def angle(self, theta: float) -> float:
+        """Cam angle of the first roller at one of this disc, rad."""
+        return float(np.mod(theta - self.turn, FULL_TURN))
+
+
+def discs_of(contour: Contour, second: SecondRoller | None) -> tuple[CamDisc, ...]:
+    """Disc of the first contour, and that of a second roller."""
+    first = CamDisc(contour, 0.0)
+    if second is None:
+        return (first,)
+    track = second.track(contour.pitch)
+    return first, CamDisc(track.contour, track.turn)
+
+
+def relative_radius(
+    contour: RoundContour, second: SecondRoller | None, theta: Array, wall: Array
+) -> Array:
+    """Relative radius of curvature (...), m, on the track that carries: 1 the first or inner wall,
+    -1 the second, or without one the outer wall of a groove; negative if undercut.
+    """
+    if second is None:
+        return contour.relative_radius(theta, wall)
+    first = contour.relative_radius(theta, np.ones(np.shape(wall)))
+    return np.where(wall < 0.0, second.track(contour.pitch).relative_radius(theta), first)
+
+
+@lru_cache(maxsize=64)
+def _kept(second: SecondRoller, first: FollowerPath) -> SecondTrack:
+    return second.of(first)
+
+
+def _chosen(pulls: NDArray[np.bool_], second: Value, first: Value) -> Array:
+    return np.asarray(np.where(pulls, second, first))
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedMotion(RoundMotion):
+    """Kinematics and force ratios of the roller that carries at each cam angle; see `Motion`.
+
+    Those of the first roller or of the second one, each in its own travel; forces are over the
+    axial force at the first.
+
+    Parameters
+    ----------
+    jet : Jet                   lift of the first roller
+    size : array (..., n)       radius of the roller that carries, m
+    first, second : RoundMotion of a roller
+    pulls : array (..., n)      bool: whether the second track carries
+    touch : Touch               of the second track
+    """
+
+    jet: Jet
+    size: Value
+    first: RollerMotion | ArmMotion
+    second: RollerMotion | ArmMotion
+    pulls: NDArray[np.bool_]
+    touch: Touch
+
+    @classmethod
+    def of(
+        cls, first: RoundMotion, second: RoundMotion, pulls: NDArray[np.bool_], touch: Touch
+    ) -> CarriedMotion:
+        """From both motions at the same angles, and the contact of the second track.
+
+        Raises
+        ------
+        GeometryError
+            If one of them is not that of a roller.
+        """
+        rollers = RollerMotion, ArmMotion
+        if not (isinstance(first, rollers) and isinstance(second, rollers)):
+            raise GeometryError("the follower on the second track is no roller")
+        size = np.where(pulls, second.size, first.size)
+        return cls(first.jet, size, first, second, pulls, touch)
+
+    def _of(self, name: str) -> Array:
+        return _chosen(self.pulls, getattr(self.second, name), getattr(self.first, name))
+
+    def _force(self, name: str) -> Array:
+        pulled = getattr(self.touch.slide, name)
+        return _chosen(self.pulls, pulled, getattr(self.first, name))
+
+    @property
+    def rolls(self) -> bool:
+        return True
+
+    @property
+    def sliding(self) -> float:
+        """Zero: both rollers roll."""
+        return 0.0
+
+    @property
+    def travel(self) -> Value:
+        """Direction of travel of the first roller."""
+        return self.first.travel
+
+    @property
+    def turned(self) -> Array:
+        """Direction of travel of the roller that carries from that of the first, rad."""
+        return np.where(self.pulls, self.touch.turned, 0.0)
+
+    @property
+    def height(self) -> Array:
+        return self._of("height")
+
+    @property
+    def travel_offset(self) -> Value:
+        return self._of("travel_offset")
+
+    @property
+    def along(self) -> Array:
+        return self._of("along")
+
+    @cached_property
+    def _path(self) -> tuple[Array, Array]:
+        return self._of("path_speed"), self._of("path_curvature")
+
+    @property
+    def path_curvature_slope(self) -> Array:
+        return self._of("path_curvature_slope")
+
+    @property
+    def rolling(self) -> Array:
+        return self._of("rolling")
+
+    @property
+    def slide_slope(self) -> Array:
+        return self._of("slide_slope")
+
+    @property
+    def prime_radius(self) -> Array:
+        return self._of("prime_radius")
+
+    @property
+    def side(self) -> Array:
+        return self._force("side")
+
+    @property
+    def pressing(self) -> Value:
+        return self._force("pressing")
+
+    @cached_property
+    def gain(self) -> Array:
+        levered = np.where(self.pulls, self.touch.slide.lever, 1.0)
+        return np.sqrt(1.0 + self.tangent**2) / levered
+
+    def radius_at(self, lift: Value) -> Array:
+        """Of the first disc."""
+        return self.first.radius_at(lift)

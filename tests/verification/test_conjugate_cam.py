@@ -1,0 +1,379 @@
+"""Conjugate discs by other formulations: forces, contact, spin, landings, energy and their limits.
+
+The cases are tests/data/conjugate_feeder.toml, opposite rollers on a stem, here with another second
+roller and a lift whose rise and return differ, and conjugate_arm.toml, two arms on one pivot.
+"""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.cycle.crank_speed import mechanism_torque
+from camwright.pipeline.cycle.crossover_history import impacts
+from camwright.pipeline.cycle.speed_sweep import speed_sweep
+from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
+from camwright.pipeline.follower.friction_coupling import guided_loads
+from camwright.pipeline.preview import preview_case
+
+DATA = Path(__file__).parents[1] / "data"
+STEM, ARM = DATA / "conjugate_feeder.toml", DATA / "conjugate_arm.toml"
+BOTH = pytest.mark.parametrize("name", ["stem", "arm"])
+
+
+def uneven():
+    """The feeder with one uneven stroke a turn and a smaller second roller farther out."""
+    text = STEM.read_text(encoding="utf-8")
+    begin, end = text.index("[[lift.segment]]"), text.index("[mechanism]")
+    rows = ("modified_sine", 100, 18), ("dwell", 50, 0), ("cycloidal", 130, -18), ("dwell", 80, 0)
+    lift = "".join(
+        f'[[lift.segment]]\nlaw = "{law}"\nangle = "{angle} deg"\n'
+        + (f'stroke = "{stroke} mm"\n\n' if stroke else "\n")
+        for law, angle, stroke in rows
+    )
+    text = text[:begin] + lift + text[end:]
+    text = text.replace('roller_radius = "23.5 mm"', 'roller_radius = "20 mm"')
+    return text.replace('distance = "154 mm"', 'distance = "160 mm"').replace(
+        'prime_radius = "68 mm"', 'prime_radius = "68 mm"\noffset = "4 mm"'
+    )
+
+
+@cache
+def trial(name):
+    case = parse_case(uneven()) if name == "stem" else read_case(ARM)
+    return preview_case(case, corners=False)
+
+
+def running(name):
+    """Cycle, machine and second track of the load case of the file."""
+    (cycle,) = (each for each in trial(name).cycles if each.load_case == "running")
+    machine = cycle.machine
+    return cycle, machine, machine.cam.second.track(cycle.contour.pitch)
+
+
+# --- forces -----------------------------------------------------------------------------------
+def test_a_strong_spring_makes_the_pair_a_spring_closed_cam():
+    """Forces, guides and torque to 1e-9: the first disc alone carries."""
+    cycle, machine, _ = running("stem")
+    sprung = replace(machine.spring, preload=900.0, rate=20e3)
+    closed = replace(machine.system, spring=sprung, held=False, second=None)
+    args = (machine.stem, machine.guides, machine.cam_speed, uniform_turn(90))
+    path = cycle.contour.pitch
+    plate = guided_loads(path, closed, *args)
+    pair = guided_loads(path, replace(closed, held=True, second=machine.cam.second), *args)
+    assert not plate.loads.separated.any()
+    for name in ("axial_force", "normal_force", "cam_torque", "friction_force_a", "reaction_a"):
+        plain, held = (getattr(each.loads, name) for each in (plate, pair))
+        assert held == pytest.approx(plain, rel=1e-9, abs=1e-9), name
+
+
+def test_a_strong_spring_makes_the_arm_spring_closed():
+    cycle, machine, _ = running("arm")
+    sprung = replace(machine.spring, preload=900.0, rate=20e3)
+    closed = replace(machine.system, spring=sprung, held=False, second=None)
+    pair = replace(closed, held=True, second=machine.cam.second)
+    plain, held = (
+        follower_loads(cycle.contour.pitch, each, machine.cam_speed, uniform_turn(180))
+        for each in (closed, pair)
+    )
+    assert not plain.separated.any()
+    for name in ("axial_force", "normal_force", "cam_torque", "pivot_friction", "pivot_load"):
+        assert getattr(held, name) == pytest.approx(getattr(plain, name), rel=1e-9, abs=1e-9), name
+
+
+@pytest.mark.parametrize("speed", [10.0, 40.0])
+def test_forces_by_the_equilibrium_of_the_stem(speed):
+    """F_a = F + sign(v) (mu_A |A| + mu_B |B|) by iteration; the second roller is farther off."""
+    cycle, machine, track = running("stem")
+    theta, path, system = uniform_turn(180), cycle.contour.pitch, machine.system
+    loads = follower_loads(path, system, speed, theta)
+    s, s1, s2 = path.lift.derivatives(theta, 2)
+    force = system.mass * speed**2 * s2 + system.spring.force(s)
+    pulls = force < 0.0
+    other = theta + np.pi
+    own = track.contour.lift.derivatives(other, 1)
+    second = track.contour.pitch
+    tangent = np.where(
+        pulls,
+        (own[1] - second.offset) / (second.height_base + own[0]),
+        (s1 - path.offset) / (path.height_base + s),
+    )
+    reach = system.overhang_at_max_lift + path.lift.highest.value - s + 0.160 * pulls
+    moving = np.where(np.abs(s1) > 1e-9 * path.lift.stroke, np.sign(s1), 0.0)
+    axial = force.copy()
+    for _ in range(300):
+        side = np.abs(axial * tangent)
+        on_b = side * reach / system.guide_spacing
+        axial = force + moving * (system.friction_a * (side + on_b) + system.friction_b * on_b)
+    assert loads.axial_force == pytest.approx(axial, rel=1e-9, abs=1e-9)
+    assert loads.normal_force == pytest.approx(np.abs(axial) * np.hypot(1.0, tangent), rel=1e-9)
+    assert loads.cam_torque == pytest.approx(axial * s1, rel=1e-9, abs=1e-9)
+    assert (axial > 1.0).any() and (axial < -1.0).any()
+
+
+def test_forces_by_the_equilibrium_of_the_arm():
+    """Moments about the pivot in fixed axes, of inertia, weight, contact and friction."""
+    cycle, machine, track = running("arm")
+    theta, path, speed = uniform_turn(240), cycle.contour.pitch, machine.cam_speed
+    loads, arm = follower_loads(path, machine.system, speed, theta), path.arm
+    pulls = loads.axial_force < 0.0
+    assert pulls.any() and not pulls.all()
+    cos, sin = np.cos(theta), np.sin(theta)
+    turned = np.array([[cos, sin], [-sin, cos]])  # from cam axes to the line of centres
+
+    def touching(contour, pitch):
+        centre = np.einsum("ijn,jn->in", turned, pitch.points(theta))
+        contact = np.einsum("ijn,jn->in", turned, contour.points(theta))
+        normal = centre - contact
+        return centre, normal / np.hypot(*normal)
+
+    first, second = touching(cycle.contour, path), touching(track.contour, track.contour.pitch)
+    normal = np.where(pulls, second[1], first[1])
+    pressed = np.where(pulls, second[0], first[0]) - np.array([[arm.centre_distance], [0.0]])
+    force = loads.normal_force * normal
+    moment = pressed[0] * force[1] - pressed[1] * force[0]
+    outwards = -arm.sense  # of the moment of a push outwards, counter-clockwise
+    _, s1, s2 = path.lift.derivatives(theta, 2)
+    turning = machine.mass * arm.length * speed**2 * s2
+    pivot = machine.pivot
+    # the cam turns clockwise: up is 90 deg before the line to the pivot
+    place = first[0] - np.array([[arm.centre_distance], [0.0]])
+    place = pivot.mass_distance * place / arm.length
+    up = np.array([[np.cos(pivot.gravity_angle)], [np.sin(pivot.gravity_angle)]])
+    weight = -pivot.swinging_mass * 9.80665 * up
+    fallen = place[0] * weight[1] - place[1] * weight[0]
+    rubbing = np.where(np.abs(s1) > 1e-9 * path.lift.stroke, np.sign(s1), 0.0)
+    rubbed = rubbing * loads.pivot_friction * arm.length
+    balance = outwards * (moment + fallen) - turning - rubbed
+    scale = np.abs(moment).max()
+    assert np.abs(balance).max() < 1e-6 * scale
+    # load of the pivot: all other forces with that of inertia
+    along = np.hypot(*loads.pivot_load)
+    friction = machine.friction.nominal[0] * 0.5 * 0.020 / arm.length * along
+    loaded = (np.abs(loads.axial_force) > 1.0) & (rubbing != 0.0)
+    assert loads.pivot_friction[loaded] == pytest.approx(friction[loaded], rel=1e-9)
+    out, aside = np.stack([normal[0], normal[1]]), place / pivot.mass_distance
+    tangent = outwards * np.stack([-aside[1], aside[0]])
+    away = pivot.swinging_mass * pivot.mass_distance
+    turned, spun = speed**2 * s2 / arm.length, (speed * s1 / arm.length) ** 2
+    inertia = -away * (turned * tangent - spun * aside)
+    whole = loads.normal_force * out + weight + inertia
+    assert np.hypot(*whole)[loaded] == pytest.approx(along[loaded], rel=1e-6)
+
+
+@BOTH
+def test_the_cam_pays_for_friction_alone(name):
+    """Work of the cam over a turn is the loss in guides or pivot: 1e-6 of that on the rises."""
+    cycle, machine, _ = running(name)
+    loads = cycle.loads
+    if name == "arm":  # the force steps where friction alone holds the arm: sampled more finely
+        theta = uniform_turn(28800)
+        loads = follower_loads(cycle.contour.pitch, machine.system, machine.cam_speed, theta)
+    rubbed = loads.friction_force * np.abs(loads.lift_slope)
+    work, lost = (turn_integral(loads.theta, each) for each in (loads.cam_torque, rubbed))
+    scale = turn_integral(loads.theta, np.abs(loads.cam_torque))
+    assert lost > 1e-3 * scale
+    assert work == pytest.approx(lost, abs=1e-6 * scale)
+
+
+@BOTH
+def test_the_torque_of_the_crank_is_that_of_the_loads(name):
+    """At a cam speed without acceleration, and at the rate that a case with a crankshaft has."""
+    cycle, machine, _ = running(name)
+    path, theta = cycle.contour.pitch, uniform_turn(360)
+    loads = follower_loads(path, machine.system, machine.cam_speed, theta)
+    torque = mechanism_torque(path, machine.system, 1.0, 360)
+    on_cam = torque(np.full(360, machine.cam_speed), np.zeros(360))
+    expected = loads.inertia_force * loads.lift_slope - loads.cam_torque
+    assert on_cam == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+@BOTH
+def test_without_clearance_and_compliance_the_track_is_the_sign_of_the_force(name):
+    """A clearance of a nanometre: the track changes where the rigid force changes its sign."""
+    cycle, machine, _ = running(name)
+    narrow = replace(machine.cam.conjugate, clearance=1e-9)
+    landed = impacts(replace(machine, cam=replace(machine.cam, conjugate=narrow)), cycle.contour)
+    theta, rigid = uniform_turn(14400), machine.system.with_friction(0.0, 0.0)
+    force = follower_loads(cycle.contour.pitch, rigid, machine.cam_speed, theta).axial_force
+    assert len(landed) >= 2
+    for one in landed:
+        flight = one.flight
+        assert flight.landing == pytest.approx(flight.take_off, abs=np.radians(0.5))
+        beyond = np.interp(flight.landing + np.radians(0.5), theta, force, period=2.0 * np.pi)
+        assert np.sign(beyond) == flight.wall
+
+
+# --- contact ----------------------------------------------------------------------------------
+@BOTH
+def test_contact_on_both_discs_by_their_radii(name):
+    """Hertz (1882) with the radius of either disc, by differences of its points, and its roller."""
+    cycle, machine, track = running(name)
+    loads, pulled = cycle.loads, cycle.loads.axial_force < 0.0
+
+    def curvature(contour, theta):
+        step = 1e-3
+        before, here, after = (contour.points(theta + k * step) for k in (-1, 0, 1))
+        a, b = after - before, after - 2.0 * here + before
+        return 8.0 * (a[0] * b[1] - a[1] * b[0]) / 2.0 / np.hypot(*a) ** 3
+
+    one = 1.0 / machine.roller.radius + curvature(cycle.contour, loads.theta)
+    other = 1.0 / track.contour.roller_radius + curvature(track.contour, loads.theta + track.turn)
+    load = loads.normal_force / machine.contact_width
+    pressure = np.sqrt(load * machine.contact_modulus * np.where(pulled, other, one) / np.pi)
+    # differences over 0.06 deg miss the jerk: 1e-3 beside the steps of it
+    assert cycle.contact.p0 == pytest.approx(pressure, rel=2e-3, abs=1e3)
+    assert pulled.any() and not pulled.all()
+
+
+@BOTH
+def test_each_roller_turns_one_way(name):
+    """Its surface stands on its disc: by the centre's path and the contact's, in the plane."""
+    cycle, machine, track = running(name)
+    spin, speed, step = cycle.parts.roller_spin, machine.cam_speed, 1e-6
+    pulled = cycle.loads.axial_force < 0.0
+    discs = (cycle.contour, 0.0, ~pulled), (track.contour, track.turn, pulled)
+    for contour, turn, carries in discs:
+        theta, path = cycle.theta[carries] + turn, contour.pitch
+        arm = contour.points(theta) - path.points(theta)
+        across = np.stack([-arm[1], arm[0]])
+        moving = (path.points(theta + step) - path.points(theta - step)) / (2.0 * step)
+        rate = -np.sum(moving * across, axis=0) / np.sum(across**2, axis=0)
+        held = 1.0
+        if name == "arm":  # the arm turns in the cam frame by the cam and by its swing
+            angle = path.lift.derivatives(theta, 1)[1] / path.arm.length
+            held = 1.0 - path.arm.sense * angle
+        assert spin[carries] == pytest.approx(speed * (rate - held), rel=1e-5, abs=1e-3)
+        assert (spin[carries] > 0.0).all()
+
+
+# --- landings ---------------------------------------------------------------------------------
+def test_landings_by_an_adaptive_integrator():
+    """Speed at the landing on either disc; the clearance by the points of the second disc."""
+    cycle, machine, track = running("stem")
+    path, speed = cycle.contour.pitch, cycle.cam_speed
+    clearance, disc = machine.cam.conjugate.clearance, track.contour
+
+    def gap(theta):
+        own, slope = disc.lift.derivatives(theta + np.pi, 1)
+        height = disc.pitch.height_base + own
+        return clearance * np.hypot(slope - disc.pitch.offset, height) / height
+
+    theta = 1.0  # lowered by that gap the second roller is a clearance nearer to its disc
+    toward = np.array([np.cos(theta), np.sin(theta)])
+    centre = disc.pitch.points(theta + np.pi) + gap(theta) * toward
+    near = disc.points(theta + np.pi + np.linspace(-0.05, 0.05, 20001))
+    least = np.hypot(*(near - centre[:, None])).min()
+    assert disc.roller_radius - least == pytest.approx(clearance, rel=1e-3)
+    assert {one.flight.wall for one in cycle.impacts} == {1.0, -1.0}
+    for landed in cycle.impacts:
+        flight = landed.flight
+        start, inner = flight.take_off, flight.wall > 0.0
+
+        def opening(theta):
+            return speed * (gap(theta + 1e-6) - gap(theta - 1e-6)) / 2e-6
+
+        def flown(time, state, start=start):
+            return state[1], -(speed**2) * path.lift(start + speed * time, 2)
+
+        def lands(time, state, start=start, inner=inner):
+            return state[0] if inner else state[0] - gap(start + speed * time)
+
+        lands.terminal, lands.direction = True, -1.0 if inner else 1.0
+        begin = (gap(start), opening(start)) if inner else (0.0, 0.0)
+        flight_of = solve_ivp(flown, (0.0, 0.1), begin, events=lands, rtol=1e-10, atol=1e-14)
+        time, (_, moving) = flight_of.t_events[0][0], flight_of.y_events[0][0]
+        against = -moving if inner else moving - opening(start + speed * time)
+        assert flight.speed == pytest.approx(against, rel=1e-3)
+
+
+def test_a_roller_lands_with_the_spin_that_it_left_with():
+    """Slip: its radius times the change of the spin of rolling since it last carried."""
+    cycle, machine, track = running("stem")
+    path, disc = cycle.contour.pitch, track.contour
+    radii = {1.0: (path, 0.0, machine.roller.radius),
+             -1.0: (disc.pitch, np.pi, disc.roller_radius)}  # fmt: skip
+    crossed = [one for one in cycle.impacts if one.flight.crosses]
+    assert len(crossed) == len(cycle.impacts) >= 2
+    for k, one in enumerate(crossed):
+        before = crossed[k - 1].flight
+        assert before.wall == one.flight.start
+        pitch, turn, radius = radii[one.flight.wall]
+        paces = []
+        # the disc was left at the flight before this one
+        for theta in (one.flight.landing, before.take_off):
+            step = 1e-5
+            moved = pitch.points(theta + turn + step) - pitch.points(theta + turn - step)
+            paces.append(np.hypot(*moved) / (2.0 * step) / radius)
+        slip = machine.cam_speed * radius * abs(paces[0] - paces[1])
+        assert one.slip == pytest.approx(slip, rel=1e-5, abs=1e-9)
+
+
+# --- sweeps, discs and the case ---------------------------------------------------------------
+@BOTH
+def test_the_sweep_over_the_speeds_has_the_forces_of_both_discs(name):
+    """At the speed of a load case it is the cycle."""
+    cycle, machine, _ = running(name)
+    rubbing = cycle.loads.rubbing
+    sweep = speed_sweep(machine, cycle.contour, rubbing, [machine.crank_speed])
+    assert sweep.contact_force_min.min() >= 0.0
+    assert sweep.contact_force_max[-1] == pytest.approx(cycle.loads.normal_force.max(), rel=3e-3)
+    for swept, own in ((sweep.torque_min, min), (sweep.torque_max, max)):
+        assert swept[-1] == pytest.approx(own(cycle.loads.cam_torque), rel=3e-3)
+
+
+def test_both_discs_are_judged():
+    """Whole-contour checks take the worse disc; mass and radius are those of both."""
+    checks = {each.id: each for each in trial("stem").checks}
+    cycle, machine, track = running("stem")
+    discs, theta = (cycle.contour, track.contour), uniform_turn(14400)
+    radii = [np.hypot(*each.points(theta)) for each in discs]
+    assert checks["cam_radius"].demand == pytest.approx(max(r.max() for r in radii), rel=1e-6)
+    held = machine.cam.held_radius
+    assert checks["minimum_wall"].demand == pytest.approx(
+        min(r.min() for r in radii) / held, rel=1e-6
+    )
+    angles = [np.abs(each.pitch.pressure_angle(theta)).max() for each in discs]
+    assert checks["pressure_angle"].demand == pytest.approx(max(angles), rel=1e-6)
+    least = min(1.0 / each.pitch.curvature(theta).max() / each.roller_radius for each in discs)
+    assert checks["curvature_ratio"].demand == pytest.approx(least, rel=1e-5)
+    assert checks["second_disc_gap"].demand == pytest.approx(0.034 - 0.5 * 0.0455 - 0.0003)
+
+
+@pytest.mark.parametrize("file", [STEM, ARM])
+def test_the_cases_pass_by_check(file):
+    """No check of the designs fails or lacks data; none of a closing force is made."""
+    checks = preview_case(read_case(file), corners=False).checks
+    must = [each for each in checks if each.must_have and not each.judged_at]
+    assert [each.id for each in must if each.status != "pass"] == []
+    made = {each.id for each in checks}
+    assert not made & {"jump", "contact_force_margin", "groove_wall", "traction_demand"}
+    assert {"landing_speed", "second_disc_gap", "cam_radius", "tool_gouge"} <= made
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "message"),
+    [
+        (STEM, 'closure = "conjugate"', 'closure = "groove"', "cam.conjugate = a table, must be"),
+        (STEM, 'distance = "154 mm"\n', "", "cam.conjugate.distance = missing, must be given"),
+        (STEM, 'distance = "154 mm"', 'distance = "154 mm"\narm_length = "80 mm"',
+         "cam.conjugate.arm_length = 0.08, must be left out, of an arm"),
+        (STEM, 'distance = "154 mm"', 'distance = "80 mm"', "cam.conjugate.distance = 80 mm, must"),
+        (STEM, 'spacing = "34 mm"', 'spacing = "27 mm"', "cam.conjugate.spacing = 27 mm, must be"),
+        (STEM, 'clearance = "0.02 mm"', 'clearance = "0 mm"', "cam.conjugate.clearance = 0 mm"),
+        (ARM, 'arm_length = "85 mm"\n', "", "cam.conjugate.arm_length = missing, must be given"),
+        (ARM, 'arm_angle = "79 deg"', 'arm_angle = "40 deg"', "cam.conjugate.arm_angle = 40 deg"),
+    ],
+)  # fmt: skip
+def test_refusals_of_the_case(file, old, new, message):
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    with pytest.raises(InputError) as error:
+        parse_case(text.replace(old, new, 1))
+    assert str(error.value).startswith(message)
