@@ -28,8 +28,18 @@ def data_frame(columns: Mapping[str, object]) -> pd.DataFrame:
 
 
 def curves(columns: Mapping[str, NDArray[Any]], headers: Sequence[str]) -> DrawnAxes:
-    """Curves of the columns `headers` over the first column of numbers, a panel each and a curve
-    per load case; see `Table.plot`.
+    """Curves of columns of a table over its first column of numbers, a panel each and a curve per
+    load case; see `Table.plot`.
+
+    Parameters
+    ----------
+    columns : mapping    values (n,) by header: numbers, and one of texts, the load case
+    headers : sequence   of the columns drawn; empty: the first that is no angle
+
+    Raises
+    ------
+    InputError
+        If a header is none of a column of numbers, or there are no numbers.
     """
     numbers = [header for header, cells in columns.items() if cells.dtype.kind == "f"]
     angles = [header for header in numbers if header.endswith("angle_deg")]

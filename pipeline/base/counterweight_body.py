@@ -25,7 +25,11 @@ def width_beside(width: Value, apart: Value, cam_width: Value) -> Array:
     """Part (...), m, of the width of a counterweight that lies beside the cam, not in the plane of
     it.
 
-    apart: distance of the middles of counterweight and cam, >= 0
+    Parameters
+    ----------
+    width : (...)       of the counterweight, m
+    apart : (...)       distance of the middles of counterweight and cam, m, >= 0
+    cam_width : (...)   m
     """
     half, near, far = 0.5 * width, apart - 0.5 * cam_width, apart + 0.5 * cam_width
     away = np.where(np.asarray(near) < 0.0, np.maximum(half + near, 0.0), half)
@@ -34,8 +38,14 @@ def width_beside(width: Value, apart: Value, cam_width: Value) -> Array:
 
 
 def width_for(beside: Value, apart: Value, cam_width: Value) -> Array:
-    """Width (...), m, of a counterweight of which a part `beside` lies beside the cam: inverse of
+    """Width (...), m, of a counterweight of which a given part lies beside the cam: inverse of
     `width_beside`.
+
+    Parameters
+    ----------
+    beside : (...)      this part, m
+    apart : (...)       distance of the middles of counterweight and cam, m, >= 0
+    cam_width : (...)   m
     """
     near, far = apart - 0.5 * cam_width, apart + 0.5 * cam_width
     to_the_cam = np.asarray(beside - near)  # its half, with one face within the cam
@@ -96,7 +106,10 @@ class CounterweightBody:
         """Least distance (...), m, of the counterweight from a follower that moves in the plane of
         the cam.
 
-        half_depth: half of its length along the shaft; lowest: its least distance from the axis.
+        Parameters
+        ----------
+        half_depth : (...)   half of the length of the follower along the shaft, m
+        lowest : (...)       least distance of the follower from the axis of the shaft, m
         """
         aside, above = self.beyond(-half_depth, half_depth), lowest - self.radius
         apart = np.hypot(np.maximum(aside, 0.0), np.maximum(above, 0.0))

@@ -35,6 +35,9 @@ class ExternalForce:
     force: Array
 
     def __post_init__(self) -> None:
+        """Refuse values that are not finite, and angles that do not increase within one turn; the
+        arrays become read-only.
+        """
         theta = finite("follower.external_force", self.theta)
         force = finite("follower.external_force", self.force)
         if force.shape != theta.shape or not theta.size:

@@ -29,7 +29,9 @@ def texts_below(kind: type) -> Mapping[str, str]:
 
 @cache
 def _texts_in(module: str) -> Mapping[str, Mapping[str, str]]:
-    """Docstrings below the fields of the classes of a module."""
+    """First paragraphs of the docstrings below the fields of the classes of a module, by class and
+    field; empty for a module of another package.
+    """
     if not module.startswith("camwright."):
         return {}
     tree = ast.parse(inspect.getsource(sys.modules[module]))

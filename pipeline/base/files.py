@@ -52,7 +52,13 @@ _LONG_KEY = re.compile(rf"(?<![\w-])(?:[\w-]++[ \t]*+\.[ \t]*+){{{_TABLES_DEEP +
 
 
 def inside(folder: Path, name: str, field: str) -> Path:
-    """Path of the file `name`, refused outside `folder`; symbolic links resolved.
+    """Path of a file in a folder, symbolic links resolved.
+
+    Parameters
+    ----------
+    folder : Path   in which it has to be
+    name : str      relative to the folder
+    field : str     key that names it, for messages
 
     Raises
     ------
@@ -196,10 +202,14 @@ _RULES = (
 
 
 def _slip(text: str, message: str) -> tuple[str, str]:
-    """Place of a syntax error in a TOML text, and what is accepted there, from the message of the
-    parser.
+    """Place of a syntax error in a TOML text, and what is accepted there, in words.
 
     Nothing of the text is repeated: a link may make any file of the machine an input.
+
+    Parameters
+    ----------
+    text : str      the TOML text
+    message : str   of the parser
     """
     lines, match = text.split("\n"), _PLACE.search(message)
     if match is not None and match[1]:
@@ -244,7 +254,7 @@ def _is_deeper(tables: dict[str, Any], depth: int) -> bool:
 
 
 def _long_integer(entry: Any) -> int | None:
-    """First integer beyond 64 bits of a table, array or value."""
+    """First integer beyond 64 bits within a table, array or value; None where there is none."""
     if isinstance(entry, int):
         return None if _is_short(entry) else entry
     inner = entry.values() if isinstance(entry, dict) else entry if isinstance(entry, list) else ()
@@ -257,14 +267,20 @@ def _is_short(number: int) -> bool:
 
 
 def locked(path: Path, busy: str) -> IO[str] | None:
-    """Exclusive lock of a file; released on closing or at the end of the process.
+    """Exclusive lock of a file, which is made where it is missing; released on closing or at the
+    end of the process.
 
     None on Windows, which has no such lock. A link is not followed.
+
+    Parameters
+    ----------
+    path : Path   of the file
+    busy : str    message where another process has the lock
 
     Raises
     ------
     ResultError
-        In the words of `busy`, if another process holds it.
+        If another process has the lock.
     OSError
         If it cannot be opened, as a link cannot.
     """
@@ -287,10 +303,15 @@ def locked(path: Path, busy: str) -> IO[str] | None:
 
 
 def write_atomic(path: Path, content: bytes | str, *, durable: bool = True) -> Path:
-    """Write a file in one step, whole or not at all; missing parent folders are created.
+    """Write a file in one step, whole or not at all; missing parent folders are created. Returns
+    its path.
 
-    durable: on the disk when this returns. A file that may be missing or cut short after a loss of
-    power need not wait for it.
+    Parameters
+    ----------
+    path : Path              of the file
+    content : bytes or str   text is written in UTF-8
+    durable : bool           on the disk when this returns; a file that may be missing or cut short
+                             after a loss of power need not wait for it
 
     Raises
     ------

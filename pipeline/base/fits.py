@@ -53,7 +53,9 @@ class Size:
 
     @property
     def bounds(self) -> tuple[str, ...]:
-        """Upper and lower deviation in mm, one text where they are equal; empty: unknown."""
+        """Upper and lower limit deviation as text, mm; one text where they are opposite, such as
+        "±0.02"; empty where they are not known.
+        """
         if self.deviations is None:
             return ()
         lower, upper = (in_unit(each, "mm") for each in self.deviations)
@@ -87,11 +89,13 @@ def size_of(record: Mapping[str, Any]) -> Size:
 
 
 def size_deviations(size: float, fit: BoreFit | KeywayFit) -> Deviations | None:
-    """Limit deviations of an inner size, m; None beyond the 500 mm of the tables.
+    """Limit deviations, m, of an inner size, bore or keyway width, by its tolerance class; None
+    beyond the 500 mm of the tables.
 
     Parameters
     ----------
-    size : float    nominal size, m
+    size : float   nominal size, m
+    fit : str      tolerance class, such as "H7", "JS9" or "P9"
 
     Raises
     ------
@@ -114,7 +118,8 @@ def size_deviations(size: float, fit: BoreFit | KeywayFit) -> Deviations | None:
 
 
 def keyway_depth_deviations(width: float) -> Deviations | None:
-    """Limit deviations of the depth of a keyway of a width, m; None beyond 100 mm.
+    """Limit deviations, m, of the depth of a keyway in a hub, by the width of the keyway, m; None
+    beyond 100 mm.
 
     Raises
     ------

@@ -150,8 +150,10 @@ def value(node: Node, at_place: Resolver, over_turn: Resolver | None = None) -> 
 
     Parameters
     ----------
+    node : Node            root of the tree
     at_place : callable    symbol -> value at the place of the demand
-    over_turn : callable   symbol -> values over the turn, for a mean; None: as at the place
+    over_turn : callable   symbol -> values over the turn, for functions over the turn such as a
+                           mean; None: as at the place
     """
     if node.kind == "number":
         return node.value
@@ -285,7 +287,12 @@ class _Reader:
         raise InputError("formula", self.text, f"an expression, not {text!r}")
 
     def _number(self, text: str) -> Node:
-        """Number, converted to SI where a unit follows it."""
+        """Node of a number, converted to SI where a unit follows it.
+
+        Parameters
+        ----------
+        text : str   digits of the number, already read
+        """
         unit = self._next()[1]
         if self._next()[0] == "name" and unit in _UNITS:
             self.place += 1
@@ -293,8 +300,12 @@ class _Reader:
         return Node("number", text, (), float(text))
 
     def _call(self, text: str) -> Node:
-        """Function with its arguments in parentheses; without these the product that follows is its
-        argument.
+        """Node of a function with its arguments, in parentheses or, without these, the product that
+        follows.
+
+        Parameters
+        ----------
+        text : str   name of the function, already read
         """
         if not self._take("("):  # of the product that follows
             return Node("call", text, (self._product(),))
@@ -341,7 +352,14 @@ class Style(Generic[Text]):
 
 
 def written(node: Node, style: Style[Text], known: Mapping[str, str] | None = None) -> Text:
-    """Expression tree in a style; `known`: text in place of a name, such as its value with unit."""
+    """Expression tree as text in a style, with as few parentheses as it needs.
+
+    Parameters
+    ----------
+    node : Node       root of the tree
+    style : Style     how numbers, names and operations are written
+    known : mapping   text in place of a name, such as its value with unit; None: names as they are
+    """
 
     def bracketed(each: Node, least: int) -> Text:
         """Text of a part, in parentheses where it binds less than `least`; see `_binds`."""
@@ -381,8 +399,13 @@ def written(node: Node, style: Style[Text], known: Mapping[str, str] | None = No
 
 
 def _binds(node: Node, divides: bool) -> int:
-    """How strongly a node binds, as rank from `_SUM` to `_ATOM`: the greater, the fewer parentheses
-    it needs; divides: see `Style`.
+    """How strongly a node binds, as a rank from `_SUM` to `_ATOM`: the greater, the fewer
+    parentheses it needs.
+
+    Parameters
+    ----------
+    node : Node      of an expression tree
+    divides : bool   whether quotients are written as fractions, see `Style`
     """
     if node.kind in ("+", "-", "minus"):
         return _SUM
@@ -399,7 +422,9 @@ _SIGN = {"*": "·", "-": "\N{MINUS SIGN}", "minus": "\N{MINUS SIGN}"}
 
 
 def _letter(name: str) -> tuple[Printed, ...]:
-    """A name in print: ``rho_p'`` is ρ′ with p below, a key or ``R(T)`` itself."""
+    """Name of a formula as it is printed: ``rho_p'`` is ρ′ with p as index; a key or ``R(T)`` as it
+    is.
+    """
     if "." in name or "(" in name:
         return (Printed("name", name),)
     letter, _, below = name.rstrip("'").partition("_")

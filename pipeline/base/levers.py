@@ -164,9 +164,13 @@ PIVOT: tuple[Lever, ...] = (
 
 
 def guide(side: Side, rating: str) -> tuple[Lever, ...]:
-    """Levers of a limit on guide A or B: bush by `rating`, length, overhang, radius, spring.
+    """Levers of a limit on a guide: bush of a better rating, length, overhang, radius of the cam,
+    spring, gentler lift; of the bush of a pivot those of the pivot.
 
-    Of the bush of a pivot: bush, length, radius, spring.
+    Parameters
+    ----------
+    side : str     "a", "b" or "pivot"
+    rating : str   of a bush in the catalogue that lowers the utilisation
     """
     if side == "pivot":
         return (Catalogued(BUSH_PIVOT, rating), *PIVOT)

@@ -204,6 +204,7 @@ class Material(Part):
     name: str = ""
 
     def __post_init__(self) -> None:
+        """Refuse strengths whose temperatures do not ascend from 20 degC."""
         super().__post_init__()
         temperatures = [ROOM, *(each.temperature for each in self.strength_at)]
         for before, after in pairwise(temperatures):

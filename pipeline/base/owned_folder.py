@@ -41,6 +41,7 @@ class OwnedFolder:
     def __init__(
         self, path: Path, ours: re.Pattern[str], what: str, lock: Path | None = None
     ) -> None:
+        """Name a folder; it is locked by `take`. For the parameters see the class."""
         self.path, self._ours, self._what = path, ours, what
         self._whole = lock is not None
         self._lock_file = path / LOCK if lock is None else lock
@@ -130,7 +131,9 @@ class OwnedFolder:
         return name == LOCK or ASIDE.fullmatch(name) is not None
 
     def _sweep(self) -> None:
-        """Delete what a killed process left aside."""
+        """Delete files and folders under temporary names that a killed process left in the
+        folder.
+        """
         aside = [each for each in self.path.rglob(".*.tmp") if ASIDE.fullmatch(each.name)]
         for each in aside:
             if each.is_dir():

@@ -105,6 +105,7 @@ class Bars:
     """Progress bars with percent and remaining time, one per stage; a context manager."""
 
     def __init__(self, console: Console) -> None:
+        """Progress bars printed on `console`, before their first stage."""
         self._console = console
         self._bars = RichProgress(
             TextColumn("{task.description}"),

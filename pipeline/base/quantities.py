@@ -58,6 +58,9 @@ class In:
     def __get_pydantic_core_schema__(
         self, source: type[float], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
+        """Schema by which pydantic reads the field: text with a unit, or a number, into SI within
+        the bounds.
+        """
         from pydantic_core import PydanticCustomError, core_schema
 
         def read(value: object) -> float:
@@ -70,7 +73,11 @@ class In:
         return _nullable(source, core_schema.no_info_plain_validator_function(read))
 
     def read(self, value: object) -> float:
-        """SI value of a number of a case file.
+        """Value of a case file in SI, within the bounds.
+
+        Parameters
+        ----------
+        value : object   text with a unit; a number where the field has no unit
 
         Raises
         ------
@@ -84,12 +91,17 @@ class In:
         return number
 
     def require(self, field: str, value: object) -> None:
-        """Refuse a value in SI that is out of bounds.
+        """Refuse a value that is no number, or out of bounds.
+
+        Parameters
+        ----------
+        field : str      dotted name, for the message
+        value : object   SI
 
         Raises
         ------
         InputError
-            Naming the field, the value in the unit written, and the bounds; NaN included.
+            Naming the field, the value in the unit of the field, and the bounds; NaN included.
         """
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise InputError(field, _text(value), "a number in SI")
@@ -198,7 +210,9 @@ class Count:
         return value
 
     def require(self, field: str, value: object) -> None:
-        """Refuse a value out of bounds; see `In.require`."""
+        """Refuse a value that is no whole number, or out of bounds, by InputError with the name
+        `field`.
+        """
         if isinstance(value, bool) or not isinstance(value, int):
             raise InputError(field, _text(value), "a whole number")
         if not self.at_least <= value <= self.at_most:
@@ -219,6 +233,9 @@ class Characters:
     def __get_pydantic_core_schema__(
         self, source: type[str], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
+        """Schema by which pydantic reads the field: printable text of a number of characters within
+        bounds.
+        """
         from pydantic_core import PydanticCustomError, core_schema
 
         def printable(text: str) -> str:
@@ -232,7 +249,9 @@ class Characters:
         return _nullable(source, core_schema.no_info_after_validator_function(printable, text))
 
     def require(self, field: str, value: object) -> None:
-        """Refuse text that is too short, too long or not printable, as `In.require` does."""
+        """Refuse a value that is no text, too short, too long or not printable, by InputError with
+        the name `field`.
+        """
         if not isinstance(value, str):
             raise InputError(field, _text(value), "text")
         if not self.at_least <= len(value) <= self.at_most:
@@ -350,9 +369,12 @@ class Part:
         return self
 
     def with_values(self, values: Mapping[str, float], table: str = "") -> Self:
-        """Copy with new SI values by their case-file keys; keys of other parts are ignored.
+        """Copy with new values by their case-file keys; keys of other parts are ignored.
 
-        table: key of the part, where it is one of another; "": its own.
+        Parameters
+        ----------
+        values : mapping   SI, by dotted key
+        table : str        key of the part, where it is one of another; "": its own
         """
         known = {f"{table or self.table}.{each.name}": each.name for each in fields(self)}  # type: ignore[arg-type]
         own = {name: getattr(self, name) for name in known.values()}
@@ -384,6 +406,7 @@ class Part:
         )
 
     def __post_init__(self) -> None:
+        """Refuse values out of the bounds of their fields; see the class."""
         for name, rule in _rules_of(type(self)).items():
             value = getattr(self, name)
             if value is not None or not rule.optional:

@@ -70,10 +70,15 @@ def entry_of(source: Source) -> Any:
 
 
 def reworded(entry: Any, words: Callable[[str], str]) -> Any:
-    """Entry of a source (see `source_in`) with its text changed by `words`; whether it confirms the
-    value stays.
+    """Entry of a source, see `source_in`, with its text changed; whether it confirms the value
+    stays.
 
     Plain text stays plain, unless the new one would be read as unconfirmed or confirmed otherwise.
+
+    Parameters
+    ----------
+    entry : object     text, or table of text and `confirmed`
+    words : callable   text -> new text
     """
     source = source_in(entry)
     new = replace(source, text=words(source.text))
@@ -91,7 +96,13 @@ def old_words(tables: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _plain(table: object, key: str = "") -> Iterator[str]:
-    """Sources within a table that are plain texts, not tables; `key`: that of the table."""
+    """Sources within a table of a case that are plain texts, not tables of text and confirmation.
+
+    Parameters
+    ----------
+    table : object   table, list or value
+    key : str        that holds it; "": the whole
+    """
     if isinstance(table, str) and key in _KEYS:
         yield table
     elif isinstance(table, Mapping) and set(table) != _STATED:

@@ -42,11 +42,16 @@ class Excerpt:
 
 
 def spreadsheet(file: Path, excerpt: Excerpt | None = None) -> bytes:
-    """Spreadsheet of a CSV table; equal tables give equal bytes.
+    """Spreadsheet, as bytes of an xlsx file, of a CSV table; equal tables give equal bytes.
 
     The header row stays on the screen and on each page. Numbers are rounded, an unknown one is an
-    empty cell. An `excerpt` is the first sheet, and fits on one page, as do the tables beside it;
-    the whole table follows.
+    empty cell.
+
+    Parameters
+    ----------
+    file : Path         of the table
+    excerpt : Excerpt   first sheet: rows at steps of an angle, which fit on one page, as do the
+                        tables beside it; the whole table follows; None: the whole table alone
 
     Raises
     ------
@@ -71,8 +76,16 @@ def spreadsheet(file: Path, excerpt: Excerpt | None = None) -> bytes:
 
 
 def _add_sheet(book: Workbook, name: str, whole: Table, rows: NDArray[np.intp], pages: int) -> None:
-    """Add a sheet to a workbook with some rows of a table, printed on `pages` pages; 0: as many as
-    it takes.
+    """Add a sheet with some rows of a table to a workbook.
+
+    Parameters
+    ----------
+    book : Workbook     changed
+    name : str          of the sheet
+    whole : Table       the table
+    rows : array (k,)   indices of the rows
+    pages : int         on which it is printed; 0: as many as it takes. On a given number of pages
+                        unknown cells have a border, to be filled in
     """
     sheet = book.add_worksheet(name[:31])
     head = book.add_format({"bold": True, "text_wrap": True, "valign": "top", "bottom": 1})
@@ -105,7 +118,9 @@ def _add_sheet(book: Workbook, name: str, whole: Table, rows: NDArray[np.intp], 
 
 
 def rounded(values: Array, decimals: int | None) -> Array:
-    """Values rounded to decimals, or with None to `DIGITS` digits; no negative zero."""
+    """Values rounded to `decimals` decimals or, where that is None, to `DIGITS` significant digits;
+    no negative zero.
+    """
     if decimals is not None:
         return np.asarray(np.round(values, decimals) + 0.0)
     size = np.abs(values)

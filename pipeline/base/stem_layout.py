@@ -110,8 +110,13 @@ class StemLayout:
         )
 
     def _by_rule(self, thickness: Value, clearance: Value) -> SeatPlace:
-        """Default place of the moving seat: between the guides if the spring has room there, else
-        above guide B; see `seated`.
+        """Default place of the moving seat of the spring: between the guides if the spring has room
+        there, else above guide B; see `seated`.
+
+        Parameters
+        ----------
+        thickness : (...)   of a seat, m
+        clearance : (...)   that the spring needs, m
         """
         between = self.guide_b[0] - self.spring_length + self.lift
         gap = _least(between - self.lift - thickness - self.guide_a[1], self.beside_stem)
@@ -122,10 +127,15 @@ class StemLayout:
         return SeatPlace(np.where(stays, between, above), np.where(stays, gap, free))
 
     def _at(self, height: Value, thickness: Value) -> SeatPlace:
-        """The moving seat at a stated height at maximum lift: below guide A, between the guides, or
-        above guide B.
+        """Place of the moving seat of the spring at a stated height, with the least clearance of
+        the spring: below guide A, between the guides, or above guide B.
 
         Coils that reach a guide pass around it.
+
+        Parameters
+        ----------
+        height : (...)      of the seat over the reference point, at maximum lift, m
+        thickness : (...)   of a seat, m
         """
         low, fixed = height - self.lift - thickness, height - self.lift + self.spring_length
         stem = np.nan if self.stem_length is None else self.stem_length
@@ -155,9 +165,17 @@ class StemLayout:
     def known_gap(
         self, thickness: Value | None, clearance: Value, height: Value | None = None
     ) -> Array:
-        """Least clearance of the spring, m; for unknown seats by the thickest and the thinnest.
+        """Least clearance of the spring (...), m, along the stem and beside it; NaN where it is not
+        known.
 
-        NaN: neither decides, or the length of the stem is not known.
+        Where the thickness of the seats is not known, the thickest and the thinnest decide if both
+        are clear or both are not.
+
+        Parameters
+        ----------
+        thickness : (...) or None   of a seat, m
+        clearance : (...)           that the spring needs, m
+        height : (...) or None      of the moving seat at maximum lift, m; None: its default place
         """
         if thickness is not None:
             return self.seated(thickness, clearance, height).gap

@@ -119,7 +119,13 @@ class Store(Generic[T]):
         return path is not None and path.is_file()
 
     def get(self, key: str, fits: Callable[[T], bool] = _any) -> T | None:
-        """Value of a key; None if it is missing, damaged or of another form."""
+        """Value of a key; None if it is missing, damaged or not of the wanted form.
+
+        Parameters
+        ----------
+        key : str         of the entry
+        fits : callable   value -> whether it has the wanted form
+        """
         path = self.path(key)
         if path is None:
             return None
@@ -167,7 +173,14 @@ class Store(Generic[T]):
             path.unlink(missing_ok=True)
 
     def kept(self, key: str, compute: Callable[[], T], fits: Callable[[T], bool] = _any) -> T:
-        """Value of an entry, or computed and stored; equal in both cases, to the bit.
+        """Value of an entry, or computed and stored where there is none; equal in both cases, to
+        the bit.
+
+        Parameters
+        ----------
+        key : str            of the entry
+        compute : callable   -> value
+        fits : callable      value -> whether a stored one has the wanted form
 
         Raises
         ------
@@ -197,9 +210,15 @@ def key_of(kind: str, inputs: Hashable, modules: tuple[ModuleType, ...] = ()) ->
 
 
 def _make_room(newest: Path, most: int) -> None:
-    """Delete the least recently used entries until the rest is no larger than `most`, bytes.
+    """Delete the least recently used entries of a folder until all are no larger than `most`,
+    bytes; not the newest.
 
     The folder is measured at the first entry of a process and when its own entries fill it.
+
+    Parameters
+    ----------
+    newest : Path   entry just written
+    most : int      bytes of all entries
     """
     place, size = newest.parent, newest.stat().st_size
     if place in _sizes and _sizes[place] + size <= most:

@@ -201,7 +201,11 @@ class Tabled(Displayed, ABC):
 
 
 def table(values: Values) -> Table:
-    """Table from SI values, converted to the unit of each column.
+    """Table from columns of SI values, converted to the unit of each column.
+
+    Parameters
+    ----------
+    values : mapping   values (n,) by column
 
     Raises
     ------
@@ -263,8 +267,18 @@ def _in_unit(column: Column, values: Array) -> Array:
 
 
 def _parsed(path: Path, header: str, cells: Sequence[str]) -> Array:
-    """Numbers of the cells of a column, NaN for an empty one; ResultError with file and line for
-    any other text.
+    """Numbers (n,) of the cells of a column, NaN for an empty one.
+
+    Parameters
+    ----------
+    path : Path        of the file, for messages
+    header : str       of the column, for messages
+    cells : sequence   texts of the rows
+
+    Raises
+    ------
+    ResultError
+        With file and line, for a cell that is neither a number nor empty.
     """
     try:
         _require_digits("".join(cells))
@@ -310,8 +324,8 @@ def _texts(values: Array) -> list[str]:
 
 
 def _range(cells: Cells) -> tuple[str, str]:
-    """Least and greatest value of a column as text, or its first and last text; "" where none is
-    known.
+    """Least and greatest value of a column of numbers as texts, NaN left out, or the first and last
+    of texts; "" where none is known.
     """
     if cells.dtype.kind != "f":
         names = cells.tolist()

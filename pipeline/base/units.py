@@ -120,7 +120,9 @@ _ACCEPTED = {
 
 @lru_cache(maxsize=512)
 def _unit(text: str) -> _Unit:
-    """Unit of a text such as ``kN/m`` or ``mm^2``; ValueError if it is no unit."""
+    """Unit of a text such as ``kN/m`` or ``mm^2``: size in SI and powers of the dimensions;
+    ValueError if it is no unit.
+    """
     if text in _ALONE:
         return _ALONE[text]
     text = _POWER.sub("^", text)
@@ -236,7 +238,7 @@ def parse(text: object, unit: str, field: str) -> float:
 
 
 def with_unit(text: str, unit: str) -> str:
-    """The text of a quantity as typed; a bare number with its unit."""
+    """Text of a quantity as typed; of a number without a unit with `unit`."""
     try:
         float(text)
     except ValueError:
@@ -267,7 +269,9 @@ def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.forma
 
 
 def rounded(text: str, digits: int = 4) -> str:
-    """Text with its number rounded; unchanged where it has no more digits, or is no number."""
+    """Text of a quantity with its number rounded to `digits` significant digits; unchanged where it
+    has no more digits, is a fraction or no number.
+    """
     match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST_TEXT else None
     number = Decimal(match.group(1)) if match else Decimal("NaN")
     if (
@@ -281,7 +285,9 @@ def rounded(text: str, digits: int = 4) -> str:
 
 
 def _plain(number: Decimal) -> str:
-    """Number as text, without an exponent where that stays readable: 24200, 0.0055, 2.1e-07."""
+    """Decimal number as text, without an exponent where it stays readable: 24200, 0.0055,
+    2.1e-07.
+    """
     if number == 0:
         return "0"
     exponent = number.adjusted()

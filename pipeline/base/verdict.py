@@ -116,7 +116,9 @@ def error_of_worst(one: Judged) -> float:
 
 
 def is_bound(one: Judged) -> bool:
-    """Whether the demand is a bound that keeps the limit and so proves nothing."""
+    """Whether the demand is a bound, as data are missing, that is within the limit and so proves
+    nothing.
+    """
     demand, limit = worst(one), one.limit
     if not one.without or demand is None or limit is None:
         return bool(one.without)
@@ -293,7 +295,9 @@ def failing(checks: Iterable[AnyRanked], fail_on: str) -> tuple[AnyRanked, ...]:
 
 
 def _counts(one: Ranked, fail_on: str) -> bool:
-    """Whether a check decides the exit code by not passing, at a level of `FAIL_ON`."""
+    """Whether a check that does not pass decides the exit code at a level of `FAIL_ON`: "must",
+    required checks; "open", optional ones without data as well; "any", all; "never", none.
+    """
     if fail_on == "never" or one.status in ("pass", "waived"):
         return False
     if one.must_have or fail_on == "any":

@@ -110,7 +110,7 @@ class _Context(SpawnContext):
 
 @contextmanager
 def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Pool of spawned processes; an error cancels the waiting tasks.
+    """Context manager: pool of `workers` spawned processes; an error cancels the waiting tasks.
 
     An interrupt, or the death of a process, ends them at once: of what they solve nothing is read
     any more.
@@ -204,7 +204,9 @@ class Crew:
                 self.submit(_imported, module)
 
     def submit(self, function: Callable[..., Any], *arguments: object) -> PendingCall:
-        """Call a function of the package in a worker; with one process, on reading the result."""
+        """Call a function of the package with its arguments in a worker process; where there is one
+        process, in this one when the result is read.
+        """
         if self.workers <= 1:
             return _Later(partial(function, *arguments))
         if self._pool is None:

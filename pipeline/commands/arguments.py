@@ -151,12 +151,17 @@ def _argument(
     name: str, group: str, hint: Any, *, required: bool, by_place: bool = False,
     words: Words | None = None,
 ) -> Argument:  # fmt: skip
-    """Argument of a parameter or field `name` by its type hint: ``Annotated[..., Words]``, a list
-    for one that may be repeated, with or without None.
+    """Argument of a command from a parameter or field by its type hint: ``Annotated[..., Words]``,
+    a list for one that may be repeated, with or without None.
 
-    group : parameter that takes the group it belongs to, "" without one. by_place : whether it is
-    stated by its place, not as option. words : what is printed on it, where the hint has no
-    `Words`.
+    Parameters
+    ----------
+    name : str        of the parameter or field
+    group : str       parameter that takes the group of the field; "": no group
+    hint : object     type annotation
+    required : bool   whether it has no default
+    by_place : bool   whether it is stated by its place, not as an option
+    words : Words     what is printed on it, where the hint has no `Words`
     """
     if get_origin(hint) is NotRequired:
         (hint,) = get_args(hint)
@@ -206,8 +211,18 @@ def read_arguments(command: Command, texts: Sequence[str]) -> dict[str, Any]:
 
 
 def _stated(texts: Sequence[str], accepted: Sequence[Argument]) -> dict[str, list[str]]:
-    """Texts of each argument and option that the command line has, by its name as typed; "" for a
-    flag.
+    """Texts of each argument and option on a command line, by its name as typed; the name itself
+    for a flag.
+
+    Parameters
+    ----------
+    texts : sequence      words of the command line after the command
+    accepted : sequence   arguments and options of the command
+
+    Raises
+    ------
+    InputError
+        For an unknown option, a value missing or too many, or an argument too many.
     """
     options = {each.typed: each for each in accepted if each.is_option}
     stated: dict[str, list[str]] = {}
@@ -266,7 +281,15 @@ def _phrase(sentence: str) -> str:
 
 
 def option_named(error: InputError, command: Command, texts: Sequence[str]) -> InputError:
-    """An error in a field of an option group, named by its option; any other error unchanged."""
+    """Error in a field of an option group as one of the option with the text typed; any other error
+    unchanged.
+
+    Parameters
+    ----------
+    error : InputError   of the field
+    command : Command    whose option it may be
+    texts : sequence     words of the command line after the command
+    """
     for each in arguments_of(command):
         if each.group and each.parameter == error.field:
             stated = _stated(texts, arguments_of(command)).get(each.typed, [str(error.value)])
@@ -275,7 +298,14 @@ def option_named(error: InputError, command: Command, texts: Sequence[str]) -> I
 
 
 def help_of(path: str, command: Command) -> str:
-    """Usage, purpose and options of a command, with an example."""
+    """Help text of a command: usage, purpose, options and an example, from its signature and
+    docstring.
+
+    Parameters
+    ----------
+    path : str          words of the command
+    command : Command   its function
+    """
     accepted = arguments_of(command)
     needed = [each.usage for each in accepted if each.required or not each.is_option]
     more = " [OPTIONS]" if any(each.is_option and not each.required for each in accepted) else ""

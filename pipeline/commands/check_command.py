@@ -165,7 +165,9 @@ def remedies(
 
 
 def _refuse_for_several(count: int, baseline: Path | None, missing: bool, recompute: bool) -> None:
-    """Refuse the options that serve one run or case."""
+    """Refuse, by InputError, options of `check` that serve one run or case alone, as there are
+    `count` of them.
+    """
     options = {"--baseline": baseline, "--missing": missing, "--recompute": recompute}
     for option, value in options.items():
         if value:
@@ -196,7 +198,15 @@ def _show_documents(judged: Sequence[_Judged]) -> None:
 def _show_one(
     target: Path, document: dict[str, Any], signatures: Sequence[Signature], whole: bool
 ) -> None:
-    """Print verdict and checks of one run or case, and who signed it."""
+    """Print verdict and checks of one run or case, and who signed it.
+
+    Parameters
+    ----------
+    target : Path           run folder or case file
+    document : dict         as of `camwright check --json`
+    signatures : sequence   that are valid
+    whole : bool            all checks; else the failures alone
+    """
     from camwright.pipeline.results.verdict_summary import Places
 
     places = Places(str(target), str(_case_of(target)), page_of(target))
@@ -262,13 +272,17 @@ def _judged(
     remedies: bool = False,
     early: Callable[[Iterable[str]], None] = _unshown,
 ) -> _Judged:
-    """Checks of a run folder or of a preview of a case file.
+    """Checks of a run folder, or of the preview of a case file, with exit code and JUnit suite.
 
     Parameters
     ----------
-    suite : str       name of the JUnit suite; "": that of the case
-    remedies : bool   seek the remedies of a case
-    early : callable  takes lines on what is known of a case before its checks
+    target : Path      run folder or case file
+    only : sequence    patterns of the ids of checks; empty: all
+    fail_on : str      checks that decide the exit code, of `FAIL_ON`
+    baseline : Path    run folder to compare with; None: none
+    suite : str        name of the JUnit suite; "": that of the case
+    remedies : bool    seek the remedies of a case
+    early : callable   takes lines on what is known of a case before its checks
 
     Raises
     ------
@@ -316,6 +330,13 @@ def _of_several(
 ) -> _Judged:
     """Checks of one of several runs and cases; an error becomes its row, so that the others are
     still judged.
+
+    Parameters
+    ----------
+    target : Path     run folder or case file
+    only : sequence   patterns of the ids of checks; empty: all
+    fail_on : str     checks that decide the exit code, of `FAIL_ON`
+    keys : mapping    trusted keys by which signatures are verified; None: not verified
     """
     from camwright.pipeline.results.junit_report import unread_suite
 
@@ -335,7 +356,9 @@ def _of_several(
 
 
 def _comparable(folder: Path, only: Iterable[str]) -> list[CheckRecord]:
-    """Checks of a baseline run that fit a pattern; AlteredError if it is not as recorded."""
+    """Checks of the baseline run in a folder whose ids fit a pattern of `only`; AlteredError if the
+    run is not as recorded.
+    """
     from camwright.pipeline.results.check_report import fits
     from camwright.pipeline.results.run_reader import read_verdict
     from camwright.pipeline.results.signoff import require_recorded
@@ -359,12 +382,12 @@ class _Record(NamedTuple):
 
 
 def _recorded(target: Path, keys: Mapping[str, TrustedKey] | None) -> _Record:
-    """What the record of a run folder says of its files and signatures; each difference is printed.
-
-    Empty for a case file.
+    """Faults of a run folder by its sign-off record, and valid signatures; each difference is
+    printed. Empty for a case file.
 
     Parameters
     ----------
+    target : Path    run folder or case file
     keys : mapping   trusted keys, by which its signatures are verified as well; None: not verified
     """
     if not target.is_dir():
@@ -442,11 +465,13 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
 
 
 def recomputed(folder: Path, **options: Any) -> Recomputation:
-    """Recomputation of a run, its pages drawn again and compared too.
+    """Recomputation of a run from its case and lift, compared with its folder; its pages are drawn
+    again and compared, too.
 
     Parameters
     ----------
-    options   see `recompute`
+    folder : Path   of the run
+    options         keyword arguments of `recompute`
     """
     from dataclasses import replace
     from tempfile import TemporaryDirectory
@@ -479,7 +504,9 @@ def recomputed(folder: Path, **options: Any) -> Recomputation:
 
 
 def _checked_run(folder: Path) -> tuple[dict[str, Any], Clock]:
-    """Checks of a run folder, with its clock of ``run.json``."""
+    """Document with the checks of a run folder, compared with its hashes, and the clock of
+    ``run.json``.
+    """
     from camwright.pipeline.results.junit_report import Clock
     from camwright.pipeline.results.model_limits import limitations
     from camwright.pipeline.results.run_reader import read_summary, read_verdict, verify_run
@@ -491,7 +518,15 @@ def _checked_run(folder: Path) -> tuple[dict[str, Any], Clock]:
 def _checked_case(
     path: Path, remedies: bool, early: Callable[[Iterable[str]], None]
 ) -> tuple[dict[str, Any], Clock]:
-    """Checks of the preview of a case, with the clock of the preview."""
+    """Document with the checks of the preview of a case, and the clock of the preview; warnings are
+    printed.
+
+    Parameters
+    ----------
+    path : Path        case file
+    remedies : bool    whether remedies of failed checks are sought
+    early : callable   takes lines on torque and figures before the checks are known
+    """
     from camwright.pipeline.base.progress import utc
     from camwright.pipeline.base.source import old_words
     from camwright.pipeline.base.verdict import governing_id

@@ -74,7 +74,9 @@ _WIDTH = 39  # of the usage of a command
 
 
 def tree_text(group: str = "") -> str:
-    """The tree of all commands on a screen of 24 lines, or that of one first word."""
+    """Text of the tree of all commands on a screen of 24 lines, or of the commands of one group, a
+    first word.
+    """
     lines = [
         f"  {f'{path} {entry.usage}':<{_WIDTH}} {entry.purpose}"
         for path, entry in TREE.items()
@@ -92,7 +94,11 @@ def tree_text(group: str = "") -> str:
 
 
 def split_path(words: Sequence[str]) -> tuple[str, Sequence[str]]:
-    """Words of a command, and those that follow.
+    """Words of a command, joined, and the words of the command line that follow.
+
+    Parameters
+    ----------
+    words : sequence   of the command line, at least one; two after the name of a group
 
     Raises
     ------
@@ -120,11 +126,17 @@ class RenamedError(CamError):
 
 
 def refuse_former(words: Sequence[str]) -> None:
-    """Refuse a former name of a command: the table ``[commands]`` of ``renamed.toml``.
+    """Refuse a former name of a command, by the table ``[commands]`` of ``renamed.toml``; nothing
+    happens for any other name.
+
+    Parameters
+    ----------
+    words : sequence   of the command line
 
     Raises
     ------
     RenamedError
+        With the line to type.
     """
     from camwright.pipeline.case.renamed_keys import renamed_names
 

@@ -63,8 +63,8 @@ def _open_sources() -> str:
 
 
 def _explained(word: str) -> str:
-    """Text on the keys, table or check of a word; InputError with the closest ones if there is
-    none.
+    """Text that explains a word: keys or table of the case file, check, or a kind that is not
+    supported; InputError with the closest ones if it is none of these.
     """
     from camwright.pipeline.base.missing_kinds import missing_kinds
     from camwright.pipeline.case.keys import keys_at
@@ -81,7 +81,14 @@ def _explained(word: str) -> str:
 
 
 def _of_keys(word: str, keys: Sequence[Key]) -> list[str]:
-    """Texts on the keys at a path: one where they agree in all tables that may stand there."""
+    """Texts on the keys at a path of the case file: one for keys of several tables that accept the
+    same, with the same default.
+
+    Parameters
+    ----------
+    word : str        the path as typed
+    keys : sequence   at this path, one per table that may stand there
+    """
     kinds: dict[tuple[str, str], list[Key]] = {}
     for key in keys:
         kinds.setdefault((key.accepted, key.default), []).append(key)

@@ -68,8 +68,13 @@ def _whole(point: ChosenDesign) -> str:
 
 
 def _show(document: DesignDocument, out: Path) -> None:
-    """Print the torque, the front, the chosen design or the limits in conflict, and what was
-    assumed.
+    """Print the result of a machine design: torque, front, chosen design with what was assumed, or
+    the limits in conflict with relaxations.
+
+    Parameters
+    ----------
+    document : dict   contents of ``design.json``
+    out : Path        case file of the chosen design
     """
     demand = document["torque"]
     stdout.print(

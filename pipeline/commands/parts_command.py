@@ -66,8 +66,12 @@ def parts(
 
 
 def _show(document: RedesignDocument, folder: Path) -> None:
-    """Print what is not exchanged, the front as a table, what was tried and, without a front,
-    why.
+    """Print the result of a redesign: front as a table, what was tried and, without a front, why.
+
+    Parameters
+    ----------
+    document : dict   contents of ``redesign.json``
+    folder : Path     with the case files of the front
     """
     from rich.table import Table
 

@@ -119,7 +119,19 @@ def run(
 
 
 def _finished(out: Path, sha256: str, depth: str) -> bool:
-    """Whether a folder holds the finished run of this case, depth and these versions."""
+    """Whether a folder holds a finished run of a case, at a depth, by the versions of this program.
+
+    Parameters
+    ----------
+    out : Path     run folder
+    sha256 : str   hash of the input of the case
+    depth : str    word of the depth
+
+    Raises
+    ------
+    AlteredError
+        If the run is not as recorded.
+    """
     from camwright.pipeline.results.folder_exchange import complete_exchange
     from camwright.pipeline.results.run_folder import versions
     from camwright.pipeline.results.run_reader import read_summary

@@ -150,8 +150,13 @@ def show(document: dict[str, Any], places: Places) -> None:
 
 
 def show_failures(document: dict[str, Any], places: Places) -> None:
-    """Print failed checks, missing data, changes against a baseline, verdict, scope and path of the
-    report.
+    """Print the summary of a run or case: failed checks, missing data, changes against a baseline,
+    verdict, scope, path of the report, next step.
+
+    Parameters
+    ----------
+    document : dict   as of `camwright check --json`
+    places : Places   names of case, run and page, for the text
     """
     from camwright.pipeline.base.verdict import within_depth
     from camwright.pipeline.results import verdict_summary
@@ -177,7 +182,14 @@ def show_failures(document: dict[str, Any], places: Places) -> None:
 
 
 def show_all(document: dict[str, Any], places: Places) -> None:
-    """Print checks and evidence by utilisation, remarks, verdict, scope, path of the report."""
+    """Print the whole result of a run or case: table of checks and of evidence by utilisation,
+    remarks, verdict, scope, path of the report, next step.
+
+    Parameters
+    ----------
+    document : dict   as of `camwright check --json`
+    places : Places   names of case, run and page, for the text
+    """
     from camwright.pipeline.base.verdict import within_depth
     from camwright.pipeline.results.check_records import of_records, records_of
     from camwright.pipeline.results.check_report import (
