@@ -34,6 +34,9 @@ class KeptResult(Generic[Owner, Result]):
     @overload
     def __get__(self, owner: Owner, kind: type) -> Result: ...
     def __get__(self, owner: Owner | None, kind: type) -> Result | KeptResult[Owner, Result]:
+        """Result of the property for its owner, computed on first use; of the class the property
+        itself.
+        """
         if owner is None:
             return self
         if self.name not in owner.results:

@@ -94,6 +94,9 @@ class Table(Displayed):
     @overload
     def __getitem__(self, header: str) -> Array: ...
     def __getitem__(self, header: str) -> Cells:
+        """Values (n,) of a column by its header, in the unit of the header; ResultError where the
+        table lacks it.
+        """
         if header == LOAD_CASE.header and self.rows_of is not None:
             return self.rows_of
         if header not in self.numbers:

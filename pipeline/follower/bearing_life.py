@@ -40,11 +40,16 @@ _SLIM = 35.0 / 108.0  # power of the roller diameter: 29/27 - 3/4
 
 
 def rating_bound(outer_diameter: Value, width: Value) -> Value:
-    """Upper bound of the dynamic rating C of any bearing of a size (...), N; lengths in m.
+    """Upper bound of the dynamic load rating C of any bearing of a size (...), N.
 
     b_m f_c L^(7/9) Z^(3/4) D_w^(29/27) of a full complement of Z = pi (D - D_w)/D_w rollers as long
-    as the bearing, of the diameter D_w with the greatest rating, times 1.5; ball bearings, with
-    1.3 * 60 (i cos(a))^0.7 Z^(2/3) D_w^1.8, are below.
+    as the bearing, of the diameter D_w with the greatest rating, times 1.5; ball bearings, with 1.3
+    * 60 (i cos(a))^0.7 Z^(2/3) D_w^1.8, are below.
+
+    Parameters
+    ----------
+    outer_diameter : (...)   D, m
+    width : (...)            L, m
 
     References
     ----------
@@ -195,8 +200,14 @@ _NEWTON_STEPS = 60
 
 
 def _light_grease(speed: Values, outer_diameter: Value, temperature: float) -> Values:
-    """log10 of the life of the grease in h (...), at low load, by speed (...), rpm, outer diameter,
-    m, and temperature, K; NaN outside the range of the curves.
+    """log10 of the life of grease in h (...), at low load; NaN outside the range of the curves, see
+    `grease_life`.
+
+    Parameters
+    ----------
+    speed : array (...)      n, rpm
+    outer_diameter : (...)   D, m
+    temperature : float      of the bearing, K
     """
     size = 1e3 * outer_diameter * speed
     factor = np.where(np.real(size) > 125e3, size, 125e3)
@@ -215,16 +226,20 @@ def grease_load_share(
     *,
     unbounded: bool = False,
 ) -> Values:
-    """Greatest P/C (...) at which the grease reaches a life, within the range of the estimate.
+    """Greatest equivalent load over dynamic load rating, P/C (...), at which the grease reaches a
+    life, within the range of the estimate.
 
     NaN where no load reaches the life, or speed and temperature are outside the range; see
     `grease_life`.
 
     Parameters
     ----------
-    life : float   s, > 0
-    speed : array (...)   rpm, > 0
-    unbounded : bool      of any load; NaN where speed or temperature is outside the range
+    life : float             s, > 0
+    speed : array (...)      rpm, > 0
+    outer_diameter : float   of the bearing, m
+    temperature : float      of the bearing, K
+    unbounded : bool         the load that gives the life by the formula, also beyond its range of
+                             P/C; NaN where speed or temperature is outside the range
     """
     light = _light_grease(speed, outer_diameter, temperature)
     share = _LIGHT_LOAD + (light - log(life / 3600.0) / log(10.0)) / _LOSS

@@ -46,10 +46,12 @@ class Ring:
         return self.modulus * self.width * self.thickness**3 / 12.0
 
     def stress_inside(self, moment: Array, hoop: Array) -> Array:
-        """Circumferential stress at the inner radius (...), Pa, of a moment (...), N m, and a hoop
-        force (...), N; as a curved bar.
+        """Circumferential stress at the inner radius (...), Pa, as of a curved bar.
 
-        A positive moment puts the inner radius in tension.
+        Parameters
+        ----------
+        moment : array (...)   N m; positive: the inner radius is in tension
+        hoop : array (...)     hoop force, N, tension positive
 
         References
         ----------
@@ -104,10 +106,15 @@ class RingBending:
 
 
 def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
-    """Goodman's equivalent fully reversed amplitude (...), Pa, of amplitude and mean stress (...),
-    Pa; infinite where the mean exceeds the tensile strength, Pa.
+    """Goodman's equivalent fully reversed amplitude (...), Pa, of a stress that varies; infinite
+    where the mean reaches the tensile strength.
 
     A compressive mean stress counts as zero; NaN where an input is.
+
+    Parameters
+    ----------
+    amplitude, mean : arrays (...)   of the stress, Pa
+    tensile_strength : float         Pa
 
     References
     ----------
@@ -120,11 +127,18 @@ def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
 
 
 def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float) -> float:
-    """Estimated secant stiffness of a ball between its raceways, N/m, under a force, N, with its
-    diameter, m, and Young's modulus, Pa.
+    """Estimated secant stiffness of a ball between its two raceways, N/m.
 
-    Each contact as ball on flat, d = (9 F^2/(16 E*^2 R))^(1/3), times a factor 1.3 for the
-    osculation of the grooves (recalled, verify); the bending of the ring is insensitive to it.
+    Each contact as ball on flat, d = (9 F^2/(16 E*^2 R))^(1/3), times a factor 1.3 on the stiffness
+    for the osculation of the grooves (recalled, verify); the bending of the ring is insensitive to
+    it.
+
+    Parameters
+    ----------
+    force : float      F on the ball, N
+    diameter : float   of the ball, m
+    modulus : float    Young's modulus of ball and raceways, Pa
+    poisson : float    their Poisson's ratio
 
     References
     ----------

@@ -87,8 +87,15 @@ class RingElements:
 
 
 def _nodes(basis: Basis, radius: float, sections: int) -> tuple[NDArray[np.intp], Array]:
-    """Degrees of freedom of the nodes of each section, (sections, 2, nodes), x and y, the nodes
-    from inside outwards, and heights of the nodes over the mean radius (sections, nodes), m.
+    """Degrees of freedom of the nodes of each section of a ring, (sections, 2, nodes), x and y, the
+    nodes from inside outwards; and heights of these nodes over the mean radius (sections, nodes),
+    m.
+
+    Parameters
+    ----------
+    basis : Basis    of the finite elements of the ring
+    radius : float   mean radius of the ring, m
+    sections : int   at equal angles
     """
     angle = np.arctan2(*basis.doflocs[::-1]) / FULL_TURN * sections
     height = np.hypot(*basis.doflocs) - radius
@@ -189,8 +196,14 @@ def _solved_at_position(
 
 
 def annulus(radius: float, thickness: float, sections: int) -> MeshQuad2:
-    """Mesh of a closed ring of curved quadratic quadrilaterals, `sections` around and two over the
-    thickness; radius : mean, m.
+    """Mesh of a closed ring about the origin, of curved quadratic quadrilaterals, two over the
+    thickness.
+
+    Parameters
+    ----------
+    radius : float      mean radius, m
+    thickness : float   m
+    sections : int      elements around the ring
     """
     from skfem import MeshQuad, MeshQuad2
 

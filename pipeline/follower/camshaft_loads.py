@@ -203,10 +203,15 @@ def impact(
 
 
 def _force(rotor: Rotor, place: Array, moving: Array, push: Callable[[Array], Array]) -> float:
-    """Greatest force on the teeth, N, from the meeting of the flanks until they part.
+    """Greatest force on the gear teeth, N, of an impact, from the meeting of the flanks until they
+    part; by the two modes of gear and cam on their shaft.
 
-    place, moving : (2,), angle, rad, and speed, rad/s, of gear and cam at the meeting
-    push : torque on the cam, N m, at times (n,), s
+    Parameters
+    ----------
+    rotor : Rotor         inertias and stiffnesses
+    place : array (2,)    angles of gear and cam at the meeting, rad
+    moving : array (2,)   their speeds at the meeting, rad/s
+    push : callable       times (n,), s -> torque on the cam (n,), N m
     """
     root = np.sqrt([rotor.gear, rotor.cam])
     teeth = rotor.mesh * rotor.radius**2
@@ -227,11 +232,17 @@ def _force(rotor: Rotor, place: Array, moving: Array, push: Callable[[Array], Ar
 
 
 def _swing(time: Array, push: Array, frequency: float, damping: float = 0.0) -> tuple[Array, Array]:
-    """Displacement and speed (n,) at times (n,), s, of an oscillator that starts at rest, under a
-    push per mass (n,).
+    """Displacement and speed (n,) of an oscillator of unit mass that starts at rest under a varying
+    force.
 
-    frequency: rad/s, undamped; damping: share of the critical. A swing too fast for the steps
-    follows the push.
+    A swing too fast for the steps of time follows the force.
+
+    Parameters
+    ----------
+    time : array (n,)   equal steps from 0, s
+    push : array (n,)   force over mass
+    frequency : float   undamped natural frequency, rad/s
+    damping : float     share of the critical damping
     """
     if frequency * time[1] > _FASTEST:
         return push / frequency**2, np.zeros(time.size)
@@ -303,13 +314,16 @@ class CamshaftGear(Part):
     source: TableSource = NO_SOURCE
 
     def known_backlash(self, radius: float) -> float:
-        """Backlash along the pitch circle, m, stated or the usual one of a gear with a pitch
-        radius, m.
+        """Backlash of the gear along the pitch circle, m: as stated, else a usual one by its size.
+
+        Parameters
+        ----------
+        radius : float   of the pitch circle, m
 
         References
         ----------
-        ANSI/AGMA 2002-B88, least recommended backlash (second-hand, verify); 3 to 6 % of the
-        module (Novexa) is less.
+        ANSI/AGMA 2002-B88, least recommended backlash (second-hand, verify); 3 to 6 % of the module
+        (Novexa) is less.
         """
         if self.backlash is not None:
             return self.backlash
@@ -560,10 +574,14 @@ def shaft_loads(
 
 
 def gear_force(torque: Array, shaft: Camshaft) -> Array:
-    """Tooth force on the gear (2, ...), N, in the engine frame, at cam torques (...), N m, with the
-    drag added.
+    """Tooth force on the gear of the camshaft (2, ...), N, in the engine frame.
 
-    The tangential force supplies the torque; the radial force separates the gears.
+    The tangential force supplies torque and drag; the radial force separates the gears.
+
+    Parameters
+    ----------
+    torque : array (...)   on the cam, N m
+    shaft : Camshaft       gear radius, mesh and pressure angle, drag
     """
     tooth = (torque + shaft.drag) / shaft.gear_radius
     outward = np.array([np.cos(shaft.mesh_angle), np.sin(shaft.mesh_angle)])
@@ -662,7 +680,17 @@ def less_bore(
     width: float,
     density: float,
 ) -> Unbalance:
-    """Mass and unbalance of an area, m2, and its first moment (2,), m3, less bore and keyway."""
+    """Mass and unbalance of the cam: of the area within its contour, less bore and keyway.
+
+    Parameters
+    ----------
+    area : float          within the contour, m2
+    moment : array (2,)   its first moment about the cam axis, m3
+    bore_radius : float   m
+    keyway : KeywayLike   in the bore; None: none
+    width : float         of the cam, m
+    density : float       kg/m3
+    """
     area -= np.pi * bore_radius**2
     if keyway is not None:
         cut = keyway_cut(bore_radius, keyway.width, keyway.depth)
@@ -680,8 +708,14 @@ class KeywayCut(NamedTuple):
 
 
 def keyway_cut(bore: Value, width: float, depth: float) -> KeywayCut:
-    """Area, m2, and first moment about the cam axis, m3, (...) of a keyway beyond a bore radius
-    (...), m; width and depth, m.
+    """Area of a keyway outside the bore (...), m2, and its first moment about the cam axis (...),
+    m3.
+
+    Parameters
+    ----------
+    bore : (...)    radius of the bore, m
+    width : float   of the keyway, m
+    depth : float   of its floor below the top of the bore, m
     """
     half, floor = 0.5 * width, bore + depth
     chord = np.sqrt(bore**2 - half**2)
@@ -705,17 +739,21 @@ def counter_hole(
     wall: float,
     keyway_depth: float = 0.0,
 ) -> CounterHole:
-    """Smallest balancing hole, as far out as the wall to the contour permits.
+    """Smallest hole that balances a cam, as far out on its heavy side as the wall to the contour
+    permits.
 
     Parameters
     ----------
-    wall : float           minimum thickness between hole and contour or bore, m, > 0
-    keyway_depth : float   added to the bore radius, m
+    contour : Contour       of the cam
+    unbalance : Unbalance   without the hole
+    bore_radius : float     m
+    wall : float            minimum thickness between hole and contour or bore, m, > 0
+    keyway_depth : float    added to the bore radius, m
 
     Raises
     ------
     GeometryError
-        If no such hole fits.
+        If no such hole fits, or the cam has no unbalance.
     """
     if not 0.0 < wall < np.inf:
         raise InputError("cam.wall", wall, "> 0 m")
@@ -752,10 +790,13 @@ def greatest_hole(
     wall: float,
     keyway_depth: float = 0.0,
 ) -> CounterHole:
-    """Hole that removes the most unbalance where none balances fully.
+    """Hole in the heavy side of a cam that removes the most unbalance, where none balances fully.
 
     Parameters
     ----------
+    contour : Contour            of the cam
+    unbalance : Unbalance        without the hole
+    bore_radius : float          m
     wall, keyway_depth : float   as for `counter_hole`
 
     Raises

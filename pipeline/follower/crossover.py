@@ -99,6 +99,15 @@ class _Turn(NamedTuple):
         return float((1.0 - share) * values[k % count] + share * values[(k + 1) % count])
 
     def landings(self) -> tuple[Landing, ...]:
+        """Flights of the roller through the clearance with their landings, from the greatest force
+        on over a turn; also those by which it rebounds where the force has not yet turned towards
+        the wall.
+
+        Raises
+        ------
+        InputError
+            If there are more than `_LANDINGS_MAX`.
+        """
         size = np.abs(self.force)
         count, begin = size.size, int(size.argmax())
         wall = INNER if self.force[begin] > 0.0 else OUTER
@@ -125,7 +134,16 @@ class _Turn(NamedTuple):
         return after + (angle / FULL_TURN * count - after) % count
 
     def _leaves(self, wall: float, index: float, end: int, least: float) -> float | None:
-        """Place at which the force changes its sign for good; None: not before the end."""
+        """Index of the turn, with its fraction, at which the force on the roller changes its sign
+        for good, so that it leaves its wall; None: not before the end.
+
+        Parameters
+        ----------
+        wall : float    on which the roller runs, `INNER` or `OUTER`
+        index : float   place of the turn, in steps, from which on
+        end : int       last index
+        least : float   force towards the other wall that counts, N
+        """
         count = self.force.size
         away = -wall * self.force[np.arange(floor(index) + 1, end + 1) % count]
         beyond = np.flatnonzero(away > least)
@@ -139,7 +157,14 @@ class _Turn(NamedTuple):
         return max(index, floor(index) + 1 + k + float(share))
 
     def _flown(self, start: float, wall: float) -> Landing:
-        """Flight from a wall at an index of the turn."""
+        """Flight of the roller from a wall, with its landing; without one within a turn the landing
+        is NaN.
+
+        Parameters
+        ----------
+        start : float   place of the turn, in steps, at which it leaves
+        wall : float    that it leaves, `INNER` or `OUTER`
+        """
         count, index, position, speed = self.force.size, start, 0.0, 0.0
         if wall == OUTER:
             k = floor(index)
@@ -156,7 +181,15 @@ class _Turn(NamedTuple):
         return Landing(turned, nan, wall, wall, inf, nan, nan)
 
     def _arc(self, index: float, position: float, speed: float) -> _Passage:
-        """Motion from an index to the end of its step."""
+        """Motion of the roller in flight from a place within a step of the turn to the end of the
+        step, with linear acceleration.
+
+        Parameters
+        ----------
+        index : float      place of the turn, in steps
+        position : float   of the roller there, from the inner wall, m
+        speed : float      there, m/s
+        """
         end_of_step = floor(index) + 1.0
         span = (end_of_step - index) * self.step
         before, after = self.at(self.force, index), self.at(self.force, end_of_step)
@@ -173,6 +206,16 @@ class _Turn(NamedTuple):
     def _landed(
         self, start: float, index: float, wall: float, side: float, arc: _Passage
     ) -> Landing:
+        """Landing of the roller within a step of the turn, by bisection.
+
+        Parameters
+        ----------
+        start : float    place of the turn, in steps, at which it left its wall
+        index : float    begin of the motion within the step
+        wall : float     that it left
+        side : float     wall on which it lands
+        arc : _Passage   motion to the end of the step
+        """
         low, high = 0.0, 1.0
         for _ in range(_LANDING_BISECTIONS):
             middle = 0.5 * (low + high)

@@ -150,12 +150,14 @@ def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) 
 
 
 def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
-    """Periodic response at varying speed, by trigonometric collocation.
+    """Periodic response of a follower on its elastic stem at varying speed of the cam, by
+    trigonometric collocation.
 
     Parameters
     ----------
-    lift : array (n,)        s at equal angles of one turn from 0, m; n odd preferred
-    cam_speed : array (n,)   at the same angles, rad/s, > 0
+    lift : array (n,)            s at equal angles of one turn from 0, m; n odd preferred
+    cam_speed : array (n,)       at the same angles, rad/s, > 0
+    follower : ElasticFollower   mass, stem and spring
 
     Raises
     ------
@@ -187,8 +189,14 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
 
 
 def periodic_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
-    """Periodic response of the mass at n equal cam angles to a lift (n,), m, and cam speeds (n,),
-    rad/s; by harmonic balance at constant speed, otherwise by collocation.
+    """Periodic response of a follower on its elastic stem at n equal cam angles; by harmonic
+    balance at constant speed, otherwise by collocation.
+
+    Parameters
+    ----------
+    lift : array (n,)            of the foot, m
+    cam_speed : array (n,)       rad/s
+    follower : ElasticFollower   mass, stem and spring
     """
     speed = finite("cam_speed", cam_speed)
     if is_steady(speed):

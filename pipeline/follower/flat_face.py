@@ -152,7 +152,9 @@ class FollowerFace(Part):
 
     @property
     def _round_off(self) -> float:
-        """Area that the block of a curved face lacks to the rectangle, m^2; 0 of a flat one."""
+        """Difference of area, m2, between the rectangle in which the block of a curved face lies
+        and the block; 0 of a flat face.
+        """
         if self.radius is None:
             return 0.0
         half = min(0.5 * self.width, self.radius)
@@ -190,7 +192,14 @@ class FollowerFace(Part):
         return contour
 
     def _contour(self, lift: Lift, cam: CamBody, arm: FollowerArm | None) -> FacedContour:
-        """Contour under the face: flat on a stem, curved or flat on an arm."""
+        """Contour of the cam under the face, by its kind: flat on a stem, curved or flat on an arm.
+
+        Parameters
+        ----------
+        lift : Lift         of the follower
+        cam : CamBody       prime radius and offset
+        arm : FollowerArm   None: the face is on a stem
+        """
         if arm is None:
             return FlatFaceContour(FacePath(lift, cam.prime_radius, cam.offset))
         linkage, start = arm.linkage, arm.start(cam.prime_radius, self.offset)
@@ -199,7 +208,13 @@ class FollowerFace(Part):
         return ArmFaceContour(ArmFacePath(lift, linkage, start, self.offset or 0.0))
 
     def disc_lift(self, eccentricity: float, cam: CamBody, arm: FollowerArm | None) -> Lift:
-        """Lift of the follower on an eccentric disc, zero at cam angle 0; eccentricity, m.
+        """Lift of the follower on an eccentric disc, zero at cam angle 0.
+
+        Parameters
+        ----------
+        eccentricity : float   of the disc, m
+        cam : CamBody          with its base circle
+        arm : FollowerArm      None: the face is on a stem
 
         Raises
         ------
@@ -213,9 +228,14 @@ class FollowerFace(Part):
         return face_disc_lift(eccentricity, cam.prime_radius, arm.linkage, self.offset)
 
     def body(self, width: float, stem: Stem, preload: float) -> FaceBody:  # noqa: ARG002
-        """Block of the face on its stem, or held over its whole back by an arm.
+        """Contact body of the face: a block held by its stem, or over its whole back by an arm; see
+        `FollowerKind`.
 
-        See `FollowerKind`.
+        Parameters
+        ----------
+        width : float     of contact; not used
+        stem : Stem       which holds the block
+        preload : float   not used
         """
         elastic = Elastic(self.material.E, self.material.nu)
         held = self.width if self.on_arm else stem.diameter

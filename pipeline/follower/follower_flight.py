@@ -130,7 +130,9 @@ def bounce(
 
 
 def _law(cam_speed: float | PeriodicPolynomial) -> PeriodicPolynomial:
-    """Cam speed as a function of the cam angle, rad/s; InputError where it is not positive."""
+    """Cam speed, rad/s, constant or by the cam angle, as a function of the cam angle; InputError
+    where it is not positive.
+    """
     if not isinstance(cam_speed, PeriodicPolynomial):
         cam_speed = PeriodicPolynomial(np.array([[float(cam_speed)]]))
     least = float(cam_speed(np.linspace(0.0, FULL_TURN, 1441)).min())
@@ -217,8 +219,12 @@ class _Motion:
     def _gaps(
         self, solution: scipy.optimize.OptimizeResult
     ) -> tuple[Array, Array, NDArray[np.bool_]]:
-        """Cam angles (k,), rad, of samples of a flight, the gaps there (k,), m, and whether the
-        contact has shut again (k,).
+        """Samples of a flight: cam angles (k,), rad, gaps between foot and cam (k,), m, and whether
+        the contact has shut again (k,).
+
+        Parameters
+        ----------
+        solution : result   of `_integrated` in flight, with its dense output
         """
         first, last = solution.t[0], solution.t[-1]
         count = int((last - first) / FULL_TURN * self.lift.search_count)
@@ -230,8 +236,14 @@ class _Motion:
     def _integrated(
         self, angle: float, end: float, state: Array, *, touching: bool
     ) -> scipy.optimize.OptimizeResult:
-        """State over the cam angle from `angle` to `end`, rad, or to the change of contact before,
-        by Runge-Kutta of order 8; touching : with the force of the stem, else in flight.
+        """Motion of the follower over the cam angle, to an end or to the change of contact before
+        it, by Runge-Kutta of order 8.
+
+        Parameters
+        ----------
+        angle, end : float   cam angles, rad
+        state : array (5,)   at `angle`: x, v, work of cam and load, losses, time
+        touching : bool      with the force of the stem on the cam; else in flight
         """
         f = self.follower
 
@@ -261,7 +273,13 @@ class _Motion:
         )
 
     def record(self, phases: Sequence[_Phase], flights: tuple[Flight, ...]) -> Bounce:
-        """Motion, contact force and energies at all steps of the phases in turn, m, m/s, N, J."""
+        """Motion, contact force and energies at all steps of several phases in turn, m, m/s, N, J.
+
+        Parameters
+        ----------
+        phases : sequence   in contact and in flight, in their order
+        flights : tuple     of these phases
+        """
         f = self.follower
         theta = np.concatenate([phase.theta for phase in phases])
         x, v, work, lost, time = np.concatenate([phase.state for phase in phases], axis=1)

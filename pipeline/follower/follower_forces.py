@@ -434,9 +434,13 @@ class Loads(Displayed):
 
 
 def ends_of(separated: NDArray[np.bool_], jammed: NDArray[np.bool_]) -> LoadEnds:
-    """Whether the loads end, the index of the first position without, and whether by loss of
-    contact rather than jamming, (...) each, from where contact is lost and where the follower jams
-    (..., n).
+    """Where the valid loads of followers end: whether they do, index of the first position without
+    valid loads, and whether by loss of contact rather than jamming, (...) each.
+
+    Parameters
+    ----------
+    separated : array (..., n)   where contact is lost
+    jammed : array (..., n)      where the follower jams
     """
     lost = separated | jammed
     first = np.argmax(lost & ~np.roll(lost, 1, axis=-1), axis=-1)
@@ -464,8 +468,14 @@ def turn_integral(theta: Array, values: Array) -> float:
 def axial_of_surge(
     pitch: FollowerPath, system: FollowerSystem, loads: Loads, surge: Array
 ) -> Array:
-    """Change of the axial contact force (n,), N, friction included, by a surge of the spring force
-    (n,), N.
+    """Change of the axial contact force (n,), N, friction included, by a surge of the spring.
+
+    Parameters
+    ----------
+    pitch : FollowerPath      motion of the follower
+    system : FollowerSystem   with the pivot of an arm, if any
+    loads : Loads             without the surge
+    surge : array (n,)        change of the spring force, N
     """
     pivot = system.pivot
     if pivot is None:
@@ -645,11 +655,17 @@ def follower_loads(
 def torque_on_cam(
     pitch: FollowerPath, system: FollowerSystem, theta: Array
 ) -> Callable[[Array, Array], Array]:
-    """Function of cam speed (n,), rad/s, and acceleration (n,), rad/s2, for the torque of spring,
-    weight, external force and friction on the cam (n,), N m.
+    """Function for the torque of spring, weight, external force and friction on the cam (n,), N m,
+    by cam speed (n,), rad/s, and acceleration (n,), rad/s2.
 
     That of the inertia of the follower is left out; friction depends on the contact force and thus
     on the motion. As by `follower_loads`, without what does not change at the same cam angles.
+
+    Parameters
+    ----------
+    pitch : FollowerPath      motion of the follower
+    system : FollowerSystem   spring, mass, friction
+    theta : array (n,)        cam angles, rad
     """
     still = follower_loads(pitch, system, 0.0, theta)
     slope, lift_d2 = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]

@@ -29,10 +29,17 @@ def in_series(compliances: Iterable[float]) -> float:
 
 
 def bearing_compliance(solved: RingOnBalls, ring: OuterRing, load: float) -> float:
-    """Compliance of outer ring and balls at a radial load, N, m/N, mean over the ball positions.
+    """Radial compliance of outer ring and balls of a roller, m/N, mean over the positions of the
+    balls.
 
-    The ring was solved with other balls; by Castigliano's theorem its compliance changes by the
-    sum of squared ball loads per newton times the change of the balls' compliance.
+    The ring was solved with balls of another stiffness; by Castigliano's theorem its compliance
+    changes by the sum of squared ball loads per newton times the change of the balls' compliance.
+
+    Parameters
+    ----------
+    solved : RingOnBalls   bending of the ring under a unit force
+    ring : OuterRing       with its balls and rows
+    load : float           radial load that sets the stiffness of the balls, N
     """
     steel, bending = solved.body.material, solved.bending
     per_row = ball_stiffness(load / ring.rows, ring.ball_diameter, steel.modulus, steel.poisson)
@@ -42,10 +49,15 @@ def bearing_compliance(solved: RingOnBalls, ring: OuterRing, load: float) -> flo
 
 
 def pin_compliance(pin: Pin, width: float) -> float:
-    """Bending and shear compliance of the pin at the middle of the bearing, m/N.
+    """Bending and shear compliance of the pin of a roller at the middle of the bearing, m/N.
 
-    Straddled: simply supported under a load uniform over the bearing width (m). Overhung: clamped,
-    load at the middle of the bearing.
+    Straddled: simply supported under a load uniform over the width of the bearing. Overhung:
+    clamped, load at the middle of the bearing.
+
+    Parameters
+    ----------
+    pin : Pin       with its span
+    width : float   of the bearing, m
 
     References
     ----------

@@ -122,8 +122,15 @@ def guided_loads(
 def guided_strokes(
     strokes: Sequence[MovingFollower], stem: Stem, guides: GuidePair, knots: int = KNOTS
 ) -> tuple[Guided, ...]:
-    """Loads and guide reactions of several motions in the same guides, each as by `guided_loads`,
-    all positions solved together.
+    """Loads of several motions with the reactions of guides of finite length, contact force and
+    friction in equilibrium; each as by `guided_loads`, all positions solved together.
+
+    Parameters
+    ----------
+    strokes : sequence   motions of the follower
+    stem : Stem          that bends in the guides
+    guides : GuidePair   the same for all motions
+    knots : int          per guide
     """
     points = [
         follower_loads(s.pitch, replace(s.system, rubbing=None), s.cam_speed, s.theta)
@@ -188,8 +195,16 @@ def guided_strokes(
 def _guided(
     system: FollowerSystem, loads: Loads, reactions: GuideReactions, free: Array, rounds: int
 ) -> Guided:
-    """Loads and reactions of a motion as `Guided`; ContactError where the residual of the axial
-    equilibrium is too great. free (n,) : axial force without friction, N.
+    """Loads and reactions of a motion with the residual of the axial equilibrium; ContactError
+    where the residual is too great.
+
+    Parameters
+    ----------
+    system : FollowerSystem      friction coefficients
+    loads : Loads                with the rubbing loads of the guides
+    reactions : GuideReactions   under these loads
+    free : array (n,)            axial force without friction, N
+    rounds : int                 solutions of the guides less one
     """
     residual = _residual(system, free, loads, reactions)
     if not residual.max(initial=0.0) <= RESIDUAL:
@@ -264,8 +279,15 @@ class _Bores:
     def __init__(
         self, stem: Stem, guides: GuidePair, knots: int, points: Sequence[Loads], way: Push
     ) -> None:
-        """Beam in its guides and, for each position, overhang and rubbing loads of point supports
-        as the start.
+        """Prepare the stem as a beam in its guides, with the loads of point supports as the start.
+
+        Parameters
+        ----------
+        stem : Stem          that bends
+        guides : GuidePair   of finite length
+        knots : int          per guide
+        points : sequence    loads of each motion on point supports
+        way : Push           load of the cam on the stem per unit axial force, at all positions
         """
         self.line, _, half_a = bearing_line(stem, guides, knots)
         self.reach = np.concatenate([each.overhang for each in points]) - half_a
@@ -278,9 +300,13 @@ class _Bores:
         self.started = False
 
     def factors(self, push: Array, at: NDArray[np.intp]) -> Array:
-        """Rubbing loads of guides A and B over axial force and side-load factor (2, k), at axial
-        forces `push` (k,), N, of the positions numbered `at` (k,); those of point supports where
-        unloaded.
+        """Sums of the normal forces in guides A and B over axial force times side-load factor
+        (2, k); those of point supports where unloaded.
+
+        Parameters
+        ----------
+        push : array (k,)   axial forces, N
+        at : array (k,)     indices of the positions
         """
         start = (self.pushes[:, at], self.rigid[:, at]) if self.started else None
         side, moment = push * self.way.side[at], push * self.way.arm[at]
@@ -297,9 +323,15 @@ class _Bores:
 def _residual(
     system: FollowerSystem, free: Array, loads: Loads, reactions: GuideReactions
 ) -> Array:
-    """Residual (n,) of the axial equilibrium over the axial force; 0 where that is bounded.
+    """Residual (n,) of the axial equilibrium with the friction of the guides, over the axial force;
+    0 where the axial force is bounded by jamming.
 
-    `free` (n,), N, is the axial force without friction.
+    Parameters
+    ----------
+    system : FollowerSystem      friction coefficients
+    free : array (n,)            axial force without friction, N
+    loads : Loads                with the axial force
+    reactions : GuideReactions   with the rubbing loads
     """
     rubs = (
         system.friction_a * reactions.rubbing_load_a + system.friction_b * reactions.rubbing_load_b

@@ -162,7 +162,13 @@ class BearingLine:
         return np.asarray(self.compliance + np.diag(1.0 / self.stiffness))
 
     def _bound_to(self, knots: NDArray[np.intp]) -> BoundKnots:
-        """Linear equations of the beam with these knots (active,) in contact with the bore."""
+        """Linear equations of the beam with given knots in contact with the bore and the others
+        free.
+
+        Parameters
+        ----------
+        knots : array (active,)   indices of the knots in contact
+        """
         modes, softness = self._modes[knots], self._softness[knots[:, None], knots]
         scale = (
             float(softness.diagonal().max(initial=0.0)) or 1.0
@@ -199,10 +205,9 @@ class BearingLine:
 
     @cached_property
     def slack_corners(self) -> Array:
-        """End motions (2, corners), m and rad, of a rigid beam in contact with two edges of the
-        guides.
-
-        The corners of the motions within the clearance, indented slightly at both edges.
+        """Motions of the loaded end (2, corners), m and rad, with which a rigid beam touches two
+        edges of the guides and is within the clearance elsewhere: corners of the free motions,
+        indented slightly at both edges.
         """
         modes, play = self.rigid_modes[self.edges], self.play[self.edges]
         corners = []
@@ -290,10 +295,15 @@ def settle(
 
 
 def _first_guess(line: BearingLine, load: Array) -> tuple[Array, Array]:
-    """Bore forces (k, n), N, and end motions (2, n), m and rad, near those of loads (2, n), N and N
-    m, for the start of the iteration.
+    """Start of the iteration for the contact of a beam in its bores: forces (k, n), N, and motions
+    of the loaded end (2, n), m and rad, near the solution.
 
-    Some loads in the order of direction and size are solved, and those between interpolated.
+    Some loads, in the order of direction and size, are solved, and those between interpolated.
+
+    Parameters
+    ----------
+    line : BearingLine    the beam, at k knots
+    load : array (2, n)   force, N, and moment, N m, at its end
     """
     count = load.shape[1]
     push, rigid = np.zeros((len(line.positions), count)), line.edge_contact(load)
@@ -316,12 +326,19 @@ def _first_guess(line: BearingLine, load: Array) -> tuple[Array, Array]:
 def _linear_step(
     line: BearingLine, push: Array, rigid: Array, load: Array
 ) -> tuple[Array, Array, NDArray[np.intp]]:
-    """Bore forces (k, n), N, and end motions (2, n) in equilibrium with loads (2, n), with the
-    knots that now touch bound to the bore and the others free; number of knots in contact (n,).
+    """Step of the iteration for the contact of a beam in its bores: forces (k, n), N, and motions
+    of the loaded end (2, n), m and rad, in equilibrium with the loads, with the knots that now
+    touch bound to the bore and the others free; number of knots in contact (n,).
 
-    Positions with the same knots in contact share one
-    factorisation. The unknown is the change of the end motion: small loads would be lost in the
-    round-off of the clearance.
+    Positions with the same knots in contact share one factorisation. The unknown is the change of
+    the end motion: small loads would be lost in the round-off of the clearance.
+
+    Parameters
+    ----------
+    line : BearingLine     the beam, at k knots
+    push : array (k, n)    present forces of the bores, N
+    rigid : array (2, n)   present end motions, m and rad
+    load : array (2, n)    force, N, and moment, N m, at its end
     """
     deflection = line.deflection(push, rigid)
     touch = np.abs(deflection) >= line.play[:, None]
@@ -336,10 +353,15 @@ def _linear_step(
 def _bound_solution(
     line: BearingLine, touch: NDArray[np.bool_], offset: Array, load: Array
 ) -> tuple[Array, Array]:
-    """Bore forces (k, n), N, and end motions (2, n), m and rad, under loads (2, n), N and N m, with
-    given knots bound to the bore and the others free.
+    """Forces of the bores (k, n), N, and motions of the loaded end (2, n), m and rad, of a beam
+    with given knots bound to the bore and the others free.
 
-    The knots of `touch` (k, n) are indented by `offset` (k, n), m, before the load acts.
+    Parameters
+    ----------
+    line : BearingLine      the beam, at k knots
+    touch : array (k, n)    which knots are bound
+    offset : array (k, n)   their indentation before the load acts, m
+    load : array (2, n)     force, N, and moment, N m, at its end
     """
     far = load / np.array([[1.0], [line.positions[-1]]])
     pushes, motions = np.zeros_like(offset), np.empty_like(load)
@@ -359,11 +381,19 @@ def _bound_solution(
 def _reduced(
     line: BearingLine, push: Array, rigid: Array, load: Array, enlargement: Array
 ) -> tuple[Array, Array]:
-    """Bore forces (k, n), N, and end motions (2, n), m and rad, of loads (2, n) that were solved
-    enlarged by `enlargement` (n,), >= 1, brought back to their own size.
+    """Forces of the bores (k, n), N, and end motions (2, n), m and rad, of small loads that were
+    solved enlarged, brought back to their own size.
 
     Bore forces are in proportion to so small a load; so is what it adds to the end motion of the
     unloaded beam in contact. Neither has the round-off of the clearance then.
+
+    Parameters
+    ----------
+    line : BearingLine         the beam, at k knots
+    push : array (k, n)        forces under the enlarged loads, N; changed
+    rigid : array (2, n)       end motions under them, m and rad; changed
+    load : array (2, n)        enlarged force, N, and moment, N m
+    enlargement : array (n,)   factor, >= 1
     """
     small = np.flatnonzero(enlargement > 1.0)
     if small.size:
@@ -377,12 +407,19 @@ def _reduced(
 def _best_length(
     line: BearingLine, push: Array, rigid: Array, push_step: Array, rigid_step: Array, load: Array
 ) -> Array:
-    """Step length (n,) in (0, 1] from the present state to that of the linear step (`push_step`,
-    `rigid_step`) of least energy.
+    """Length (n,), above 0 and at most 1, of the step from the present state towards that of a
+    linear step at which the energy of beam and bores is least.
 
     The slope of the energy increases along the step, so that a negative slope at the full step
     gives length 1. The slope is piecewise linear between the lengths at which knots leave or enter
     the bore; its zero is on the piece where it changes sign.
+
+    Parameters
+    ----------
+    line : BearingLine                    the beam, at k knots
+    push, rigid : arrays (k, n), (2, n)   present forces, N, and end motions, m and rad
+    push_step, rigid_step : same shapes   their changes over the full step
+    load : array (2, n)                   force, N, and moment, N m, at its end
     """
     before, change = line.deflection(push, rigid), line.deflection(push_step, rigid_step)
     bent = line.compliance @ push_step
@@ -407,11 +444,16 @@ def _best_length(
 def _slope_zero(
     line: BearingLine, before: Array, change: Array, first: Array, spread: Array
 ) -> Array:
-    """Zero (n,) of the slope of the energy along a step, which is `first` (n,) at length 0 and
-    positive at 1.
+    """Length (n,) of a step, between 0 and 1, at which the slope of the energy of beam and bores
+    along the step is zero.
 
-    before, change : (k, n), deflection at length 0 and its change over the step, m
-    spread : (n,), rate of the slope by the beam alone, J
+    Parameters
+    ----------
+    line : BearingLine      the beam, at k knots
+    before : array (k, n)   deflection at length 0, m
+    change : array (k, n)   its change over the step, m
+    first : array (n,)      slope at length 0, J; at length 1 it is positive
+    spread : array (n,)     rate of the slope by the beam alone, J
     """
     pace = np.where(change == 0.0, 1e-300, change)
     toward = np.sign(pace) * line.play[:, None]

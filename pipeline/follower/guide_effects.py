@@ -88,15 +88,21 @@ def guide_shares(
     loads: Loads,
     reactions: GuideReactions,
 ) -> GuideShares:
-    """Effects of guide length and clearance on the loads of a turn.
+    """Effects of the length and of the clearance of the guides on the bearing loads and the contact
+    force of a turn.
 
     Without clearance the reactions are proportional to the load: one solution gives the rubbing
     load per axial force, and with it the contact force.
 
     Parameters
     ----------
-    cam_speed : float   rad/s, of the turn
-    loads, reactions    of the turn with length and clearance, see `guided_loads`
+    pitch : FollowerPath         motion of the follower
+    system : FollowerSystem      spring, mass, friction
+    stem : Stem                  that bends in the guides
+    guides : GuidePair           with clearance
+    cam_speed : float            rad/s, of the turn
+    loads : Loads                of the turn with length and clearance, see `guided_loads`
+    reactions : GuideReactions   under these loads
     """
     pair = replace(guides, a=replace(guides.a, clearance=0.0), b=replace(guides.b, clearance=0.0))
     tight = guide_reactions(

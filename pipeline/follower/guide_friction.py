@@ -154,7 +154,12 @@ def friction_bounds(
 
 
 def friction_power(friction_force: ArrayLike, velocity: ArrayLike) -> Array:
-    """Friction power (n,) of a guide, W, by friction force, N, >= 0, and velocity, m/s, (n,).
+    """Friction power of a guide (n,), W.
+
+    Parameters
+    ----------
+    friction_force : array (n,)   N, >= 0
+    velocity : array (n,)         of the stem, m/s
 
     Raises
     ------
@@ -194,8 +199,15 @@ def thermal_resistance(guide: Guide) -> float | None:
 
 
 def bush_resistance(bore: float, wall: float, length: float, conductivity: float) -> float:
-    """Thermal resistance of a bush wall, ln(1 + 2 t/D)/(2 pi lambda l), K/W; bore D, wall t and
-    length l, m, conductivity lambda, W/(m K).
+    """Thermal resistance of the wall of a bush to radial conduction, ln(1 + 2 t/D)/(2 pi lambda l),
+    K/W.
+
+    Parameters
+    ----------
+    bore : float           D, m
+    wall : float           t, m
+    length : float         l, m
+    conductivity : float   lambda, W/(m K)
 
     Raises
     ------

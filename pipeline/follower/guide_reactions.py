@@ -178,7 +178,8 @@ class Guide(Part):
         return self.diameter * self.length
 
     def pressure_limit_at(self, temperature: float) -> float | None:
-        """Pressure limit at a temperature, K, Pa: falls with the yield strength.
+        """Permissible pressure of the guide at a temperature, K, Pa: as stated up to the
+        temperature of the limit, above it less in proportion to the yield strength.
 
         None without a limit, NaN where the strength at the temperature is not known.
         """
@@ -361,8 +362,13 @@ def mean_line_load(line_load: ArrayLike, knots: ArrayLike) -> Array:
 
 
 def _pushes(load: Array, at: Array) -> tuple[Array, Array]:
-    """Force on both sides of a bore (2, n), N, and loaded length of each (2, n), m; load (k, n),
-    N/m, signed line load at the knots `at` (k,), m from the middle of the guide.
+    """Force on both sides of the bore of a guide (2, n), N, and loaded length of each side (2, n),
+    m.
+
+    Parameters
+    ----------
+    load : array (k, n)   line load on the stem at the knots, N/m, its sign that of the side
+    at : array (k,)       places of the knots from the middle of the guide, m
     """
     weights = at[-1] * lobatto(at.size)[1]
     sides = np.stack([load, -load])
@@ -377,8 +383,14 @@ def _mean(push: Array, length: Array) -> Array:
 
 
 def _loaded_length(sides: Array, knots: Array, weights: Array) -> Array:
-    """Length with a positive line load (..., n), m, of line loads `sides` (..., k, n), N/m, at
-    knots (k,), m; beyond the last loaded knot the line load is extrapolated to zero.
+    """Length of a guide with a positive line load (..., n), m; beyond the last loaded knot the line
+    load is extrapolated to zero.
+
+    Parameters
+    ----------
+    sides : array (..., k, n)   line loads at the knots, N/m
+    knots : array (k,)          places of the knots, m
+    weights : array (k,)        quadrature length of each knot, m
     """
     on, gaps = sides > 0.0, np.diff(knots)[:, None]
     length = (gaps * (on[..., :-1, :] & on[..., 1:, :])).sum(axis=-2)
@@ -391,8 +403,14 @@ def _loaded_length(sides: Array, knots: Array, weights: Array) -> Array:
 
 
 def _beyond(load: Array, gaps: Array, weights: Array) -> Array:
-    """Loaded length beyond each loaded knot that an unloaded one follows (..., k - 1, n), m,
-    otherwise 0; load (..., k, n), N/m, gaps (k - 1, 1) between knots and weights (k, 1), m.
+    """Length under load beyond each loaded knot that an unloaded one follows (..., k - 1, n), m,
+    otherwise 0; the line load is extrapolated to zero.
+
+    Parameters
+    ----------
+    load : array (..., k, n)   line loads at the knots, N/m
+    gaps : array (k - 1, 1)    between the knots, m
+    weights : array (k, 1)     quadrature length of each knot, m
     """
     here, after = np.maximum(load[..., :-1, :], 0.0), load[..., 1:, :]
     before = np.zeros_like(here)
@@ -464,9 +482,14 @@ class _Carried(NamedTuple):
         return _relative(miss, self.rubbing_a + self.rubbing_b + np.abs(force))
 
     def moment_residual(self, moment: Array, reach: Array, spacing: float) -> Array:
-        """Residual of the moments about the roller over the sum of their magnitudes (n,); moment
-        (n,), N m, of the side force, reach (n,), from the roller to the middle of guide A, and
-        spacing of the guides, m.
+        """Residual (n,) of the moments on the stem about the roller, over the sum of their
+        magnitudes.
+
+        Parameters
+        ----------
+        moment : array (n,)   of the axial force beside the stem axis, N m
+        reach : array (n,)    from the roller to the middle of guide A, m
+        spacing : float       of the guides, m
         """
         far = reach + spacing
         turned = self.couple_a + self.couple_b + self.reaction_a * reach - self.reaction_b * far
@@ -594,9 +617,15 @@ def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> N
 
 @lru_cache(maxsize=8)
 def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine, Array, float]:
-    """Stem as a beam in both guides from the edge of guide A nearer to the roller; slope of the
+    """Stem as a beam in both guides, from the edge of guide A nearer to the roller; slope of the
     stem at each knot per unit force at each (2 k, 2 k), rad/N, clamped at that edge; half the
-    length of guide A, m. knots : k, per guide.
+    length of guide A, m.
+
+    Parameters
+    ----------
+    stem : Stem          that bends
+    guides : GuidePair   with stiffness and clearance of their bores
+    knots : int          k, per guide
     """
     unit, weight = lobatto(knots)
     half_a, half_b = 0.5 * guides.a.length, 0.5 * guides.b.length

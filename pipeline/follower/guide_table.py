@@ -65,7 +65,13 @@ class Place(NamedTuple):
 
 
 def _between_forces(load: Array) -> tuple[NDArray[np.intp], Array]:
-    """Node below each load, and the part of the way to the next one."""
+    """Index of the node of the table below each load, and the part of the way to the next node, by
+    the logarithm of the load; (...) each.
+
+    Parameters
+    ----------
+    load : array (...)   N; bounded by the first and last node
+    """
     bounded = np.clip(load, _FORCES[0], _FORCES[-1])
     at = np.log(bounded / _FORCES[0]) / np.log(_FORCES[1] / _FORCES[0])
     below = np.minimum(at.astype(np.intp), _FORCES.size - 2)
@@ -91,7 +97,14 @@ class GuideTable(ABC):
         """Loads over their units (nodes, forces) at nodes (nodes, 1), in guides of a spacing."""
 
     def between(self, along: Array, spacing: float | Array) -> Place:
-        """Nodes about places (...), in steps, and spacings (...), m, for `ratios`."""
+        """Interpolation nodes with weights about places in overhang or direction, and spacing; for
+        `ratios`.
+
+        Parameters
+        ----------
+        along : array (...)              overhang or direction, in steps of the table
+        spacing : float or array (...)   of the guides, m
+        """
         steps, width = np.broadcast_arrays(along, spacing)
         if np.all(spacing == self.guides.spacing):
             across, share = np.full(steps.shape, _STATED), np.zeros(steps.shape)
@@ -120,7 +133,15 @@ class GuideTable(ABC):
         return on_a, on_b
 
     def _interpolated(self, load: Array, place: Place, count: int) -> list[Array]:
-        """Values (...) of the first ratios, linear in the logarithm of the load."""
+        """The first `count` ratios of `GuideLoads` (...), interpolated: linear in the logarithm of
+        the load and between the nodes of a place.
+
+        Parameters
+        ----------
+        load : array (...)   N
+        place : Place        nodes with weights
+        count : int          number of ratios
+        """
         below, part = _between_forces(load)
         tables = [self._flat(q) for q in range(count)]
         results = [np.zeros(load.shape) for _ in tables]
@@ -138,7 +159,13 @@ class GuideTable(ABC):
         return self._flats[q]
 
     def _rows(self, along: NDArray[np.intp], across: NDArray[np.intp]) -> NDArray[np.intp]:
-        """Numbers of the tables at nodes of overhang and spacing (...); new ones are solved."""
+        """Indices of the tables at nodes (...); nodes without a table are solved.
+
+        Parameters
+        ----------
+        along : array (...)    node in overhang or direction
+        across : array (...)   node in spacing
+        """
         keys = np.stack([along, across], axis=-1).reshape(-1, 2)
         low = keys.min(axis=0)
         extent = keys.max(axis=0) - low + 1
@@ -153,8 +180,13 @@ class GuideTable(ABC):
         return np.asarray(numbers[flat].reshape(along.shape))
 
     def _solve(self, along: int, across: int) -> None:
-        """Solve and keep the ratios of `GuideLoads` (6, forces) at a node, number `along` in
-        overhang or direction and `across` in spacing, and at the others of its group.
+        """Solve a node of the table, and the others of its group, and keep the ratios of
+        `GuideLoads` (6, forces).
+
+        Parameters
+        ----------
+        along : int    node in overhang or direction
+        across : int   node in spacing, or `_STATED`: that of the guides
         """
         guides = self.guides
         if across != _STATED:
@@ -179,8 +211,13 @@ class OverhangTable(GuideTable):
     """Guide loads over side force and overhang, in units of point-support reactions."""
 
     def _nodes(self, along: NDArray[np.intp], guides: GuidePair) -> GuideLoads:
-        """Loads over their units (nodes, forces) under side forces alone, at overhangs of `along`
-        (nodes, 1) steps, in guides of a spacing.
+        """Guide loads over the reactions of point supports (nodes, forces), under side forces
+        alone.
+
+        Parameters
+        ----------
+        along : array (nodes, 1)   overhang, in steps
+        guides : GuidePair         at the spacing of the nodes
         """
         # The roller does not enter guide A: positions just outside take the node at its mouth.
         overhang = np.maximum(along * _OVERHANG_STEP * guides.spacing, 0.5 * guides.a.length)
@@ -194,8 +231,12 @@ class MomentTable(GuideTable):
     """Guide loads over size and direction of side force and moment over spacing."""
 
     def _nodes(self, along: NDArray[np.intp], guides: GuidePair) -> GuideLoads:
-        """Loads over their units (nodes, forces) under side force and moment, at directions of
-        `along` (nodes, 1) steps, in guides of a spacing.
+        """Guide loads over the size of the load (nodes, forces), under side force and moment.
+
+        Parameters
+        ----------
+        along : array (nodes, 1)   direction of side force and moment over spacing, in steps
+        guides : GuidePair         at the spacing of the nodes
         """
         angle = along * _DIRECTION_STEP
         side = np.ravel(_FORCES * np.cos(angle))

@@ -101,16 +101,17 @@ def cheek_pressure(
     span: float,
     overhung: bool = False,
 ) -> Array:
-    """Greatest projected-area pressure (...) of the pin in a cheek of its fork, Pa.
+    """Greatest projected-area pressure (...) of the pin of a roller in a cheek of its fork, Pa.
 
-    Straddled: the force of the support, uniform. Overhung: force and moment in one cheek,
-    (N (6 l + 4 t) + 6 M)/(d t^2), linear along the seat.
+    Straddled: the force of the support, uniform. Overhung: force N and moment M in one cheek, (N (6
+    l + 4 t) + 6 M)/(d t^2), linear along the seat.
 
     Parameters
     ----------
-    force, moment : array (...)     as of `pin_moment`
+    force, moment : array (...)     N, M, as of `pin_moment`
     diameter, cheek_width : float   d, t, m, > 0
     span : float                    l, as of `pin_moment`
+    overhung : bool                 whether one cheek alone holds the pin
 
     References
     ----------

@@ -54,10 +54,15 @@ def pressed_bush(bush: Guide, force: Array, couple: Array) -> PressedBush:
 
 
 def bush_lines(bush: Guide, force: Array, couple: Array, places: Array) -> Array:
-    """Line load (k, n), N/m, on a pin at places (k,), m, from the middle of its bush.
+    """Line load (k, n), N/m, on a rigid pin along its elastic bush, positive where the force
+    presses.
 
-    Positive where the force (n,), N, presses; the couple (n,), N m, presses the end of greatest
-    place; see `pressed_bush`.
+    Parameters
+    ----------
+    bush : Guide          length, stiffness, clearance
+    force : array (n,)    on the pin, N
+    couple : array (n,)   N m; presses the end of greatest place, see `pressed_bush`
+    places : array (k,)   from the middle of the bush, m
     """
     pressed = pressed_bush(bush, force, couple)
     modulus, gap = bush.foundation_modulus, 0.5 * bush.clearance
@@ -68,8 +73,14 @@ def bush_lines(bush: Guide, force: Array, couple: Array, places: Array) -> Array
 
 
 def _between_edges(bush: Guide, force: Array, couple: Array) -> tuple[Array, Array]:
-    """Tilt, rad, and greatest line load, N/m, (m,) each, of a pin that a force, N, and a couple, N
-    m, (m,) press to both sides of its bush; tilt by bisection.
+    """Tilt, rad, and greatest line load, N/m, (m,) each, of a rigid pin that presses on both sides
+    of its bush; tilt by bisection.
+
+    Parameters
+    ----------
+    bush : Guide          length, stiffness, clearance
+    force : array (m,)    on the pin, N
+    couple : array (m,)   N m, great enough that both ends touch
     """
     length, modulus, play = bush.length, bush.foundation_modulus, bush.clearance
 

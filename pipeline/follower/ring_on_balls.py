@@ -51,8 +51,12 @@ class RingOnBalls:
 
 
 def solid_reason(radius: float, bearing: Bearing) -> str:
-    """Why a roller of a radius, m, is modelled as solid; "" where it is modelled as a ring on its
-    balls.
+    """Why a roller is modelled as solid, in words; "" where it is modelled as a ring on its balls.
+
+    Parameters
+    ----------
+    radius : float      of the roller, m
+    bearing : Bearing   with its outer ring, if described
     """
     ring = bearing.ring
     if ring is None:

@@ -134,7 +134,9 @@ class Roller(Part):
 
     @property
     def held_depth(self) -> float:
-        """Depth of the contact body, m: thickness of an outer ring, or down to a solid hub."""
+        """Depth below the surface at which the contact body of the roller is held, m: thickness of
+        an outer ring, or down to a solid hub.
+        """
         ring = self.bearing.ring
         if ring is not None and not self.solid_reason:
             return ring.thickness
@@ -199,8 +201,12 @@ class Roller(Part):
         )
 
     def pin_stress(self, force: Array, moment: Array) -> Array | None:
-        """Bending stress of the pin (n,), Pa, by normal forces (n,), N, and moments (n,), N m; None
-        without a pin.
+        """Bending stress of the pin (n,), Pa; None without a pin.
+
+        Parameters
+        ----------
+        force : array (n,)    normal force on the roller, N
+        moment : array (n,)   of it along the axis, N m, see `pin_moment`
         """
         pin = self.pin
         if pin is None:
@@ -215,10 +221,14 @@ class Roller(Part):
         return RollerContour(PitchCurve(lift, cam.prime_radius, cam.offset), self.radius)
 
     def ring(self, width: float, preload: float) -> RingOnBalls | None:
-        """Outer ring of the bearing on its balls, solved for a contact width, m; None for a roller
-        that is modelled as solid.
+        """Outer ring of the bearing on its balls, solved for its bending; None for a roller that is
+        modelled as solid.
 
-        Balls have their stiffness at the static rating, without one at the preload (N).
+        Parameters
+        ----------
+        width : float     of contact, m
+        preload : float   of the spring, N; the balls have their stiffness at the static rating,
+                          without one at the preload
         """
         ring = self.bearing.ring
         if ring is None or self.solid_reason:
@@ -228,8 +238,12 @@ class Roller(Part):
         return ring_on_balls(ring, steel, self.radius, self.width, width, load)
 
     def elastic(self, width: float, preload: float) -> ElasticParts:
-        """Compliances of bearing, pin and fork, m/N, and length of the fork, m; see
-        `FollowerKind`.
+        """Compliances of bearing, pin and fork, m/N, and length of the fork, m; see `FollowerKind`.
+
+        Parameters
+        ----------
+        width : float     of contact, m
+        preload : float   of the spring, N, at which the balls have their stiffness
         """
         pin, fork, ring, solved = self.pin, self.fork, self.bearing.ring, self.ring(width, preload)
         cheeks = None if fork is None or pin is None else fork_compliance(fork, pin)
@@ -271,7 +285,14 @@ class Roller(Part):
         return [_Turning(first, self.radius, ~pulls), _Turning(second, disc.roller_radius, pulls)]
 
     def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:  # noqa: ARG002
-        """Contact body: roller held at its hub, or outer ring on balls; see `FollowerKind`."""
+        """Contact body of the roller: solid on its hub, or outer ring on balls; see `FollowerKind`.
+
+        Parameters
+        ----------
+        width : float     of contact, m
+        stem : Stem       not used
+        preload : float   of the spring, N, see `ring`
+        """
         ring = self.ring(width, preload)
         if ring is not None:
             return ring.body
@@ -280,8 +301,15 @@ class Roller(Part):
     def motion(
         self, contour: Contour, contact: ContactHistory, loads: Loads, speed: float
     ) -> SurfaceMotion:
-        """Rolling over the turn with creep, or without a friction coefficient free of slip; speed
-        of the cam, rad/s. See `FollowerKind`.
+        """Rolling of the roller on the cam over the turn: with creep, or without a friction
+        coefficient free of slip. See `FollowerKind`.
+
+        Parameters
+        ----------
+        contour : Contour          of the cam
+        contact : ContactHistory   pressures and half-widths
+        loads : Loads              normal force
+        speed : float              of the cam, rad/s
         """
         motion, force = self.rolling(contour, loads, speed), loads.normal_force
         first, *others = self._rollers(contour, loads, speed)

@@ -119,13 +119,15 @@ def wear(normal_force: Values, spin: Values, exponent: float = BALL_LIFE_EXPONEN
 def equivalent_load(
     normal_force: ArrayLike, spin: ArrayLike, exponent: float = BALL_LIFE_EXPONENT
 ) -> Array:
-    """Equivalent constant load P_m (...), N, of positions equally spaced in time.
+    """Equivalent constant load P_m (...), N, of a roller bearing over positions equally spaced in
+    time.
 
     P_m = (sum N^p |n| / sum |n|)^(1/p).
 
     Parameters
     ----------
-    normal_force, spin : array (..., n)   N and rad/s
+    normal_force, spin : array (..., n)   N, n: force on the roller, N, and its speed, rad/s
+    exponent : float                      p of the life
 
     Raises
     ------
@@ -190,8 +192,12 @@ def rating_life(
 
 
 def static_safety(normal_force: ArrayLike, static_rating: float) -> float:
-    """Static safety factor s0 = C0 / N_max of normal forces (n,), N, and a rating, N; infinite
-    without load.
+    """Static safety factor s0 = C0 / N_max of the bearing of a roller; infinite without load.
+
+    Parameters
+    ----------
+    normal_force : array (n,)   N on the roller, N
+    static_rating : float       C0, N
 
     Raises
     ------

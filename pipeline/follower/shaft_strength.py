@@ -102,8 +102,14 @@ def judged_sections(
 
 
 def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: ArrayLike) -> Array:
-    """Bending moment (..., 2, n), N m, at positions (...), m from the first bearing, by the
-    components of the forces over the turn (n,).
+    """Bending moment of the camshaft (..., 2, n), N m, by both components of the forces over the
+    turn.
+
+    Parameters
+    ----------
+    loads : ShaftLoads    forces (2, n), N
+    shaft : Camshaft      with the places of the forces
+    place : array (...)   from the first bearing, m
     """
     reach = np.asarray(place, dtype=float)[..., None, None]
     acting = [
@@ -118,8 +124,14 @@ def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: ArrayLike) -> Arra
 
 
 def torque_at(torque: Array, shaft: Camshaft, place: ArrayLike) -> Array:
-    """Torque (..., n), N m, at positions (...), m from the first bearing: between gear and cam the
-    cam torque (n,), N m, and the drag, elsewhere 0.
+    """Torque of the camshaft (..., n), N m: between gear and cam that on the cam and the drag,
+    elsewhere 0.
+
+    Parameters
+    ----------
+    torque : array (n,)   on the cam, N m
+    shaft : Camshaft      with the places of gear and cam
+    place : array (...)   from the first bearing, m
     """
     low, high = sorted((shaft.cam_position, shaft.gear_position))
     at = np.asarray(place, dtype=float)[..., None]
@@ -230,8 +242,13 @@ def fatigue_safety(amplitude: Array, mean: Array, endurance: Array, tensile: flo
 
 
 def greatest_stress(moment: Array, torque: Array, sections: Sections) -> Array:
-    """Von Mises stress (k, n), Pa, at the k notched sections, of bending moments (k, 2, n) and
-    torques (k, n), N m.
+    """Von Mises stress (k, n), Pa, at the k notched sections of the camshaft.
+
+    Parameters
+    ----------
+    moment : array (k, 2, n)   bending moment at each section, N m
+    torque : array (k, n)      N m
+    sections : Sections        diameters and fatigue notch factors
 
     References
     ----------
@@ -255,12 +272,15 @@ class ShaftBending:
 def shaft_bending(
     loads: ShaftLoads, shaft: Camshaft, diameter: float, elastic_modulus: float
 ) -> ShaftBending:
-    """Deflection and bearing slopes of a uniform shaft on two rigid bearings, without shear.
+    """Deflection at the cam and slopes at the bearings of a uniform camshaft on two rigid bearings,
+    without shear.
 
     Parameters
     ----------
-    diameter : float         m, > 0
-    elastic_modulus : float  E, Pa, > 0
+    loads : ShaftLoads        forces over the turn
+    shaft : Camshaft          with their places
+    diameter : float          m, > 0
+    elastic_modulus : float   E, Pa, > 0
 
     References
     ----------
@@ -303,8 +323,14 @@ class CamSlope(NamedTuple):
 
 @lru_cache(maxsize=32)
 def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSlope:
-    """Slopes of the shaft at the cam per unit force at cam, gear and counterweight, and per moment
-    at the cam; the cam is between the bearings or overhung. diameter, m, elastic_modulus, Pa.
+    """Slopes of a uniform camshaft at the cam per unit force at cam, gear and counterweight, and
+    per unit moment at the cam; the cam is between the bearings or overhung.
+
+    Parameters
+    ----------
+    shaft : Camshaft          with the places of the forces
+    diameter : float          m
+    elastic_modulus : float   E, Pa
 
     References
     ----------
@@ -422,10 +448,11 @@ def tooth_contact_stress(
 
     Parameters
     ----------
-    force : array (...)       on the pitch circle, application factor included, N, >= 0
-    pinion_diameter : float   pitch diameter of the smaller gear, m
-    ratio : float             teeth of the larger over those of the smaller, >= 1
-    pressure_angle : float    rad
+    force : array (...)       F on the pitch circle, application factor included, N, >= 0
+    width : float             b of the teeth in contact, m
+    pinion_diameter : float   d1, pitch diameter of the smaller gear, m
+    ratio : float             u, teeth of the larger over those of the smaller, >= 1
+    pressure_angle : float    a, rad
     contact_modulus : float   E*, Pa
 
     References

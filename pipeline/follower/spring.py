@@ -235,8 +235,12 @@ class WoundWire(Generic[Number]):
         return ZIMMERLI[self.treatment][0] / left, shear_strength
 
     def fatigue_stress(self, force_min: ArrayLike, force_max: ArrayLike) -> tuple[Array, Array]:
-        """Amplitude and mean (...) of the shear stress of the wire, Pa, of least and greatest
-        forces (...), N; a mean below zero counts as zero.
+        """Amplitude and mean of the shear stress of the wire (...), Pa, between two forces; a mean
+        below zero counts as zero.
+
+        Parameters
+        ----------
+        force_min, force_max : arrays (...)   of the spring, N
 
         Raises
         ------
@@ -251,10 +255,14 @@ class WoundWire(Generic[Number]):
         return 0.5 * (high - low), np.where(np.real(mean) > 0.0, mean, 0.0 * mean)
 
     def fatigue_use(self, force_min: ArrayLike, force_max: ArrayLike) -> Array:
-        """Utilisation (...) of the wire by the Goodman line of `fatigue_strengths`, of least and
-        greatest forces (...), N.
+        """Utilisation (...) of the fatigue strength of the wire between two forces, by the Goodman
+        line of `fatigue_strengths`.
 
-        Infinite for a shear strength below the mean stress of Zimmerli.
+        Infinite for a shear strength not above the mean stress of Zimmerli.
+
+        Parameters
+        ----------
+        force_min, force_max : arrays (...)   of the spring, N
 
         Raises
         ------
@@ -376,9 +384,19 @@ class WireLimit:
         limit: Value | None = None,
         room: float = 1.0,
     ) -> NDArray[np.bool_]:
-        """Whether springs (...) keep the limit times a `room`; a demand of NaN does not.
+        """Whether springs (...) keep the limit; a demand of NaN does not.
 
-        limit : where the wire sets none; InputError without either
+        Parameters
+        ----------
+        wire : WoundWire        winding and strength
+        work : SpringWork       operating range
+        limit : (...) or None   where the wire sets none, SI
+        room : float            factor on the limit
+
+        Raises
+        ------
+        InputError
+            If neither wire nor user sets the limit.
         """
         demand = self.demand(wire, work)
         allowed = limit if self.allowed is None else self.allowed(wire)
@@ -624,7 +642,12 @@ class Spring(Part):
         return replace(self, link=None, rocker=None, rate=rate, preload=preload)
 
     def on_arm(self, length: float | None, rocker: Rocker | None = None) -> Spring:
-        """The spring as it acts on the arc at the length of an arm, m; None: on a stem.
+        """Spring as it acts on the follower, on the arc at the length of an arm or along a stem.
+
+        Parameters
+        ----------
+        length : float    of the arm, m; None: on a stem
+        rocker : Rocker   behind which the spring may stand; None: none
 
         Raises
         ------
@@ -699,7 +722,16 @@ def spring_force(
 def spring_energy(
     preload: Value, rate: Value, lift: ArrayLike, shape: SpringShape | None = None
 ) -> Array:
-    """Spring energy P s + k s^2 / 2 (...), J, at a lift (...), m; for a shape P s + k R(s)."""
+    """Energy of the spring above that at zero lift (...), J: P s + k s^2 / 2, or P s + k R(s) for a
+    shape.
+
+    Parameters
+    ----------
+    preload : (...)       P, N
+    rate : (...)          k, N/m, at zero lift
+    lift : array (...)    s, m
+    shape : SpringShape   law of the force; None: linear
+    """
     at = np.asarray(lift, dtype=float)
     if shape is None:
         return np.asarray(preload * at + 0.5 * rate * at**2)
@@ -778,7 +810,9 @@ class DynamicStiffness:
 
     @property
     def moving(self) -> NDArray[np.complex128]:
-        """Force of the moving end per motion of it, less the rate, N/m, (...) complex."""
+        """Complex dynamic stiffness at the moving end (...), force there per its motion, less the
+        rate, N/m.
+        """
         if not self.phase.any():
             return np.zeros_like(self.phase)
         square, over_rate = self._decay**2, 1.0j * self._moved
@@ -788,8 +822,8 @@ class DynamicStiffness:
 
     @property
     def fixed(self) -> NDArray[np.complex128]:
-        """Force of the fixed end per motion of the moving one, less the rate, N/m, (...)
-        complex.
+        """Complex dynamic transfer stiffness (...), force at the fixed end per motion of the moving
+        one, less the rate, N/m.
         """
         if not self.phase.any():
             return np.zeros_like(self.phase)
@@ -799,8 +833,12 @@ class DynamicStiffness:
         return self._known(over_rate)
 
     def _known(self, over_rate: NDArray[np.complex128]) -> NDArray[np.complex128]:
-        """Stiffness over the rate as dynamic stiffness less the rate, N/m, in place; zero at
-        rest.
+        """Dynamic stiffness less the rate (...), N/m, zero at rest; the argument is changed in
+        place.
+
+        Parameters
+        ----------
+        over_rate : complex array (...)   dynamic stiffness over the rate
         """
         over_rate -= 1.0
         over_rate *= self.rate

@@ -144,8 +144,13 @@ class SpringShape(Part, ABC):
 
 
 def rise(shape: SpringShape, lift: Array) -> Rise:
-    """Rise of a spring's force over the rate, with its integral and slopes, at a lift (...), m;
-    linear below zero and beyond the reach.
+    """Rise of the force of a spring over its rate at zero lift, with its integral and derivatives;
+    linear below zero lift and beyond the reach.
+
+    Parameters
+    ----------
+    shape : SpringShape   law of the spring
+    lift : array (...)    m
     """
     real = np.real(lift)
     beyond = (real > shape.reach) | (real < 0.0)
@@ -163,15 +168,16 @@ def rise(shape: SpringShape, lift: Array) -> Rise:
 def shaped_deflection(
     energy: ArrayLike, rate: ArrayLike, preload: ArrayLike, shape: SpringShape
 ) -> Array:
-    """Lift (...), m, at which a nonlinear spring has stored an energy above zero lift, J.
+    """Lift (...), m, at which a nonlinear spring has stored a given energy above that at zero lift.
 
     Newton's method within a bracket on P s + k R(s) = E, which increases with s; one more step in
     complex numbers has the exact derivative.
 
     Parameters
     ----------
-    energy : array (...)          J; may be complex, as rate and preload
+    energy : array (...)          E, J; may be complex, as rate and preload
     rate, preload : array (...)   k at zero lift, N/m, > 0; P, N, > 0
+    shape : SpringShape           law R of the force
 
     Raises
     ------
@@ -400,9 +406,15 @@ class TorsionWire(SpringShape):
         """Moment (...), N m, of a force on the follower, N, at a lift, m."""
 
     def bending_stress(self, moment: ArrayLike) -> Array:
-        """Greatest bending stress (...) at the inside of the coils, Pa; NaN without the wire.
+        """Greatest bending stress (...) at the inside of the coils, Pa; NaN where the wire is not
+        described.
 
-        sigma = q 32 M / (pi d^3), q = (w + 0.07)/(w - 0.75), w = D/d.
+        sigma = q 32 M / (pi d^3), q = (w + 0.07)/(w - 0.75), w = D/d; D, d: diameters of coils and
+        wire.
+
+        Parameters
+        ----------
+        moment : array (...)   M, N m
 
         References
         ----------

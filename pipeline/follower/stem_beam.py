@@ -74,13 +74,15 @@ _UNIT_FLEXIBILITY = np.array([[1.0 / 3.0, 0.5], [0.5, 1.0]])
 
 
 def end_flexibility(length: ArrayLike, stem: Stem) -> Array:
-    """Deflection and slope at the free end of a cantilever under unit end force and moment.
+    """Deflection, m, and slope, rad, at the free end of a cantilever under unit end force and unit
+    end moment.
 
     By the closed form of the beam, with the shear of a Timoshenko beam.
 
     Parameters
     ----------
-    length : array (...)   m, >= 0
+    length : array (...)   of the cantilever, m, >= 0
+    stem : Stem            section and material
 
     Returns
     -------
