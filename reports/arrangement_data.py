@@ -196,10 +196,11 @@ def _between(
         area = turn.length("spring", "gas", "area", unit="mm^2") or (_COIL_SHARE * length) ** 2
         bore = float(np.sqrt(4.0 * area / np.pi))
         return LinkGas(bore, _BODY_SHARE * length, (1.06 - _BODY_SHARE) * length)
-    diameter = turn.length("spring", "design", "mean_diameter") or _COIL_SHARE * length
-    active = spring.get("design", {}).get("coils")
+    wound = "extension" if isinstance(spring.get("extension"), dict) else "design"
+    diameter = turn.length("spring", wound, "mean_diameter") or _COIL_SHARE * length
+    active = spring.get(wound, {}).get("coils")
     turns = float(active) + 2.0 if isinstance(active, (int, float)) else _TURNS
-    wire = turn.length("spring", "design", "wire_diameter")
+    wire = turn.length("spring", wound, "wire_diameter")
     return LinkCoil(wire or 0.5 * length / turns * _WIRE, diameter, turns, ends)
 
 

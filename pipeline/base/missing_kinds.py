@@ -173,10 +173,6 @@ MISSING_KINDS = (
         keys=("nested", "inner_spring", "outer_spring", "second_spring"),
     ),
     MissingKind(
-        "an extension spring", "spring", ("extension", "tension", "extended"),
-        "a coil spring of its rate and preload, without [spring.design]",
-    ),
-    MissingKind(
         "an elastomer spring", "spring",
         ("elastomer", "rubber", "polyurethane", "pu", "urethane", "foam"), _AS_FORCE,
     ),

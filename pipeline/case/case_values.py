@@ -22,7 +22,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.error_text import as_written
 from camwright.pipeline.case.keys import MATERIAL, NAME, Key, keys_at, names_in
 from camwright.pipeline.case.section import Section, suggestion
-from camwright.pipeline.follower.spring import Number, Treatment, WoundWire
+from camwright.pipeline.follower.wound_wire import Number, Treatment, WoundWire
 
 _STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(0|[1-9][0-9]{0,3})\])?")
 Node = TypeVar("Node", Section, Part)

@@ -55,9 +55,7 @@ from camwright.pipeline.follower.spring import (
     SOLID,
     SOLID_STRESS,
     STRESS,
-    ZIMMERLI,
     HelicalSpring,
-    SpringWork,
     WireLimit,
     end_travel,
     surge_harmonics,
@@ -65,9 +63,11 @@ from camwright.pipeline.follower.spring import (
 from camwright.pipeline.follower.spring_kinds import (
     ATMOSPHERE,
     CHARGED_AT,
+    ExtensionSpring,
     GasSpring,
     TorsionWire,
 )
+from camwright.pipeline.follower.wound_wire import ZIMMERLI, SpringWork
 
 BENDING_STRENGTH = 0.54  # permissible bending stress over R_m, above 1e6 strokes
 HARDEST = "preload and rate high"
@@ -963,6 +963,167 @@ torsion_fatigue = _torsion_check(
     " M_0: moments at maximum and zero lift with the tolerances high, q: as of `torsion_stress`",
     reason="A broken spring releases the follower.",
 )
+
+
+def _extension(cam: LoadedCam) -> ExtensionSpring:
+    """Extension spring of the cam; InputError where it has none."""
+    hooked = None if cam.spring_shape is None else cam.spring_shape.own
+    if not isinstance(hooked, ExtensionSpring):
+        raise InputError("spring.extension", "missing", "given for the checks of the spring")
+    return hooked
+
+
+def _of_extension(demand: Demand, solution: Solution) -> Demand:
+    spring = solution.machine.spring.extension
+    return replace(demand, figures=() if spring is None else (spring.source,), corner=HARDEST)
+
+
+_HOOKED = "spring.extension"
+_LOOSE = "A hook or coil that breaks or sets releases the follower."
+_F = "F: force of the spring at maximum lift, preload and rate high"
+
+
+def _extension_check(
+    name: str, measure: Measure, share: float, *needed: str, title: str, source: Source,
+    formula: str,
+) -> Declaration:  # fmt: skip
+    """Check of a stress of an extension spring against a `share` of the tensile strength of its
+    wire; needed: other keys without which it is not known.
+    """
+
+    def allowed(numbers: Numbers) -> Allowed:
+        """Allowed stress, Pa; its missing keys."""
+        strength = numbers.get(f"{_HOOKED}.tensile_strength")
+        keys = (f"{_HOOKED}.{each}" for each in ("tensile_strength", *needed))
+        missing = tuple(each for each in keys if numbers.get(each) is None)
+        return Allowed(None if strength is None else share * strength, missing)
+
+    return check(
+        id=name,
+        title=title,
+        unit="MPa",
+        source=source,
+        method="at maximum lift, preload and rate high; without surge",
+        lift_can_help=True,
+        tier=Tier.SCREENING,
+        moved_by_tolerance=False,
+        part="extension_spring",
+        formula=formula,
+        reason=_LOOSE,
+        load_cases=NONE,
+        values=given.SPRING,
+        levers=(levers.one(f"{_HOOKED}.wire_diameter", most=2.0), *levers.GENTLER),
+        page="Spring",
+    ).measured("top", allowed=allowed, remark=_of_extension, deviation=1e-4, kept=Kept())(measure)
+
+
+extension_stress = _extension_check(
+    "extension_stress",
+    lambda cam: _extension(cam).body_stress(cam.hardest.greatest),
+    0.45,
+    title="Maximum shear stress of the coils of the extension spring",
+    source=Source(
+        "0.45 R_m: EN 13906-2, and Shigley, table 10-7: 45 to 50 % in the body, both recalled",
+        confirmed=False,
+    ),
+    formula="K_w 8 D F / (pi d^3) <= 0.45 R_m; K_w = (4 C - 1)/(4 C - 4) + 0.615/C, C = D/d,"
+    f" R_m: tensile strength of the wire, {_F}",
+)
+extension_hook_bending = _extension_check(
+    "extension_hook_bending",
+    lambda cam: _extension(cam).hook_bending(cam.hardest.greatest),
+    0.75,
+    title="Maximum normal stress of the hook of the extension spring",
+    source=Source(
+        "0.75 R_m in bending of the ends: Shigley, table 10-7, recalled", confirmed=False
+    ),
+    formula="F (K_A 16 D/(pi d^3) + 4/(pi d^2)) <= 0.75 R_m; K_A = (4 C^2 - C - 1)/(4 C (C - 1)),"
+    f" C = 2 r_1/d, r_1: mean radius of the hook, {_F}",
+)
+extension_hook_torsion = _extension_check(
+    "extension_hook_torsion",
+    lambda cam: _extension(cam).hook_torsion(cam.hardest.greatest),
+    0.40,
+    "side_radius",
+    title="Maximum shear stress of the bend from the coils to the hook",
+    source=Source(
+        "0.40 R_m in torsion of the ends: Shigley, table 10-7, recalled", confirmed=False
+    ),
+    formula="K_B 8 D F/(pi d^3) <= 0.40 R_m; K_B = (4 C - 1)/(4 C - 4), C = 2 r_2/d, r_2: mean"
+    f" radius of the bend, {_F}",
+)
+extension_fatigue = check(
+    SPRING_FATIGUE,
+    id="extension_fatigue",
+    title="Fatigue safety factor of the extension spring",
+    method="least of coils, bend and hook at maximum and zero lift, preload and rate high; without"
+    " surge",
+    lift_can_help=True,
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    part="extension_spring",
+    formula="1 / max(tau_a/S_e + tau_m/(0.67 R_m), 0.577 s_a/S_e + s_m/R_m) >="
+    " limits.spring_fatigue; tau: shear stress with the greater of K_w and K_B, s: normal stress of"
+    " the hook, _a and _m amplitude and mean, S_e: endurance by Zimmerli's point of a wire that is"
+    " not peened; as of `spring_fatigue`, `extension_hook_bending`, `extension_hook_torsion`",
+    reason=_LOOSE,
+    load_cases=NONE,
+    values=given.SPRING,
+    levers=(levers.one(f"{_HOOKED}.wire_diameter", most=2.0), *levers.GENTLER),
+    page="Spring",
+).measured(
+    "top",
+    value=lambda worst, _: 1.0 / worst,
+    bound=lambda limit, _: 1.0 / limit,
+    needed=(f"{_HOOKED}.tensile_strength", f"{_HOOKED}.side_radius"),
+    remark=_of_extension,
+    deviation=1e-4,
+    kept=Kept(),
+)(lambda cam: _extension(cam).fatigue_use(cam.hardest.preload, cam.hardest.greatest))
+
+
+def _wound_tension(worst: Value, numbers: Numbers) -> Value:
+    """Initial tension of an extension spring, N."""
+    tension: Value = numbers[f"{_HOOKED}.initial_tension"]
+    return tension + 0.0 * worst
+
+
+def _tension_limit(numbers: Numbers) -> Allowed:
+    """Least of the preload with its tolerance low and what coiling gives, N."""
+    spring = numbers.known_case.spring
+    if spring.extension is None:
+        return Allowed(None)
+    least = spring.extension.preload * (1.0 - numbers["spring.preload_tolerance"])
+    return Allowed(min(least, spring.extension.most_initial_tension))
+
+
+extension_initial_tension = check(
+    id="extension_initial_tension",
+    title="Initial tension of the extension spring",
+    unit="N",
+    source=Source(
+        "range of the initial stress of coiling: Shigley, eq. 10-41, recalled", confirmed=False
+    ),
+    method="stated value against the preload with its tolerance low, and what coiling gives",
+    lift_can_help=False,
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    part="extension_spring",
+    formula="F_0 <= min(F_1, pi d^3 tau_0/(8 D)); F_0: spring.extension.initial_tension, F_1:"
+    " preload low, tau_0 = 231/e^(0.105 C) + 6.9 (4 - (C - 3)/6.5) MPa, C = D/d",
+    reason="Below its initial tension the coils close and the rate is no longer that of the spring;"
+    " more than coiling gives cannot be made.",
+    load_cases=NONE,
+    values=given.SPRING,
+    levers=(levers.one(f"{_HOOKED}.force", most=2.0),),
+    page="Spring",
+).measured(
+    "top",
+    value=_wound_tension,
+    allowed=_tension_limit,
+    remark=_of_extension,
+    deviation=1e-4,
+)(lift)
 
 
 def _rising(numbers: Numbers) -> Allowed:

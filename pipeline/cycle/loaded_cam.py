@@ -37,8 +37,9 @@ from camwright.pipeline.follower.pivot_forces import (
     arm_pivot,
 )
 from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
-from camwright.pipeline.follower.spring import SpringWork, WoundWire, end_travel, lever
+from camwright.pipeline.follower.spring import end_travel, lever
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise
+from camwright.pipeline.follower.wound_wire import SpringWork, WoundWire
 
 
 def motion_of(jet: Jet, numbers: Numbers) -> Motion:

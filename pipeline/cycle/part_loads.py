@@ -32,7 +32,8 @@ from camwright.pipeline.follower.guide_friction import (
 )
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.pivot_bush import bush_lines, pressed_bush
-from camwright.pipeline.follower.spring import end_travel, lever, natural_frequency, surge_force
+from camwright.pipeline.follower.spring import end_travel, lever, surge_force
+from camwright.pipeline.follower.wound_wire import natural_frequency
 
 
 @dataclass(frozen=True, eq=False, repr=False)

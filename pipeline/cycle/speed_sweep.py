@@ -31,9 +31,9 @@ from camwright.pipeline.follower.spring import (
     dynamic_stiffness,
     end_travel,
     lever,
-    natural_frequency,
 )
 from camwright.pipeline.follower.spring_kinds import SpringShape
+from camwright.pipeline.follower.wound_wire import natural_frequency
 
 ANGLES = 720
 UNIFORM = 61  # speeds at equal distances

@@ -5,7 +5,8 @@ In the order of the calculation:
 | module                  | responsibility                             | symbol, unit          |
 | ----------------------- | ------------------------------------------ | --------------------- |
 | `stem_beam`             | stem as a chain of beam elements           | E I, N m2; m/N        |
-| `spring_kinds`          | gas, torsion spring; lift from energy      | rho, m; p, Pa         |
+| `wound_wire`            | wire of a helical spring: rate, strength   | k, N/m; tau, Pa       |
+| `spring_kinds`          | gas, torsion, extension; lift from energy  | rho, m; p, Pa         |
 | `spring_link`           | spring between an arm and a fixed point    | u, m; du/ds           |
 | `spring`                | helical spring, strength, buckling, surge  | k, N/m; P, N; tau, Pa |
 | `pivot_forces`          | moments about the pivot of an arm          | R, N; mu, -           |

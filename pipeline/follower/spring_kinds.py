@@ -34,6 +34,7 @@ from camwright.pipeline.base.quantities import (
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.rocker import Rocker
+from camwright.pipeline.follower.wound_wire import INDEX_MAX, INDEX_MIN, Treatment, WoundWire
 
 ATMOSPHERE = 101_325.0
 """Pressure of the surroundings, Pa."""
@@ -41,6 +42,9 @@ CHARGED_AT = 293.15
 """Temperature at which a charging pressure is stated, K: 20 degC."""
 STROKE_SHARE = 0.995
 """Share of the lift to the singularity of a force up to which the law holds; tangent beyond."""
+DISTORTION_ENERGY = 0.577
+"""Shear strength over tensile strength by the distortion energy."""
+_ANY_TRAVEL = 100.0  # m, beyond that of the end of any arm
 _NEWTON_ROUNDS = 100  # of the lift from its energy, at most
 _LIFT_CONVERGED = 1e-13
 """Last step over the lift, plus a hundredth of it over the reach: round-off of the energy."""
@@ -60,9 +64,9 @@ class Rise(NamedTuple):
         return cls(0.5 * lift**2, lift, 1.0 + 0.0 * lift, 0.0 * lift)
 
 
-SpringKind = Literal["gas", "torsion", "torsion_pivot"]
+SpringKind = Literal["gas", "torsion", "torsion_pivot", "extension"]
 """Kinds of spring that are no coils, by `spring.kind` and the table of their name."""
-SpringPart = Literal["gas_spring", "torsion_spring"]
+SpringPart = Literal["gas_spring", "torsion_spring", "extension_spring"]
 """What `[scope]` calls them."""
 
 
@@ -74,12 +78,13 @@ class SpringShape(Part, ABC):
     has another travel and force at its own ends.
 
     part: its name in `[scope]`; carried: what it acts on, "": either; linkable: whether it can
-    stand between a point of an arm and a fixed one
+    stand between a point of an arm and a fixed one; pulls: its ends together
     """
 
     part: ClassVar[SpringPart]
     carried: ClassVar[Literal["", "stem", "arm"]] = ""
     linkable: ClassVar[bool] = False
+    pulls: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -221,6 +226,11 @@ class Limited(NamedTuple):
 
 WireDiameter = Annotated[Length, Meaning("diameter of the wire")]
 CoilDiameter = Annotated[Length, Meaning("mean diameter of the coils")]
+ActiveCoils = Annotated[float, In(at_least=1.5, at_most=1000), Meaning("number of active coils")]
+ShearModulus = Annotated[
+    float, In("GPa", above=0, at_most=1e5), Meaning("shear modulus of the wire")
+]
+WireStrength = Annotated[Pressure, Meaning("tensile strength R_m of the wire")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -393,9 +403,8 @@ class TorsionWire(SpringShape):
     wire_diameter: Annotated[WireDiameter | None, Known("spring drawing", "6 mm")] = None
     mean_diameter: Annotated[CoilDiameter | None, Known("spring drawing", "48 mm")] = None
     tensile_strength: Annotated[
-        Pressure | None, Known("EN 10270-1 for the wire diameter", "1700 MPa")
+        WireStrength | None, Known("EN 10270-1 for the wire diameter", "1700 MPa")
     ] = None
-    """tensile strength R_m of the wire"""
     stress_range: Annotated[
         Pressure | None, Known("fatigue diagram of DIN EN 13906-3, or the maker", "500 MPa")
     ] = None
@@ -560,8 +569,175 @@ class PivotSpring(TorsionWire):
         return np.asarray(force) * self.length
 
 
+@dataclass(frozen=True)
+class HookedWire(WoundWire[float]):
+    """Wire of an extension spring, whose hooks cannot be peened; the strength is that of the wire
+    as drawn.
+    """
+
+    wire_diameter: float
+    mean_diameter: float
+    coils: float
+    shear_modulus: float
+    strength_at_1mm: float
+    strength_exponent: float = 0.0
+    treatment: Treatment = "plain"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExtensionSpring(SpringShape):
+    """Extension spring of round wire with hooks, wound with an initial tension.
+
+    Its force at zero lift grows by the rate k = G d^4/(8 D^3 n) of its coils.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds, or the coils cannot be wound.
+
+    References
+    ----------
+    EN 13906-2 (rate, body); Shigley's Mechanical Engineering Design, sec. 10-11 (hooks, initial
+    tension), both recalled.
+    """
+
+    table: ClassVar[str] = "spring.extension"
+    part: ClassVar[SpringPart] = "extension_spring"
+    carried: ClassVar[Literal["", "stem", "arm"]] = "arm"
+    linkable: ClassVar[bool] = True
+    pulls: ClassVar[bool] = True
+    defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"hook_radius": "half of `mean_diameter`, a full loop"}
+    )
+
+    force: Annotated[float, In("N", above=0, at_most=1e7), Known("spring drawing", "300 N")]
+    """force of the spring at zero lift"""
+    initial_tension: Annotated[
+        float, In("N", at_least=0, at_most=1e7), Known("spring drawing", "60 N")
+    ]
+    """force up to which the coils stay closed"""
+    wire_diameter: Annotated[WireDiameter, Known("spring drawing", "4 mm")]
+    mean_diameter: Annotated[CoilDiameter, Known("spring drawing", "28 mm")]
+    coils: Annotated[ActiveCoils, Known("spring drawing", 20.0)]
+    shear_modulus: Annotated[ShearModulus, Known("EN 10270", "79.5 GPa")]
+    hook_radius: Annotated[Length | None, Known("spring drawing", "14 mm")] = None
+    """mean radius of the hook's bend, where it is bent most"""
+    side_radius: Annotated[Length | None, Known("spring drawing", "8 mm")] = None
+    """mean radius of the bend from the coils to the hook, where it is twisted most"""
+    tensile_strength: Annotated[
+        WireStrength | None, Known("EN 10270-1 for the wire diameter", "1700 MPa")
+    ] = None
+    source: TableSource = NO_SOURCE
+
+    def __post_init__(self) -> None:
+        """Refuse coils that cannot be wound, and bends sharper than the wire."""
+        super().__post_init__()
+        if not self.wire.can_be_coiled:
+            wire = shown(self.wire_diameter, "mm")
+            limit = f"{INDEX_MIN:g} to {INDEX_MAX:g} times wire_diameter = {wire}"
+            stated = shown(self.mean_diameter, "mm")
+            raise InputError(f"{self.table}.mean_diameter", stated, limit)
+        for name in ("hook_radius", "side_radius"):
+            radius = getattr(self, name)
+            if radius is not None and not radius > 0.5 * self.wire_diameter:
+                limit = f"> {shown(0.5 * self.wire_diameter, 'mm')}, half of the wire"
+                raise InputError(f"{self.table}.{name}", shown(radius, "mm"), limit)
+
+    @property
+    def wire(self) -> HookedWire:
+        """Its wire as wound, not peened."""
+        return HookedWire(
+            wire_diameter=self.wire_diameter,
+            mean_diameter=self.mean_diameter,
+            coils=self.coils,
+            shear_modulus=self.shear_modulus,
+            strength_at_1mm=np.nan if self.tensile_strength is None else self.tensile_strength,
+        )
+
+    @property
+    def preload(self) -> float:
+        """Force at zero lift, N."""
+        return self.force
+
+    @property
+    def rate(self) -> float:
+        """Force per extension, N/m."""
+        return self.wire.rate
+
+    @property
+    def reach(self) -> float:
+        """Travel up to which the law holds, m: beyond that of any arm."""
+        return _ANY_TRAVEL
+
+    def within(self, lift: Array) -> Rise:
+        """Rise of a force that is linear in the lift."""
+        return Rise.linear(lift)
+
+    @property
+    def bent(self) -> float:
+        """Curvature factor K_A of the hook's bending: (4 C^2 - C - 1)/(4 C (C - 1)), C = 2 r/d."""
+        radius = 0.5 * self.mean_diameter if self.hook_radius is None else self.hook_radius
+        C = 2.0 * radius / self.wire_diameter
+        return (4.0 * C**2 - C - 1.0) / (4.0 * C * (C - 1.0))
+
+    @property
+    def twisted(self) -> float:
+        """Curvature factor K_B of the hook's torsion: (4 C - 1)/(4 C - 4), C = 2 r/d; NaN without
+        the radius of the bend.
+        """
+        if self.side_radius is None:
+            return np.nan
+        C = 2.0 * self.side_radius / self.wire_diameter
+        return (4.0 * C - 1.0) / (4.0 * C - 4.0)
+
+    def body_stress(self, force: ArrayLike) -> Array:
+        """Shear stress (...) of the coils with the Wahl factor at a force, N, Pa."""
+        return self.wire.stress(force)
+
+    def hook_bending(self, force: ArrayLike) -> Array:
+        """Normal stress (...) of the hook, F (K_A 16 D/(pi d^3) + 4/(pi d^2)), Pa."""
+        d = self.wire_diameter
+        per_newton = self.bent * 16.0 * self.mean_diameter / (np.pi * d**3) + 4.0 / (np.pi * d**2)
+        return np.asarray(per_newton * np.asarray(force))
+
+    def hook_torsion(self, force: ArrayLike) -> Array:
+        """Shear stress (...) of the bend to the hook, K_B 8 D F/(pi d^3), Pa."""
+        return np.asarray(self.twisted / self.wire.wahl_factor * self.wire.stress(force))
+
+    def fatigue_use(self, least: Value, greatest: Value) -> Array:
+        """Greatest utilisation (...) of the Goodman lines of coils, bend and hook, of least and
+        greatest forces, N.
+
+        Torsion has the line of the wire; bending its endurance over 0.577 and the tensile strength.
+        """
+        wire, twist = self.wire, self.twisted / self.wire.wahl_factor
+        if self.side_radius is None:
+            return np.full_like(greatest, np.nan)
+        twist = max(twist, 1.0)
+        torsion = wire.fatigue_use(twist * least, twist * greatest)
+        low, high = self.hook_bending(least), self.hook_bending(greatest)
+        endurance = wire.fatigue_strengths[0] / DISTORTION_ENERGY
+        bending = 0.5 * (high - low) / endurance + 0.5 * (high + low) / wire.tensile_strength
+        worse = np.real(bending) > np.real(torsion)
+        return np.asarray(np.where(worse, bending, torsion))
+
+    @property
+    def most_initial_tension(self) -> float:
+        """Greatest initial tension that coiling gives, N: stress 231/e^(0.105 C) + 6.9 (4 -
+        (C - 3)/6.5) MPa without correction factor.
+        """
+        C = self.wire.index
+        stress = 231e6 / np.exp(0.105 * C) + 6.9e6 * (4.0 - (C - 3.0) / 6.5)
+        return float(stress * np.pi * self.wire_diameter**3 / (8.0 * self.mean_diameter))
+
+
 SHAPES: Mapping[str, type[SpringShape]] = MappingProxyType(
-    {"gas": GasSpring, "torsion": TorsionSpring, "torsion_pivot": PivotSpring}
+    {
+        "gas": GasSpring,
+        "torsion": TorsionSpring,
+        "torsion_pivot": PivotSpring,
+        "extension": ExtensionSpring,
+    }
 )
 """Tables of the kinds of spring that are no coils, by `spring.kind`."""
 TABLES_OF_PARTS: Mapping[SpringPart, tuple[str, ...]] = MappingProxyType(

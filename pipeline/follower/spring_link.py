@@ -233,8 +233,10 @@ class LinkedSpring(SpringShape):
         at zero lift.
         """
         link, spring = self.link, self.spring
-        if spring is not None and link.action == "pull":
-            raise InputError("spring.link.action", "pull", f'"push" with [{spring.table}]')
+        if spring is not None and spring.pulls != (link.action == "pull"):
+            action = "pull" if spring.pulls else "push"
+            stated = f"{link.table}.action"
+            raise InputError(stated, link.action, f'"{action}" with [{spring.table}]')
         for name in ("rate", "preload"):
             stated = getattr(link, name)
             if stated is None and spring is None:

@@ -95,6 +95,10 @@ MODEL_LIMITS = (
         " pitch of the needles is not judged, nor is the load along the pin."
     ),
     ModelLimit(
+        "An extension spring has no surge, and its hooks are bent by closed formulas; buckling,"
+        " coil gaps and relaxation are those of compression springs alone."
+    ),
+    ModelLimit(
         "The output of a rocker follows its second arm without lash, and moves for the elastic"
         " follower and in a flight with its mass at zero lift; its friction and weight are"
         " those of `rocker.force`, and the strength of its second arm is not judged."

@@ -41,7 +41,7 @@ from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.solved_cam import ContourCam, numbers_of
 from camwright.pipeline.follower.guide_reactions import Guide
-from camwright.pipeline.follower.spring import SpringWork
+from camwright.pipeline.follower.wound_wire import SpringWork
 from camwright.pipeline.smoothing.scenario import Ratings
 
 _TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring

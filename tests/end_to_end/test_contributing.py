@@ -99,7 +99,7 @@ def with_spring() -> dict[Path, str]:
             KINDS,
             ('SpringKind = Literal["gas"', 'SpringKind = Literal["disc", "gas"'),
             ('SpringPart = Literal["gas', 'SpringPart = Literal["disc_spring", "gas'),
-            ('{"gas": GasSpring', '{"disc": DiscSpring, "gas": GasSpring'),
+            ('"gas": GasSpring', '"disc": DiscSpring, "gas": GasSpring'),
             before("SHAPES: Mapping", f"{kind}\n\n"),
         ),
         edited(

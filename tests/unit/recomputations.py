@@ -114,6 +114,11 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "gas_pressure", "gas_stroke", "gas_speed", "gas_temperature", "gas_stroke_rate",
         "gas_force_lost", "gas_heating", "gas_gap",
     ),
+    ("unit/test_extension_spring.py",
+     "test_a_case_pulls_its_arm_by_the_own_force_of_the_spring"): (
+        "extension_stress", "extension_hook_bending", "extension_hook_torsion",
+        "extension_fatigue", "extension_initial_tension",
+    ),
     ("unit/test_torsion_spring.py", "test_stress_of_the_wire"): (
         "torsion_stress", "torsion_fatigue",
     ),

@@ -17,6 +17,7 @@ from trial_variants import (
     with_certificate,
     with_contact,
     with_design,
+    with_extension_spring,
     with_gas_spring,
     with_guides,
     with_linked_spring,
@@ -208,6 +209,61 @@ tried(
     CURVED * (BENT - 1.05 * 12.0),
     "q 32 (M_h - M_0)/(pi d^3)",
     with_torsion_spring,
+)
+# 6 mm by 42 mm, 8 coils of 79.5 GPa, 400 N; with both tolerances high at 10 mm
+PULLED = (400.0 + 79.5e9 * 0.006**4 / (8.0 * 0.042**3 * 8.0) * 0.010) * 1.05
+TWIST = 8.0 * 0.042 * PULLED / (np.pi * 0.006**3) / 1e6
+TWISTED_COIL = 27.0 / 24.0 + 0.615 / 7.0
+BENT_HOOK = 2.0 * TWIST * (4.0 * (20 / 3) ** 2 - 20 / 3 - 1.0) / (4.0 * 20 / 3 * 17 / 3)
+BENT_HOOK += 4.0 * PULLED / (np.pi * 0.006**2) / 1e6
+for each, share, stress, words in (
+    ("extension_stress", 0.45, TWIST * TWISTED_COIL, "K_w 8 D F/(pi d^3)"),
+    ("extension_hook_bending", 0.75, BENT_HOOK, "F (K_A 16 D/(pi d^3) + 4/(pi d^2))"),
+    ("extension_hook_torsion", 0.40, TWIST * 15.0 / 12.0, "K_B 8 D F/(pi d^3)"),
+):
+    tried(
+        each,
+        limited(
+            each,
+            lambda s, share=share: with_extension_spring(tensile_strength=s / share),
+            with_extension_spring,
+        ),
+        lambda: with_extension_spring(tensile_strength=None),
+        lambda: with_extension_spring(tensile_strength=np.nan),
+        stress,
+        words,
+        with_extension_spring,
+    )
+LOW = 400.0 * 1.05
+ENDURANCE = 241.0 / (1.0 - 379.0 / (0.67 * 1600.0))
+COILED = TWIST / PULLED * 15.0 / 12.0
+by_limit(
+    "extension_fatigue",
+    "spring_fatigue",
+    lambda: with_extension_spring(tensile_strength=np.nan),
+    1.0
+    / max(
+        COILED * (0.5 * (PULLED - LOW) / ENDURANCE + 0.5 * (PULLED + LOW) / (0.67 * 1600.0)),
+        BENT_HOOK
+        / PULLED
+        * (0.5 * (PULLED - LOW) * 0.577 / ENDURANCE + 0.5 * (PULLED + LOW) / 1600.0),
+    ),
+    "Goodman of coils, bend and hook",
+    base=with_extension_spring,
+    missing=lambda: with_extension_spring(side_radius=None),
+)
+tried(
+    "extension_initial_tension",
+    limited(
+        "extension_initial_tension",
+        lambda f: with_extension_spring(force=f / 0.95),
+        with_extension_spring,
+    ),
+    None,  # without an extension spring there is no check
+    lambda: with_extension_spring(initial_tension=np.nan),
+    60.0,
+    "stated",
+    with_extension_spring,
 )
 by_limit(
     "torsion_gap",

@@ -424,9 +424,11 @@ FOLLOWERS = Kinds(
     attributes=frozenset({"roller", "roller_given", "face"}),
 )  # fmt: skip
 SPRINGS = Kinds(
-    classes=frozenset({"HelicalSpring", "GasSpring", "TorsionSpring", "PivotSpring", "Coil"}),
-    words=frozenset({"coil", "gas", "torsion", "torsion_pivot"}),
-    attributes=frozenset({"gas", "torsion", "torsion_pivot"}),
+    classes=frozenset(
+        {"HelicalSpring", "GasSpring", "TorsionSpring", "PivotSpring", "ExtensionSpring", "Coil"}
+    ),
+    words=frozenset({"coil", "gas", "torsion", "torsion_pivot", "extension"}),
+    attributes=frozenset({"gas", "torsion", "torsion_pivot", "extension"}),
 )
 _READS, _DRAWS = "reads the tables of a case", "draws the parts of a run on disk"
 ASK_FOR_A_KIND = {

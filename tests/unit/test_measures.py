@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from swung_face import face_text
+from test_extension_spring import whole as extension_text
 from test_gas_spring import LIMITS as GAS_LIMITS
 from test_gas_spring import TABLE as GAS_TABLE
 from test_gas_spring import gas_case
@@ -41,13 +42,15 @@ CASE = {
        for kind, name in (("roller", "gx120-redesign"), ("face", "gx120-flat-face"))},
     "gas spring": gas_case(table=f"{GAS_TABLE}{GAS_LIMITS}"),
     "torsion spring": torsion_case(),
+    "extension spring": parse_case(extension_text()),
     **{f"{kind} face of an arm": parse_case(face_text(kind)) for kind in ("flat", "curved")},
 }  # fmt: skip
 """Machines; with a spring or a face of its own its checks alone."""
 SLENDER = {"spring.design.end_factor": 2.0}  # a stable spring does not buckle at any lift
 SHAFT = {"camshaft.gear.machine_shaft_diameter": 0.016}  # none ends at its pinion, without a check
 NUMBERS = {name: numbers_of(case, machines(case)) | SLENDER | SHAFT for name, case in CASE.items()}
-OF_SPRINGS = {"gas spring": "gas_spring", "torsion spring": "torsion_spring"}
+OF_SPRINGS = {"gas spring": "gas_spring", "torsion spring": "torsion_spring",
+              "extension spring": "extension_spring"}  # fmt: skip
 OF_FACES = {f"{kind} face of an arm": "swung_face" for kind in ("flat", "curved")}
 MEASURED = [
     pytest.param(one, name, id=f"{one.id}, {name}")
@@ -156,7 +159,8 @@ def test_a_check_at_maximum_lift_is_at_its_limit_at_the_greatest_lift_allowed(na
             worst = measured(one, LoadedCam(Jet(top, 0.0 * top, 0.0 * top), numbers))
             demand, limit = one.measured.value(worst, numbers), one.measured.allowed(numbers)
             assert float(demand[0]) == pytest.approx(float(limit.value), rel=1e-9), one.id
-    assert len(allowed) == {"roller": 7, "face": 7, "gas spring": 2, "torsion spring": 2}[name]
+    count = {"roller": 7, "face": 7, "gas spring": 2, "torsion spring": 2, "extension spring": 6}
+    assert len(allowed) == count[name]
 
 
 def test_what_the_synthesis_bounds_has_words() -> None:

@@ -9,7 +9,12 @@ import pytest
 from check_tools import BY_ID
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from trial_variants import on_arm, with_gas_spring, with_torsion_spring
+from trial_variants import (
+    on_arm,
+    with_extension_spring,
+    with_gas_spring,
+    with_torsion_spring,
+)
 
 from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.quantities import Part
@@ -94,7 +99,8 @@ def test_every_datum_left_out_keeps_the_verdict_from_pass(keys):
 @pytest.mark.parametrize("part", PART_WORDS)
 def test_a_part_is_described_or_left_out_by_the_scope(part):
     declared = BY_ID[f"data_{part}"]
-    kinds = {"gas_spring": with_gas_spring, "torsion_spring": with_torsion_spring, "arm": on_arm,
+    kinds = {"gas_spring": with_gas_spring, "torsion_spring": with_torsion_spring,
+             "extension_spring": with_extension_spring, "arm": on_arm,
              "pivot": made.arm_solution}  # fmt: skip
     whole = kinds.get(part, made.solution)()
     found = declared(whole)

@@ -35,7 +35,7 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.solution import solution as solve
 from camwright.pipeline.cycle.solved_cam import in_load_case
 from camwright.pipeline.follower.guide_friction import thermal_resistance
-from camwright.pipeline.follower.spring import SpringWork
+from camwright.pipeline.follower.wound_wire import SpringWork
 
 MEASURED = [each.id for each in CHECKS if each.measured is not None]
 FORCE, PRESSURE = 300.0 + 100.0 * made.WAVE, 1e6 * (800.0 + 100.0 * made.WAVE)

@@ -20,7 +20,7 @@ from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, Reversal
-from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
+from camwright.pipeline.follower.spring_kinds import ExtensionSpring, GasSpring, TorsionSpring
 from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
 
 NAN = np.full(made.POSITIONS, np.nan)
@@ -76,6 +76,24 @@ def with_torsion_spring(seat_height: float | None = None, **values: Any) -> Solu
         rate=spring.rate,
         preload=spring.preload,
     )
+
+
+def with_extension_spring(**values: Any) -> Solution:
+    """The solution on an extension spring that pulls an arm along its arc, without a link."""
+    stated = {
+        "force": 400.0, "initial_tension": 60.0, "wire_diameter": 0.006, "mean_diameter": 0.042,
+        "coils": 8.0, "shear_modulus": 79.5e9, "hook_radius": 0.020, "side_radius": 0.012,
+        "tensile_strength": 1.6e9, "source": "made up",
+    }  # fmt: skip
+    spring = ExtensionSpring(**(stated | values))
+    arm = FollowerArm(centre_distance=0.12, length=0.1, swing="with", source="made up")
+    return with_case(
+        spring=made.changed(
+            made.case().spring, kind="extension", design=None, extension=spring, rate=spring.rate,
+            preload=spring.preload,
+        ),
+        follower=made.changed(made.case().follower, kind="oscillating", arm=arm),
+    )  # fmt: skip
 
 
 def on_arm(cycle: Cycle | None = None, **values: Any) -> Solution:

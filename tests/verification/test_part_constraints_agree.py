@@ -368,7 +368,8 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
         **dict.fromkeys(
             ("spring_stress", "spring_fatigue", "spring_solid", "spring_coil_gap",
              "spring_buckling", "spring_relaxation", "gas_pressure", "gas_stroke",
-             "torsion_stress", "torsion_fatigue", "link_reach"),
+             "torsion_stress", "torsion_fatigue", "extension_stress", "extension_hook_bending",
+             "extension_hook_torsion", "extension_fatigue", "link_reach"),
             "spring_travel",
         ),
         **dict.fromkeys(

@@ -32,15 +32,12 @@ from camwright.pipeline.follower.spring import (
     SOLID_STRESS,
     STRESS,
     HelicalSpring,
-    Number,
     Spring,
-    SpringWork,
-    Treatment,
     WireDensity,
     WireExponent,
     WireModulus,
-    WoundWire,
 )
+from camwright.pipeline.follower.wound_wire import Number, SpringWork, Treatment, WoundWire
 
 CATALOGUE = Path(__file__).parent / "springs.toml"
 _BYTES = 256 * 1024
