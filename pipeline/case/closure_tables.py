@@ -6,15 +6,15 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
-SPRINGLESS = ("groove", "conjugate")
+SPRINGLESS = ("gravity", "groove", "conjugate")
 """Closures that need no spring."""
-_NONE = Source("none: the cam holds the follower", confirmed=True)
+_NONE = Source("none: cam or weight hold the follower", confirmed=True)
 _NO_RATE, _NO_PRELOAD = 1e-6, 1e-9  # N/m, N
 
 
 def with_closure(tables: Tables) -> Tables:
-    """Tables of a case with, in place of the missing spring of a cam that pulls its follower, one
-    of negligible force; other cases unchanged.
+    """Tables of a case with, in place of the missing spring of a cam that pulls its follower or
+    bears its weight, one of negligible force; other cases unchanged.
     """
     cam = tables.get("cam")
     if not isinstance(cam, dict) or cam.get("closure") not in SPRINGLESS or "spring" in tables:

@@ -240,6 +240,7 @@ def _start(case: Case) -> Iterator[Rule]:
             yield Rule(f"load_case[{k}].{name}", _fixed(True), limit)
 
 
+_LEAST_WEIGHT = 1e-6  # m/s2, above the round-off of a stem that lies level
 _TRACKS = ("groove", "conjugate")
 """Closures with a second track, each with a table of its own in [cam]."""
 
@@ -257,6 +258,8 @@ def _closure(case: Case) -> None:
     for name in _TRACKS:
         if getattr(cam, name) is not None and cam.closure != name:
             raise InputError(f"cam.{name}", "a table", f'left out, or cam.closure = "{name}"')
+    if cam.closure == "gravity":
+        _weight(case)
     if not cam.pulls:
         return
     stated_as = f'cam.closure = "{cam.closure}"'
@@ -280,6 +283,27 @@ def _closure(case: Case) -> None:
     ring = case.roller.bearing.ring
     if case.spring.absent and ring is not None and case.roller.bearing.C0 is None:
         raise InputError("roller.bearing.C0", "missing", "given with a ring and without a spring")
+
+
+def _weight(case: Case) -> None:
+    """A cam that the weight alone presses has no spring, a stated lift, and a weight.
+
+    Raises
+    ------
+    InputError
+    """
+    bears = 'cam.closure = "gravity"'
+    if not case.spring.absent:
+        raise InputError("spring", "a table", f"left out with {bears}")
+    if case.lift is None:
+        limit = f"given with {bears}: its synthesis from a torque is not done"
+        raise InputError("lift", "missing", limit)
+    if case.follower.arm is None and not case.follower.gravity_along_axis > _LEAST_WEIGHT:
+        limit = f"< 90 deg with {bears}: the weight presses the follower on the cam"
+        raise InputError("follower.gravity_angle", text_of(case, "follower.gravity_angle"), limit)
+    pivot = case.follower.pivot
+    if case.follower.arm is not None and (pivot is None or pivot.gravity_angle is None):
+        raise InputError("follower.pivot.gravity_angle", "missing", f"given with {bears}")
 
 
 def _conjugate(case: Case, second: CamConjugate) -> None:

@@ -129,7 +129,7 @@ class BalanceHole(Part):
     """least wall between the hole and contour, bore or keyway"""
 
 
-Closure = Literal["spring", "groove", "conjugate"]
+Closure = Literal["spring", "gravity", "groove", "conjugate"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -208,8 +208,8 @@ class CamBody(Part):
     }
 
     closure: Annotated[Closure, Known("own choice", "groove")] = "spring"
-    """what keeps the follower on the cam: the force of a spring, the outer wall of a groove, or the
-    second disc of a conjugate pair"""
+    """what keeps the follower on the cam: the force of a spring, the weight of the follower, the
+    outer wall of a groove, or the second disc of a conjugate pair"""
     groove: Annotated[CamGroove | None, Used("contour, cycle, checks of the groove")] = None
     """groove of a roller, with `closure` groove"""
     conjugate: Annotated[CamConjugate | None, Used("contour, cycle, checks of both discs")] = None

@@ -140,7 +140,7 @@ class Solution(Displayed):
     def numbers(self) -> Numbers:
         """Numbers of the machine in the design load case, and the greatest cam speed."""
         numbers = numbers_of(self.case, self.machines)
-        if self.machine.cam.second is None:
+        if self.machine.cam.second is None and not self.machine.spring.absent:
             return numbers
         tips = [each.contour.radius_max().value for each in self.discs]
         return numbers | {"cam.greatest_radius": max(tips)}
@@ -293,6 +293,8 @@ def solved_turns(
     body : bool               whether the contour encloses a body; None: to be determined
     error_bars : bool         compute the errors by sampling and by every second crank angle
     """
+    if tier >= Tier.CYCLE:
+        case.require_one_disc("the contact by finite elements")
     states = tuple(each.machine for each in turns)
     pair = contact_pair(states[0], contour)
     mesh = bodies = None
