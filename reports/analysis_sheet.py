@@ -101,8 +101,8 @@ def _torque(turn: SheetTurn) -> Figure | None:
 
 
 def _spectrum(turn: SheetTurn) -> Figure | None:
-    """Figure of the torque amplitudes, N m, by harmonic order of the machine's shaft, without and
-    with the cam; None without a torque.
+    """Figure of the amplitudes of the torque, N m, by harmonic order, periods in a turn of the
+    machine's shaft, without and with the cam; None where neither torque is finite over the turn.
     """
     turn = turn.balanced
     names = (("torque_before_Nm", turn.words.alone), ("torque_after_Nm", "with the cam"))
@@ -216,8 +216,17 @@ def _outline(turn: SheetTurn) -> SheetFigure | None:
 
 
 def _groove(turn: SheetTurn, at: int) -> tuple[tuple[Array, float] | None, Array | None]:
-    """Outer wall (2, n) of a groove with the radius of the disc, and the point on it that touches
-    at row `at` of the contour where this wall carries at the maximum contact pressure, mm.
+    """Outer wall of a groove cam and its contact point for the outline figure, mm.
+
+    Parameters
+    ----------
+    at : int   row of the contour at the maximum contact pressure
+
+    Returns
+    -------
+    groove, touch   outer wall (2, n) with the radius of the disc; point (2,) of that wall at row
+                    `at`, None where the inner wall carries there. Both None of a cam without a
+                    groove
     """
     wall, walls, radius = turn.outer_wall, turn.walls, turn.length("cam", "groove", "outer_radius")
     if wall is None or walls is None or radius is None:
@@ -256,8 +265,11 @@ def _roller_outline(turn: SheetTurn, at: int) -> Array | None:
 
 
 def _face_outline(turn: SheetTurn, at: int) -> Array | None:
-    """Closed outline (2, n) of the face touching the contour at its row `at`, shifted by the
-    contact offset at the maximum contact pressure, mm; None if its width or thickness is unknown.
+    """Closed outline (2, n) of the face of the follower, mm, touching the contour at its row `at`;
+    None if the width or thickness of the face is unknown.
+
+    The face is shifted along itself by the contact offset at the maximum contact pressure; a curved
+    face is also turned by the pressure angle.
     """
     c, place = turn.contour, turn.columns["face_contact_offset_mm"][turn.worst]
     width, thick = (turn.length("follower", "face", key) for key in ("width", "thickness"))
@@ -281,7 +293,9 @@ def _face_outline(turn: SheetTurn, at: int) -> Array | None:
 
 
 def _face(turn: SheetTurn) -> Figure | None:
-    """Contact position, sliding speed and pressure times speed of a flat face."""
+    """Figure of the contact position, mm, sliding speed, m/s, and mean pressure times speed, MPa
+    m/s, of a face follower; None without these columns.
+    """
     half = turn.length("follower", "face", "width")
     edges = () if half is None else (LimitLine(0.5 * half, "edge"), LimitLine(-0.5 * half, "edge"))
     pv = turn.limit("limit", "MPa m/s", "face_pv")
@@ -416,8 +430,8 @@ def _ripple_map(turn: SheetTurn) -> Figure | None:
 
 
 def _trial_points(turn: SheetTurn) -> Figure | None:
-    """Figure of torque ripple and greatest utilisation by number of the trial; None of a single
-    trial.
+    """Figure of the torque ripple with the cam, N m, and of the greatest utilisation of the
+    required checks that depend on the lift, by number of the trial; None of a single trial.
     """
     if len(turn.points) < 2:
         return None
@@ -458,7 +472,9 @@ def _trial_contours(turn: SheetTurn) -> SheetFigure | None:
 
 
 def _trial_torque(turn: SheetTurn) -> Figure | None:
-    """Torque with the cam of each trial; None of a single trial or without a torque."""
+    """Figure of the torque with the cam of each trial over the turn, N m; None of a single trial or
+    where a trial has no finite torque.
+    """
     turn = turn.balanced
     cycles = [trial.cycle.of_load_case(turn.load_case) for trial in turn.trials]
     after = [cycle.get("torque_after_Nm") for cycle in cycles]
@@ -492,11 +508,13 @@ def _limits_strip(turn: SheetTurn) -> Figure | None:
 
 
 def limits_strip(limits: Table | None, gear_ratio: float, machine: MachineWords) -> Figure | None:
-    """Figure of the utilisation over the turn of limits above one half; None without a record.
+    """Figure of the utilisation over the turn of the limits that reach at least one half; None
+    without a record or such a limit.
 
     Parameters
     ----------
     limits : Table or None   2_limits.csv, by decreasing utilisation
+    gear_ratio : float       turns of the machine's shaft per cam turn
     machine : MachineWords   marks of the cycle, name of the shaft
     """
     if limits is None:

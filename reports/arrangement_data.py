@@ -110,7 +110,9 @@ def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
 
 
 def _groove(turn: SheetTurn) -> DrawnGroove | None:
-    """Groove around the contour; None without one."""
+    """Groove in which the roller runs; None without an outer wall, or if radius or depth is not
+    stated.
+    """
     wall = turn.outer_wall
     radius, depth = (turn.length("cam", "groove", key) for key in ("outer_radius", "depth"))
     if wall is None or radius is None or depth is None:
@@ -119,8 +121,8 @@ def _groove(turn: SheetTurn) -> DrawnGroove | None:
 
 
 def _arm(turn: SheetTurn) -> DrawnArm | None:
-    """Arm of an oscillating follower; None where a stem in guides carries the follower or a length
-    of the arm is not stated.
+    """Arm of an oscillating follower; None where a stem in guides carries the follower, or if
+    centre distance, arm length or prime radius is not stated.
     """
     distance, length = (
         turn.length("follower", "arm", key) for key in ("centre_distance", "length")
@@ -141,8 +143,16 @@ def _arm(turn: SheetTurn) -> DrawnArm | None:
 
 
 def _second_arm(turn: SheetTurn, arm_length: float, half: float) -> SecondArm | None:
-    """Second arm of a rocker on the pivot of the arm, mm; None without one. Of a constant ratio its
-    end travels on an arc, drawn with the output along its tangent at zero lift.
+    """Second arm of a rocker, on the pivot of the first one, mm; None without one, or if neither
+    its ratio nor its length is stated.
+
+    With a constant ratio its end travels on an arc; it is drawn with the output along the tangent
+    of the arc at zero lift.
+
+    Parameters
+    ----------
+    arm_length : float   of the first arm, mm
+    half : float         half of the depth of the first arm, mm, by which pad and output are drawn
     """
     rocker = turn.case.get("rocker")
     if not isinstance(rocker, dict):
@@ -164,8 +174,10 @@ def _second_arm(turn: SheetTurn, arm_length: float, half: float) -> SecondArm | 
 
 
 def _arm_spring(turn: SheetTurn, second: SecondArm | None) -> ArmSpring | None:
-    """Spring between an arm, or the output of its second arm, and a fixed end; None of any other.
-    Sizes that the case does not state are scaled from its length.
+    """Spring between a fixed end and the arm, or the output of its second arm; None without such a
+    spring or with a radius of its ends not stated.
+
+    Sizes of the spring that the case does not state are scaled from its length.
     """
     spring = turn.case.get("spring", {})
     link = spring.get("link")
@@ -190,7 +202,14 @@ def _arm_spring(turn: SheetTurn, second: SecondArm | None) -> ArmSpring | None:
 def _between(
     turn: SheetTurn, length: float, ends: Literal["eyes", "pins", "seats"]
 ) -> LinkCoil | LinkGas:
-    """Gas or coil spring of a length between its ends at zero lift, mm."""
+    """Gas or coil spring drawn between its two ends; sizes that the case does not state are shares
+    of its length.
+
+    Parameters
+    ----------
+    length : float   between the ends at zero lift, mm
+    ends : str       fittings of a coil spring, see `LinkCoil`; a gas spring has pins
+    """
     spring = turn.case.get("spring", {})
     if isinstance(spring.get("gas"), dict):
         area = turn.length("spring", "gas", "area", unit="mm^2") or (_COIL_SHARE * length) ** 2
@@ -205,8 +224,11 @@ def _between(
 
 
 def _counterweight(turn: SheetTurn) -> DrawnSector | None:
-    """Sector of the counterweight by its unbalance, stated or what the cam leaves of it, as wide
-    and high as `counterweight_body` makes it; None without one.
+    """Sector drawn for the counterweight, as wide and high as `counterweight_body` makes it; None
+    without a counterweight or if a size it needs is not stated.
+
+    Its unbalance is the stated one; where the case states a residual instead, it is what the cam
+    with its drilled hole leaves plus this residual, opposite to the unbalance of the cam.
     """
 
     def of(key: str, unit: str = "mm") -> float | None:
@@ -253,12 +275,17 @@ def _sizes(
     turn: SheetTurn, stem: tuple[float, float, float, float, float],
     guides: tuple[DrawnBush, DrawnBush], spring: DrawnSpring, seat: float,
 ) -> MechanismSizes:  # fmt: skip
-    """Sizes of all parts of the mechanism, mm.
+    """Sizes of all parts of the mechanism, mm; heights of guides and spring are over roller centre
+    or face at maximum lift.
 
-    stem: x of the follower axis, height of roller centre or face at zero lift, greatest lift,
-    diameter of the stem and its end over the roller centre or face; seat: thickness of the moving
-    seat of the spring. Heights of the parts about the stem are over roller centre or face at
-    maximum lift.
+    Parameters
+    ----------
+    stem : tuple           x of the follower axis, height of roller centre or face above the cam
+                           axis at zero lift, greatest lift, diameter of the stem, its end over
+                           roller centre or face, mm
+    guides : tuple         guides A and B
+    spring : DrawnSpring
+    seat : float           thickness of the moving seat of the spring, mm
     """
     axis, lowest, lift, diameter, end = stem
     highest, cheeks = lowest + lift, turn.length("roller", "fork", "cheek_height") or 0.0
@@ -334,8 +361,12 @@ def _drilled(turn: SheetTurn) -> tuple[float, float, float] | None:
 
 
 def _pin(turn: SheetTurn, roller: float) -> float:
-    """Radius of the roller pin, mm, for a roller of radius `roller`: as stated, else that of the
-    hub, else a share of the roller.
+    """Radius of the roller pin, mm, at most 0.8 of the roller: as stated, else that of the hub,
+    else a share of the roller.
+
+    Parameters
+    ----------
+    roller : float   radius of the roller, mm
     """
     stated = turn.length("roller", "pin", "diameter")
     hub = turn.length("roller", "hub_radius")
@@ -372,11 +403,16 @@ def _spring(
     turn: SheetTurn, stem: float, places: tuple[float, float],
     guides: tuple[DrawnBush, DrawnBush], seat: float,
 ) -> DrawnSpring:  # fmt: skip
-    """The spring as the case describes it: a coil between the guides where it fits there, else
-    above them; see `StemLayout`.
+    """Spring as the case describes it: a coil between the guides where it fits there, else above
+    them, see `StemLayout`; another kind by `DRAWN`; none where no spring acts.
 
-    places: height of the reference point of the follower at zero lift, and the lift, mm; stem: its
-    diameter; seat: thickness of the moving seat, mm.
+    Parameters
+    ----------
+    stem : float     diameter of the stem, mm
+    places : tuple   height of roller centre or face above the cam axis at zero lift, and the
+                     greatest lift, mm
+    guides : tuple   guides A and B
+    seat : float     thickness of the moving seat, mm
     """
     lowest, stroke = places
     kind = turn.case.get("spring", {}).get("kind", "coil")
@@ -417,8 +453,11 @@ def _spring(
 
 
 def _installed(turn: SheetTurn) -> float | None:
-    """Length of a coil spring at zero lift, mm: free length less preload over rate, both by the
-    recorded forces; None where it is unknown or shorter than the travel.
+    """Length of a coil spring at zero lift, mm: free length less force over rate, both by the
+    recorded spring forces.
+
+    None if the free length is not stated, the force does not rise with the lift, or the length is
+    not greater than the travel.
     """
     free = turn.length("spring", "design", "free_length")
     lift, force = turn.columns["lift_mm"], turn.columns["spring_force_N"]
@@ -439,7 +478,7 @@ def _stem_end(
 ) -> float:
     """Height of the upper end of the stem above the cam axis at zero lift, mm.
 
-    By the length of the stem in the case, else 0.4 of its diameter above guide B; never below the
+    By the length of the stem in the case, else 0.4 stem diameters above guide B; never below the
     spring seat on the stem.
 
     Parameters

@@ -152,7 +152,9 @@ def sheet_content(material: ReportMaterial) -> SignoffSheet:
 
 
 def _safety(row: CheckRow, check: RecordedCheck[CheckRecord]) -> Safety:
-    """Row of the table; the safety is the reciprocal of the utilisation."""
+    """Row of a check in the table of safeties of the sign-off sheet; the safety is the reciprocal
+    of the utilisation, a dash without a positive one.
+    """
     used = check.utilisation
     safety = DASH if used is None or used <= 0.0 else number(1.0 / used, 3)
     actual = quantity(check.worst, str(check.record["unit"]))
@@ -367,8 +369,10 @@ def _pivot(arm: Record) -> str:
 
 
 def _part(material: ReportMaterial, record: Record) -> DrawnCam:
-    """Cam to draw from the contour and the record of its dimensions: lengths in mm, keyway (width,
-    depth beyond the bore, angle in rad), counter-hole (x, y, radius).
+    """Cam to draw, from the contour of the run and the record of its dimensions.
+
+    Lengths are in mm; the keyway is width, depth beyond the bore and angle in rad, the counter-hole
+    centre x, y and radius.
     """
     contour = material.turn.contour
     keyway, hole, roughness = record["keyway"], record["counter_hole"], record["roughness_rq_um"]
@@ -392,7 +396,12 @@ def _part(material: ReportMaterial, record: Record) -> DrawnCam:
 
 
 def _groove(material: ReportMaterial, record: Record | None) -> GrooveView | None:
-    """Groove to draw from its record; None without one."""
+    """Groove to draw, lengths in mm; None without one.
+
+    Parameters
+    ----------
+    record : mapping or None   groove in the record of the dimensions
+    """
     wall = material.turn.outer_wall
     if record is None or wall is None:
         return None
@@ -423,7 +432,13 @@ def _track(record: Record) -> Track:
 
 
 def _drops(tracks: Record) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
-    """Drop of each crown on one side, with its title; y in mm, drop in um."""
+    """Pairs (title, rows) of the crown of each running surface; a row is the axial coordinate, mm,
+    and the drop there, um, as text.
+
+    Parameters
+    ----------
+    tracks : mapping   records of the running surfaces by part
+    """
     for word, record in tracks.items():
         crown = record["crown"]
         if crown is not None:
@@ -433,7 +448,12 @@ def _drops(tracks: Record) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
 
 
 def _mating(tracks: Record) -> str:
-    """Sentence on the running surface of the follower: flat width, ends, crown."""
+    """Sentence on the running surface of the follower: flat width, ends, crown.
+
+    Parameters
+    ----------
+    tracks : mapping   records of the running surfaces by part: the cam and roller or face
+    """
     word, record = next((word, each) for word, each in tracks.items() if word != "cam")
     crown = record["crown"]
     shape = "straight" if crown is None else f"crown {crown_words(str(crown['kind']))}"

@@ -92,7 +92,11 @@ class Raster:
 
 
 def read_field(path: Path) -> Field:
-    """Stress field at the cam angle of the highest pressure from the field file of a run.
+    """Stress field of a run at the cam angle of the highest Hertzian pressure.
+
+    Parameters
+    ----------
+    path : path   field file of the run
 
     Raises
     ------
@@ -161,8 +165,14 @@ def find_contact(field: Field) -> tuple[Array, Array]:
 
 
 def contact_view(field: Field, half_width: float, point: Array, normal: Array) -> View:
-    """View of four half-widths, each `half_width` mm, on either side of the contact, the follower
-    above; colours and iso lines by the stress within it.
+    """View of `CONTACT_REACH` half-widths on either side of the contact, the follower above;
+    colours and iso lines go up to the greatest stress in this reach.
+
+    Parameters
+    ----------
+    half_width : float    of the contact, mm
+    point : array (2,)    middle of the contact, mm
+    normal : array (2,)   unit normal there, from the cam to the follower
     """
     away = np.hypot(*(field.points - point[:, None]))
     peak = float(field.von_mises[away < CONTACT_REACH * half_width].max(initial=1e-9))
@@ -175,7 +185,9 @@ def contact_view(field: Field, half_width: float, point: Array, normal: Array) -
 
 
 def body_view(field: Field) -> View:
-    """View of both bodies as a whole in the file's frame, with logarithmic colours."""
+    """View of both bodies as a whole in the frame of the file, undeformed, with logarithmic
+    colours.
+    """
     low, high = field.points.min(axis=1), field.points.max(axis=1)
     centre, half = (low + high) / 2, 0.53 * (high - low)
     peak = float(field.von_mises.max(initial=1e-9))
@@ -250,8 +262,8 @@ def flat(field: Field, view: View) -> Raster:
 
 
 def deformed(field: Field, view: View) -> Array:
-    """Points (2, n), mm, moved by their displacements to true scale, relative to that of the point
-    nearest the view's anchor; undeformed without an anchor.
+    """Points (2, n) with their displacements at true scale, mm, less the displacement of the point
+    nearest the anchor of the view; undeformed without an anchor.
     """
     if view.anchor is None:
         return field.points

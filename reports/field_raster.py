@@ -35,10 +35,18 @@ class Above:
 
 
 def over_the_contact(path: Path, cycle: Table, angle: float, half_width: float) -> Above | None:
-    """Contact pressures of finite elements and of Hertz at a cam angle, deg.
+    """Contact pressure by finite elements and by Hertz, MPa, at a cam angle, as curves over the
+    position in half-widths.
 
-    Positions are in units of the half-width, mm. Of several load cases the one with the highest
-    pressure is taken; None if the run has no record of the pressure at this angle.
+    Of several load cases that of the highest pressure; None if the run has no record of the
+    pressure at this angle.
+
+    Parameters
+    ----------
+    path : path          record of the contact pressure
+    cycle : Table        5_cycle.csv, the same rows as the record
+    angle : float        deg
+    half_width : float   unit of the positions, mm
     """
     try:
         entry = read_npz(path)
@@ -68,12 +76,21 @@ def framed(
     notes: tuple[tuple[str, float], ...] = (), above: Above | None = None,
     unit: float | None = None,
 ) -> bytes:  # fmt: skip
-    """PNG of a raster (rows, columns, 3) in axes with colour bar, scale bar and curves above.
+    """PNG of a raster in axes with colour bar, scale bar and curves above.
 
-    extent : left, right, bottom and top of the axes; labels : of the x and y axis; title, clim :
-    words and range of the colours; bar : length and words of the scale bar; notes : words, each at
-    a share of the height; unit : length of one on both axes, mm, for second axes in mm; None
-    without them
+    Parameters
+    ----------
+    image : array              (rows, columns, 3)
+    extent : tuple             left, right, bottom and top of the axes
+    labels : tuple             of the x and of the y axis
+    title, clim : str, tuple   words and range of the colours
+    colour_map : str           name of a colour map of matplotlib
+    log : bool                 whether the colours are logarithmic
+    bar : tuple or None        length in units of the axes and words of the scale bar
+    notes : tuple              words, each at a share of the height
+    above : Above or None      curves over the same horizontal axis
+    unit : float or None       length of one on both axes, mm, for second axes in mm; None: without
+                               them
     """
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm, Normalize
@@ -118,8 +135,12 @@ def framed(
 
 
 def _in_millimetres(ax: Axes, unit: float, left: float, bottom: float) -> None:
-    """Second axes in mm at shares `left` and `bottom` of the size of the axes beside and below
-    them; `unit`: mm in one on the first axes.
+    """Second axes in mm below and beside the first ones.
+
+    Parameters
+    ----------
+    unit : float           length of one on the first axes, mm
+    left, bottom : float   place of the second axes, shares of width and height of the first ones
     """
     scales = (lambda length: unit * length, lambda length: length / unit)
     below = ax.secondary_xaxis(bottom, functions=scales)
@@ -129,7 +150,12 @@ def _in_millimetres(ax: Axes, unit: float, left: float, bottom: float) -> None:
 
 
 def _draw_above(ax: Axes, span: tuple[float, float], above: Above) -> None:
-    """Curves over the raster's horizontal `span`, the first one filled to zero."""
+    """Draw the curves above a raster, the first one filled to zero.
+
+    Parameters
+    ----------
+    span : tuple   left and right end of the raster's horizontal axis
+    """
     for number, (label, places, values) in enumerate(above.curves):
         colour = COLOURS[SERIES[number]]
         ax.plot(places, values, color=colour, dashes=(4, 3) if number else (), label=label)
@@ -143,8 +169,12 @@ def _draw_above(ax: Axes, span: tuple[float, float], above: Above) -> None:
 
 
 def _scale_bar(ax: Axes, extent: tuple[float, float, float, float], bar: tuple[float, str]) -> None:
-    """Bar with its words at the lower left; `bar`: length in units of the axes, words; `extent`:
-    left, right, bottom, top.
+    """Draw a scale bar with its words at the lower left of the axes.
+
+    Parameters
+    ----------
+    extent : tuple   left, right, bottom and top of the axes
+    bar : tuple      length in units of the axes, words
     """
     length, words = bar
     x0 = extent[0] + 0.04 * (extent[1] - extent[0])
@@ -165,9 +195,17 @@ def triangles_picture(
     window: tuple[float, float, float, float], clim: tuple[float, float], log: bool,
     colour_map: str,
 ) -> Array:  # fmt: skip
-    """Raster of a field on triangles, drawn by matplotlib.
+    """Raster (rows, columns, 3) of a field on triangles, drawn by matplotlib.
 
-    `points` (2, n), `triangles` (3, m), `values` (n,); `window` is xmin, xmax, ymin, ymax.
+    Parameters
+    ----------
+    points : array (2, n)
+    triangles : array (3, m)   indices of points
+    values : array (n,)        of the field at the points, clipped to `clim`
+    window : tuple             xmin, xmax, ymin, ymax of the picture, in the unit of the points
+    clim : tuple               range of the colours
+    log : bool                 whether the colours are logarithmic
+    colour_map : str           name of a colour map of matplotlib
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.colors import LogNorm, Normalize

@@ -16,8 +16,12 @@ WORDS_HEIGHT = 0.09
 
 
 def vertical_span(panel: Panel, named: bool) -> tuple[float, float]:
-    """Lower and upper limit of the vertical axis: curves, ribbons, near limits, space for names of
-    marks (`named`) or points.
+    """Lower and upper limit of the vertical axis of a panel: its own span if stated, else around
+    curves, ribbons and near limits.
+
+    Parameters
+    ----------
+    named : bool   whether the marks have names, which need room at the top
     """
     if panel.span is not None:
         return panel.span
@@ -48,7 +52,9 @@ class PlacedLimits:
 
 
 def placed_limits(panel: Panel, low: float, high: float) -> PlacedLimits:
-    """Places of the limits and their labels on axes from `low` to `high`, without overlap."""
+    """Limits of a panel on axes from `low` to `high`, in the unit of the panel, with the sides on
+    which their labels stand without overlap.
+    """
     inside = [line for line in panel.limits if low <= line.value <= high]
     beyond = []
     for upwards, way in ((True, "above"), (False, "below")):
@@ -69,11 +75,17 @@ def placed_limits(panel: Panel, low: float, high: float) -> PlacedLimits:
 def _sides(
     heights: Sequence[float], wanted: Sequence[bool], taken: Sequence[float], sign: float
 ) -> tuple[list[bool], bool]:
-    """Whether each label stands above its line, and whether all are clear of one another.
+    """Whether each label stands above its line, and whether all labels are clear of one another.
 
-    `heights` are those of the lines, `wanted` the preferred sides, `taken` the places of other
-    words, as shares of the height of the axes. Labels with only one possible place come first, of
-    others the lowest (sign 1) or highest (-1).
+    Labels with only one possible place are placed first, of the others the lowest (sign 1) or
+    highest (-1). Heights are shares of the height of the axes.
+
+    Parameters
+    ----------
+    heights : sequence   of the lines
+    wanted : sequence    whether each label is preferred above its line
+    taken : sequence     lower edges of other words
+    sign : float         1 or -1
     """
     slots = [{True: height, False: height - WORDS_HEIGHT} for height in heights]
     taken, above = list(taken), list(wanted)

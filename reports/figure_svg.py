@@ -163,10 +163,11 @@ def write(material: ReportMaterial) -> list[Path]:
 
 @contextmanager
 def shipped(settings: Mapping[RcKeyType, str | float] = MappingProxyType({})) -> Iterator[None]:
-    """The settings that matplotlib is shipped with, and further ones; none of the user's.
+    """Context with the settings that matplotlib is shipped with, and further ones; none of the
+    user's.
 
-    A drawing depends on no matplotlibrc, of the user or of the working folder. The settings are
-    afterwards as before.
+    A drawing thus depends on no matplotlibrc of the user or of the working folder. On leaving, the
+    settings are those before.
     """
     import_matplotlib()
     from matplotlib import rc_context, rcParamsDefault
@@ -332,7 +333,12 @@ def _height(figure: Figure, panel: Panel, inner: float) -> float:
 
 
 def _panel(ax: Axes, figure: Figure, k: int, size: tuple[float, float]) -> None:
-    """Marks, curves, axes, limits and heading of panel `k`; `size` of the axes in inches."""
+    """Draw marks, curves, axes, limits and heading of panel `k` of a figure.
+
+    Parameters
+    ----------
+    size : tuple   width and height of the axes, inches
+    """
     panel = figure.panels[k]
     axis, above = figure.axis_of(panel), k < figure.columns
     for mark in axis.marks:
@@ -399,8 +405,11 @@ def _mark_name(ax: Axes, mark: AxisMark) -> None:
 
 
 def _curve(ax: Axes, panel: Panel, curve: Curve, right: float) -> Artist | Container:
-    """Draw a curve with its ribbon and notes, bars up to `right`; returns the artist that stands
-    for it in a legend.
+    """Draw a curve with its ribbon and notes; returns the artist that stands for it in a legend.
+
+    Parameters
+    ----------
+    right : float   end of the horizontal axis, at which horizontal bars are cut
     """
     colour = COLOURS[curve.colour]
     if curve.look == "bar":
@@ -431,8 +440,12 @@ def _notes(ax: Axes, curve: Curve) -> None:
 
 
 def _bars(ax: Axes, panel: Panel, curve: Curve, right: float) -> BarContainer:
-    """Draw the bars of a curve: in the rows of the panel, up to `right`, or side by side with those
-    of other curves.
+    """Draw the bars of a curve: in the rows of a panel of bars, else upright beside those of the
+    other curves.
+
+    Parameters
+    ----------
+    right : float   end of the horizontal axis, at which horizontal bars are cut
     """
     look: dict[str, Any] = {"color": COLOURS[curve.colour], "label": curve.label, "zorder": 3}
     if panel.kind == "bars":
@@ -460,7 +473,13 @@ def _rows(ax: Axes, panel: Panel, axis: HorizontalAxis) -> None:
 
 
 def _vertical(ax: Axes, panel: Panel, *, named: bool, below_names: bool) -> None:
-    """Vertical axis of a panel with its limits."""
+    """Draw the vertical axis of a panel with its limits.
+
+    Parameters
+    ----------
+    named : bool         whether the marks of the horizontal axis have names
+    below_names : bool   whether these stand in this panel, so that words at its edge go below them
+    """
     from matplotlib.ticker import MaxNLocator
 
     low, high = vertical_span(panel, named)
@@ -472,7 +491,12 @@ def _vertical(ax: Axes, panel: Panel, *, named: bool, below_names: bool) -> None
 
 
 def _horizontal(ax: Axes, axis: HorizontalAxis, columns: int) -> None:
-    """Limits and ticks of the horizontal axis."""
+    """Draw the horizontal axis of a panel: ends and ticks.
+
+    Parameters
+    ----------
+    columns : int   of panels in the figure, by which the number of ticks is limited
+    """
     from matplotlib.ticker import MaxNLocator
 
     low, high = axis.span
@@ -535,7 +559,9 @@ def _limits(ax: Axes, panel: Panel, low: float, high: float, *, below_names: boo
 
 
 def _second_axis(ax: Axes, second: SecondAxis) -> None:
-    """Horizontal axis above the panel, its values those of the first axis over `ratio`."""
+    """Draw a horizontal axis above the panel; its values are those of the axis below over
+    `second.ratio`.
+    """
 
     def to_second(first: ArrayLike) -> ArrayLike:
         return np.asarray(first) / second.ratio

@@ -154,8 +154,13 @@ def _panels(figure: Figure) -> Spec:
 
 
 def _panel(figure: Figure, number: int, domain: tuple[float, float], drawn: _Drawn) -> None:
-    """Add the traces, axes, limits and legend of panel `number` to `drawn`; `domain` is its
-    vertical extent, shares of the figure from below.
+    """Add the traces, axes, limits and legend of a panel to the Plotly data of a figure.
+
+    Parameters
+    ----------
+    number : int     of the panel in the figure, from the top
+    domain : tuple   lower and upper end of its axes, shares of the figure's height
+    drawn : _Drawn   data of the figure, extended in place
     """
     panel, end = figure.panels[number], "" if number == 0 else str(number + 1)
     axis, legend, top = figure.axis_of(panel), figure.legends[number], domain[1]
@@ -263,9 +268,13 @@ def _limits(
 ) -> tuple[list[Spec], list[Spec]]:
     """Plotly shapes and annotations of the limits of a panel: lines, and labels beside them.
 
-    `axis` is the id of the panel's y axis, as ``y2``, which goes from `low` to `high` in the unit
-    of the panel. The label of a limit beyond these stands at the edge, at the upper one below the
-    names of the marks if `below_names`.
+    The label of a limit outside the axis stands at its edge.
+
+    Parameters
+    ----------
+    axis : str           id of the panel's y axis, such as ``y2``
+    low, high : float    ends of this axis, in the unit of the panel
+    below_names : bool   whether a label at the upper edge goes below the names of marks
     """
     placed = placed_limits(panel, low, high)
     shapes: list[Spec] = [

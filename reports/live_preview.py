@@ -114,7 +114,9 @@ def _slider(place: int, factor: Record) -> LiveSlider:
 
 
 def _row(each: Record) -> LiveRow:
-    """Row of a quantity of the record; a limit that changes with the design has no text."""
+    """Row of the live preview for a quantity of its record; a limit that changes with the design
+    has no text.
+    """
     limit = each["limit"]
     constant = limit is not None and len(limit["coefficients"]) == 1
     words = quantity(limit["coefficients"][0], each["unit"], 4) if constant else ""

@@ -45,7 +45,8 @@ def words_of(case: Record, gear_ratio: float, *, balances: bool = True) -> Machi
 
     Parameters
     ----------
-    balances : bool   whether the run has a torque
+    gear_ratio : float   turns of the machine's shaft per cam turn
+    balances : bool      whether the run has a torque
     """
     torque = case.get("torque")
     turn = 360.0 * gear_ratio
@@ -63,8 +64,13 @@ def words_of(case: Record, gear_ratio: float, *, balances: bool = True) -> Machi
 
 
 def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[AxisMark, ...]:
-    """Marks of the case's torque, each with angle and name, repeated in every cycle of a cam turn,
-    which is `turn` deg of the shaft; () without readable ones.
+    """Marks of the case's torque, repeated in every cycle of a cam turn; () without marks or where
+    an angle cannot be read.
+
+    Parameters
+    ----------
+    torque : mapping   torque of the case, with its cycle and marks of angle and name
+    turn : float       angle of the machine's shaft in a cam turn, deg
     """
     stated = torque.get("marks")
     rows = [row for row in stated if isinstance(row, Mapping)] if isinstance(stated, list) else []
@@ -79,9 +85,14 @@ def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[AxisMark, ...]:
 def _repeated(
     starts: list[float], names: list[str] | tuple[str, ...], cycle: float, turn: float
 ) -> tuple[AxisMark, ...]:
-    """Marks from each of the `starts`, deg, to the next one, in every cycle of the turn, every
-    second one shaded; `cycle` and `turn` in deg of the shaft. () where the turn is no whole number
-    of cycles.
+    """Marks in every cycle of a cam turn, each from its start to the next one, every second one
+    shaded; () without starts or where the turn is no whole number of cycles.
+
+    Parameters
+    ----------
+    starts : list of float   in a cycle, ascending, deg of the machine's shaft
+    names : sequence         of the marks
+    cycle, turn : float      angle of the shaft in a cycle and in a cam turn, deg
     """
     count = round(turn / cycle)
     if not starts or count < 1 or abs(turn / cycle - count) > _WHOLE * count:

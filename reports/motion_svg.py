@@ -199,10 +199,10 @@ def _text(
 
 
 def _panels(turn: SheetTurn) -> list[_MotionPanel]:
-    """Panels of the forces and of the contact pressure over the turn, with the curves that are
-    known at every angle.
+    """Panels of the forces and of the contact pressure over the turn.
 
-    They are not where the follower may leave the cam.
+    A curve that is not finite at every angle, as where the follower may leave the cam, is left out,
+    and so is a panel without curves.
     """
     forces = [
         _MotionCurve(label, turn.columns[name], colour)
@@ -236,8 +236,11 @@ def _box(panel_number: int, count: int) -> tuple[float, float, float, float]:
 
 
 def _panel(panel: _MotionPanel, panel_number: int, count: int) -> str:
-    """SVG of axes, legend, limit and curves of the panel `panel_number` of `count`,
-    from the top.
+    """SVG of axes, legend, limit and curves of a panel.
+
+    Parameters
+    ----------
+    panel_number, count : int   of the panel from the top, of all panels
     """
     left, top, width, height = _box(panel_number, count)
     lines = [_text(f"{panel.title}, {panel.unit}", left, top - 26.0, 13.5, weight=650)]
@@ -303,8 +306,13 @@ def _frames(size: int) -> Array:
 
 
 def _marks(panel: _MotionPanel, panel_number: int, count: int, row: int) -> str:
-    """SVG of the cursor and of a dot on each curve at a row of the turn, as in the
-    still picture.
+    """SVG of the cursor and of a dot on each curve of a panel at a row of the turn, for the still
+    picture.
+
+    Parameters
+    ----------
+    panel_number, count : int   of the panel from the top, of all panels
+    row : int                   of the turn
     """
     left, top, width, height = _box(panel_number, count)
     x = left + width * row / panel.curves[0].values.size
@@ -314,7 +322,12 @@ def _marks(panel: _MotionPanel, panel_number: int, count: int, row: int) -> str:
 
 
 def _moving_marks(panel: _MotionPanel, panel_number: int, count: int) -> str:
-    """SVG of a cursor that runs over the turn with a dot on each curve, animated."""
+    """SVG of a cursor that runs over the turn in a panel, with a dot on each curve, animated.
+
+    Parameters
+    ----------
+    panel_number, count : int   of the panel from the top, of all panels
+    """
     left, top, width, height = _box(panel_number, count)
     marks = [_line((left, top), (left, top + height), "ink", 1.2)]
     for curve in panel.curves:
@@ -388,8 +401,12 @@ def _with_words(svg: str, name: str, words: str) -> str:
 
 
 def _with_motion(svg: str, group: ShapeGroup, poses: Sequence[Pose]) -> str:
-    """The drawing `svg` with the motion of one of its groups through given poses: turn, shift, and
-    stretch of its lines.
+    """The drawing `svg` with one of its groups animated.
+
+    Parameters
+    ----------
+    group : ShapeGroup   of the drawing
+    poses : sequence     turn, shift and stretch of the group, one for each frame
     """
     turns = np.degrees(np.unwrap([pose.turn for pose in poses]))
     shifts = [f"{decimal(pose.shift[0])} {decimal(-pose.shift[1])}" for pose in poses]
@@ -412,8 +429,13 @@ def _path(shape: DrawnOutline, stretch: float) -> str:
 
 
 def _with_arrow(svg: str, name: str, at: Sequence[Arrow]) -> str:
-    """The drawing `svg` with the arrow `name` moved through the given arrows, hidden where it is
-    shorter than its head.
+    """The drawing `svg` with one of its arrows animated; hidden in frames where the arrow is no
+    longer than its head.
+
+    Parameters
+    ----------
+    name : str      of the arrow in the drawing
+    at : sequence   the arrow, one for each frame
     """
     ends: dict[str, list[str]] = {key: [] for key in ("x1", "y1", "x2", "y2")}
     seen = []

@@ -67,7 +67,9 @@ class OutlineFigure:
 
     @property
     def _disc(self) -> list[OutlineCurve]:
-        """Disc with a groove around the contour, its inner wall; none without one."""
+        """Edge of a disc with a groove, and the outer wall of the groove, whose inner wall is the
+        contour; [] without a groove.
+        """
         if self.groove is None:
             return []
         wall, radius = self.groove

@@ -72,8 +72,8 @@ def _spring_force(turn: SheetTurn) -> Figure | None:
 
 
 def _energy(turn: SheetTurn) -> Figure | None:
-    """Figure of the energies, J: of spring and follower, and what cam and guides have exchanged
-    since the angle 0. None without the mass of the follower.
+    """Figure of the energies, J: stored in spring and motion of the follower; work of the cam and
+    friction of the guides since cam angle 0. None without the mass of the follower.
     """
     c = turn.columns
     mass = turn.length("follower", "mass", unit="kg")
@@ -112,7 +112,10 @@ def _summed(values: Array, over: Array) -> Array:
 
 
 def _load_cases(turn: SheetTurn) -> Figure | None:
-    """Figure with the extremes of the load cases as bars side by side; None of a single one."""
+    """Figure of the load cases as bars side by side: greatest magnitudes over the turn of normal
+    force, N, contact pressure, MPa, guide reactions, N, and cam torque, N m; None of a single load
+    case.
+    """
     if len(turn.others) < 2:
         return None
     names = tuple(name for each in turn.others for name in each.load_cases)
@@ -146,8 +149,9 @@ def _load_cases(turn: SheetTurn) -> Figure | None:
 
 
 def _speed_sweep(turn: SheetTurn) -> Figure | None:
-    """Figure of contact force and surge of the spring over the speed, with its resonances, at the
-    first preload of the sweep; None with fewer than three speeds.
+    """Figure of contact force and surge of the spring, N, over the speed of the machine's shaft,
+    with resonances, at the first preload of the sweep; None without a sweep or with fewer than
+    three speeds.
     """
     sweep = turn.sweep
     if sweep is None:
@@ -175,8 +179,10 @@ def _speed_sweep(turn: SheetTurn) -> Figure | None:
 
 
 def _peaks(values: Array) -> list[int]:
-    """Indices, ascending, of at most three highest maxima of `values` (n,) that rise by
-    `_PROMINENCE` of the greatest value above the lows beside them.
+    """Indices, ascending, of the at most three highest maxima of `values` (n,).
+
+    A maximum counts if it rises by `_PROMINENCE` of the greatest value above the higher of the lows
+    on its two sides, each between it and the next greater value.
     """
     inner = range(1, values.size - 1)
     highest = [k for k in inner if values[k] > values[k - 1] and values[k] >= values[k + 1]]
@@ -226,8 +232,8 @@ def _normal_force(turn: SheetTurn) -> Figure | None:
 
 
 def _guides(turn: SheetTurn) -> Figure | None:
-    """Figure of the guide reactions by elastic guides and by statics, of what length and clearance
-    change in them, and of the friction loads, N.
+    """Figure of the guide reactions, N: by elastic guides and by statics; their change by length
+    and by clearance of the guides; sum of the forces on both sides of each bore.
     """
     pairs = (
         ("guide_reaction_A_N", "A, finite elements"), ("guide_reaction_A_statics_N", "A, statics"),
@@ -250,8 +256,9 @@ def _guides(turn: SheetTurn) -> Figure | None:
 
 
 def _pivot(turn: SheetTurn) -> Figure | None:
-    """Figure of the load of the pivot, N, its mean and greatest pressure in a bush, MPa, and its
-    friction, N, with limits; None of a follower without a described pivot.
+    """Figure of the load of the pivot, N, greatest and mean pressure in its bush, MPa, and its
+    friction as a force on the arc of the reference point, N, with limits; None without a load of a
+    pivot.
     """
     load = turn.columns.get("pivot_load_N")
     if load is None:

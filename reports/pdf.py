@@ -40,6 +40,11 @@ def typeset(template: str, document: DataclassInstance) -> bytes:
     the pictures of the document. Fonts are those of the matplotlib package; system fonts are used
     only for characters that DejaVu Sans lacks.
 
+    Parameters
+    ----------
+    template : str         file of the typst template
+    document : dataclass   whose fields and properties the template reads
+
     Raises
     ------
     ResultError

@@ -68,8 +68,12 @@ class BushPressure:
 
 
 def read_guides(path: Path, load_case: str) -> tuple[BushPressure, BushPressure]:
-    """Guides A and B: line load over the turn of one load case, bore pressure at the worst angle of
-    all load cases.
+    """Pressure in guides A and B: line load over the turn of one load case; pressure in the bore at
+    the cam angle of its maximum over all load cases.
+
+    Parameters
+    ----------
+    path : path   ``5_guides.npz`` of a run
 
     Raises
     ------
@@ -90,8 +94,12 @@ def read_guides(path: Path, load_case: str) -> tuple[BushPressure, BushPressure]
 
 
 def read_pivot(path: Path, load_case: str) -> BushPressure:
-    """Bush of a pivot: line load over the turn of one load case, pressure around it at the worst
-    angle of all load cases.
+    """Pressure in the bush of a pivot: line load over the turn of one load case; pressure in the
+    bore at the cam angle of its maximum over all load cases.
+
+    Parameters
+    ----------
+    path : path   ``5_pivot.npz`` of a run
 
     Raises
     ------
@@ -193,8 +201,13 @@ def _unrolled(canvas: Figure, ax: Axes, guide: BushPressure, norm: Normalize) ->
 
 
 def _pressed(places: Array, pressure: Array) -> tuple[float, float]:
-    """First and last of the places (n,) under pressure (n,), each moved outwards by a tenth of
-    their distance within the places; all of them without pressure.
+    """First and last of the places under pressure, each moved outwards by a tenth of their
+    distance, at least by 0.02 of the whole range, but not beyond it; the whole range without
+    pressure.
+
+    Parameters
+    ----------
+    places, pressure : array (n,)   positions, ascending, and the pressure at each
     """
     on = places[pressure > 0]
     if not on.size:
@@ -269,8 +282,12 @@ class AxialPressure:
 def read_axial(path: Path, load_case: str, worst: tuple[str, float] | None) -> AxialPressure:
     """Axial pressure over the turn of one load case, and at one cam angle of any load case.
 
-    worst : tuple   load case and cam angle, deg, of that angle, the nearest known one; None: the
-    maximum over the turn of `load_case`
+    Parameters
+    ----------
+    path : path             ``5_length.npz`` of a run
+    worst : tuple or None   load case and cam angle, deg, of the one angle: the nearest one of that
+                            load case with a known pressure is taken; None or without such an angle:
+                            that of the maximum over the turn of `load_case`
 
     Raises
     ------
@@ -341,9 +358,15 @@ class CertifiedPressure:
 
 
 def shown_place(check: Record | None, records: Sequence[Record]) -> tuple[str, float] | None:
-    """Load case and cam angle, deg, of the shown axial pressure; None if not known.
+    """Load case and cam angle, deg, at which the axial pressure is shown; None if not known.
 
-    The worst certified angle, of the load case of the check if it has one; else that of the check.
+    The certified angle of the greatest end pressure, in the load case of the check if that has one;
+    without certified angles that of the check.
+
+    Parameters
+    ----------
+    check : mapping or None   record of the check ``edge_pressure``
+    records : sequence        `length_certificate` of the trial
     """
     worst = str(check["load_case"]) if check is not None else ""
     of_worst = [record for record in records if record["load_case"] == worst]
@@ -361,12 +384,13 @@ def shown_place(check: Record | None, records: Sequence[Record]) -> tuple[str, f
 def certified_pressure(
     records: Sequence[Record], axial: AxialPressure, plane: float | None
 ) -> CertifiedPressure | None:
-    """Axial pressure by finite elements at the worst angle; None if not certified there.
+    """Axial pressure by finite elements at the shown angle of `axial`; None if not certified there
+    or if `plane` is not known.
 
     Parameters
     ----------
-    records : sequence   `length_certificate` of the trial, factors over plane strain
-    plane : float        maximum pressure of plane strain at the worst angle, MPa; None: not known
+    records : sequence      `length_certificate` of the trial, factors over plane strain
+    plane : float or None   maximum pressure of plane strain at the shown angle, MPa
     """
     for record in records:
         here = abs(float(record["cam_angle_deg"]) - axial.worst_angle) < _SAME_ANGLE
@@ -417,8 +441,15 @@ def _along_the_line(
     centre: float | None,
     certified: CertifiedPressure | None,
 ) -> None:
-    """Draw the pressure along the line at the worst angle, without tilt and at the greatest moment,
-    with limit and plane-strain pressure, MPa, and the certified ends.
+    """Draw the pressure along the line of contact at the shown angle, without tilt and at the
+    greatest moment.
+
+    Parameters
+    ----------
+    limit : float or None                   of the edge pressure, MPa; drawn if below twice the
+                                            other pressures
+    centre : float or None                  maximum pressure of plane strain at this angle, MPa
+    certified : CertifiedPressure or None   pressure by finite elements there
     """
     middles, whole = 0.5 * (axial.edges[1:] + axial.edges[:-1]), slice(None)
     if axial.has_means:
@@ -458,7 +489,7 @@ def _along_the_line(
 
 
 def _over_line_and_turn(canvas: Figure, ax: Axes, axial: AxialPressure) -> None:
-    """Map of the pressure at the greatest moment over cam angle and axial position."""
+    """Draw a map of the pressure at the greatest moment, MPa, over cam angle and axial position."""
     step = float(axial.angle[1] - axial.angle[0]) if axial.angle.size > 1 else 360.0
     turn = np.append(axial.angle, axial.angle[-1] + step) - 0.5 * step
     shown = ax.pcolormesh(turn, axial.edges, axial.whole.T, cmap=COLOUR_MAP, vmin=0.0,

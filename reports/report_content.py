@@ -292,8 +292,8 @@ def _checks(material: ReportMaterial) -> ReportSection:
 
 
 def failed_checks(material: ReportMaterial) -> ReportSection:
-    """Section of the failed checks, required ones first; those left to a deeper solution are not
-    among them.
+    """Section of the failed checks, required ones first, without the checks that only a deeper
+    solution judges.
     """
     rows = [row for row in report_tables.check_rows(material.run.final.checks) if not row.judged_at]
     groups = (

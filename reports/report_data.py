@@ -56,10 +56,13 @@ def read_material(folder: Path, ahead: Mapping[str, PendingCall] | None = None) 
 
 
 def governing_turn(run: Run, case: Record) -> SheetTurn:
-    """Governing load case of the final trial among those in which the follower stays on the cam and
-    does not lock.
+    """Turn of the governing load case of the final trial, among those in which the follower stays
+    on the cam and does not lock; among all load cases if there are none of those.
 
-    Among all load cases where it leaves the cam or locks in each.
+    Raises
+    ------
+    ResultError
+        If the cycle of the run has no rows.
     """
     final = run.final
     names = final.cycle.load_cases

@@ -403,8 +403,12 @@ def input_tables(case: Record) -> list[InputTable]:
 
 
 def _sections(case: Record, path: str = "") -> Iterator[tuple[str, Record]]:
-    """Pairs (title, section) of the tables in a case and in their own sections, parents first;
-    titles hold the path, list items a number.
+    """Pairs (title, section) of the tables of a case, each before the tables inside it; titles hold
+    the path, items of a list a number.
+
+    Parameters
+    ----------
+    path : str   title of the section `case`; "" of the whole case
     """
     for key, value in case.items():
         title = f"{path} › {words(key)}" if path else words(key)

@@ -14,8 +14,14 @@ _BEHIND = 0.8  # width of the cam by which a second arm on the side of the first
 
 
 def moving(mechanism: DrawnMechanism, lifts: Array, width: float, digits: int) -> list[Json]:
-    """Records of the solids, each with turn, rad, shift, mm, and stretch along y at lifts (f,), mm,
-    as drawn; width of the cam, mm. None of a follower that has no such parts.
+    """Records of the solids that an arm carries, each with its poses as drawn at lifts (f,): turn,
+    rad, shift, mm, and stretch along y; [] of a follower without an arm.
+
+    Parameters
+    ----------
+    lifts : array (f,)   mm
+    width : float        of the cam, mm
+    digits : int         kept in the records
     """
     arm = mechanism.arm
     if arm is None:
@@ -37,7 +43,13 @@ def moving(mechanism: DrawnMechanism, lifts: Array, width: float, digits: int) -
 
 
 def _solids(m: DrawnMechanism, arm: DrawnArm, width: float) -> Iterator[tuple[str, Solid]]:
-    """Solids in the frames of the groups of the drawing, by their names."""
+    """Pairs (name, solid) of second arm, output and spring of an arm, each in the frame of the
+    drawing's group of this name, mm.
+
+    Parameters
+    ----------
+    width : float   of the cam, mm
+    """
     if arm.second is not None:
         yield "second-arm", _second_arm(arm, arm.second, width)
         head = pin_along(arm.second.pad, 0.0, arm.second.head)
@@ -62,7 +74,12 @@ def _solids(m: DrawnMechanism, arm: DrawnArm, width: float) -> Iterator[tuple[st
 
 
 def _second_arm(arm: DrawnArm, second: SecondArm, width: float) -> Solid:
-    """Bar and pad of a second arm, its pivot at the origin, the first arm along -y."""
+    """Bar and pad of a second arm, its pivot at the origin, while the first arm lies along -y; mm.
+
+    Parameters
+    ----------
+    width : float   of the cam, mm
+    """
     far, half = -second.side * second.length, 0.8 * arm.half
     bar = box((-half, min(0.0, far), -0.25 * width), (half, max(0.0, far), 0.25 * width))
     both = joined([bar, pin(second.pad, 0.3 * width).raised(far)])
@@ -70,7 +87,9 @@ def _second_arm(arm: DrawnArm, second: SecondArm, width: float) -> Solid:
 
 
 def _fitting(shape: LinkCoil) -> Solid:
-    """Pin with the eye or seat of a coil spring along y."""
+    """Pin at the origin with the eye or the seat of a coil spring along +y; the seat alone on an
+    output.
+    """
     axle = pin(PIN_SHARE * shape.diameter, 0.5 * shape.diameter)
     if shape.ends == "eyes":
         return joined([axle, rod(shape.wire, 0.0, shape.fitting)])

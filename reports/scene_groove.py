@@ -68,7 +68,13 @@ class SceneGroove:
 
     def follower(self, stem: float, top: float, radius: float) -> Solid:
         """Stem with the cheek that holds the pin of the roller on one side, about the roller
-        centre; diameter of the stem, height of its end, radius of the pin.
+        centre, mm.
+
+        Parameters
+        ----------
+        stem : float     diameter of the stem
+        top : float      height of the end of the stem
+        radius : float   of the pin
         """
         cheek_at, wide = self.cheek
         half, bridge = 0.5 * stem, 2.0 * radius
@@ -81,7 +87,15 @@ class SceneGroove:
 def scene_groove(
     turn: SheetTurn, groove: DrawnGroove, inner: Array, bore: Array, width: float
 ) -> SceneGroove:
-    """Groove of a disc of a width, mm; inner wall and bore (2, n) at equal cam angles, mm."""
+    """Places of a disc with its groove, of the roller and of the cheek along the shaft, mm.
+
+    Parameters
+    ----------
+    groove : DrawnGroove   with the outer wall
+    inner : array (2, n)   inner wall, at equal cam angles
+    bore : array (2, n)    at equal cam angles
+    width : float          of the disc
+    """
     stations = np.linspace(0.0, 360.0, inner.shape[1], endpoint=False)
     angle = turn.contour["cam_angle_deg"]
     outer = np.stack([np.interp(stations, angle, each, period=360.0) for each in groove.wall])

@@ -222,8 +222,9 @@ def _flank(material: ReportMaterial, view: TurnView, width: float) -> Json:
 
 
 def _walls(material: ReportMaterial, view: TurnView, groove: SceneGroove) -> Json:
-    """Record of both walls of a groove, as of a flank; a point has the stress of the turn where its
-    wall carries there, else none.
+    """Record of both walls of a groove for the page, with the maximum von Mises stress of the turn,
+    MPa, at points where their wall carries and 0 elsewhere; without stresses where they are not
+    known.
     """
     count = groove.inner.shape[1]
     record = groove.walls().as_record(_DIGITS) | {"loops": 4}
@@ -288,8 +289,12 @@ def _drilled(mechanism: DrawnMechanism, width: float) -> list[Solid]:
 
 
 def _roller(view: TurnView, width: float) -> Json:
-    """Record of the roller `width` mm wide: rim, faces, cover of its bearing, and a spoke by its
-    two radii, which shows its rotation.
+    """Record of the roller: rim, faces, cover of its bearing, and a spoke by its two radii, mm,
+    which shows its rotation.
+
+    Parameters
+    ----------
+    width : float   of the roller, mm
     """
     unit = unit_circle()
     away = np.hypot(*view.follower)
@@ -305,7 +310,13 @@ def _roller(view: TurnView, width: float) -> Json:
 
 def _follower(view: TurnView, width: float, stem: float, top: float) -> Solid:
     """Stem with fork and pin of a roller, or with the block of a flat face, about the follower's
-    origin; width of the cam, diameter of the stem and height of its end, mm.
+    origin; mm.
+
+    Parameters
+    ----------
+    width : float   of the cam
+    stem : float    diameter of the stem
+    top : float     height of the end of the stem
     """
     low, high = view.follower.min(axis=1), view.follower.max(axis=1)
     if not view.is_roller:
@@ -333,10 +344,13 @@ def _pin_radius(view: TurnView) -> float:
 
 
 def _frame(mechanism: DrawnMechanism, disc: float = 0.0, before: float = 0.0) -> Solid:
-    """Guides, space of the spring with its seats over the turn, shaft with bearings and gear.
+    """Fixed parts: guides, space of the spring with its seats over the turn, shaft with bearings
+    and gear; of an arm its pivot in place of the guides.
 
-    Of an arm its pivot in place of the guides. disc : place of the middle of the cam along the
-    shaft, mm; before : that of the stem
+    Parameters
+    ----------
+    disc : float     place of the middle of the cam along the shaft, mm
+    before : float   place of the stem and its guides along the shaft, mm
     """
     highest, arm = mechanism.lowest + mechanism.stroke, mechanism.arm
     if arm is None:
@@ -356,8 +370,13 @@ def _frame(mechanism: DrawnMechanism, disc: float = 0.0, before: float = 0.0) ->
 
 
 def _sleeve(sleeve: Sleeve, bore: float, highest: float) -> Solid:
-    """Sleeve with its bore, mm, about the stem; its ends are heights over the reference point at
-    maximum lift, which is at `highest`.
+    """Sleeve about the stem, its axis along y.
+
+    Parameters
+    ----------
+    sleeve : Sleeve   ends as heights over roller centre or face at maximum lift, outer diameter, mm
+    bore : float      diameter, mm
+    highest : float   height of roller centre or face above the cam axis at maximum lift, mm
     """
     length = sleeve.high - sleeve.low
     outer, inner = 0.5 * sleeve.diameter * unit_circle(), 0.5 * bore * unit_circle()
@@ -367,8 +386,12 @@ def _sleeve(sleeve: Sleeve, bore: float, highest: float) -> Solid:
 
 
 def _face_on_arm(view: TurnView, width: float, arm: DrawnArm) -> Solid:
-    """Block of a face with its arm, to the middle of the face as origin, its travel along +y; width
-    of the cam, mm.
+    """Block of a face with its arm; the origin is the middle of the face, which travels along +y;
+    mm.
+
+    Parameters
+    ----------
+    width : float   of the cam
     """
     low, high = view.follower.min(axis=1), view.follower.max(axis=1)
     # the y axis of the body points to the cam, downwards here
@@ -382,8 +405,13 @@ def _face_on_arm(view: TurnView, width: float, arm: DrawnArm) -> Solid:
 
 
 def _contacts(view: TurnView, lab: Array, arm: DrawnArm | None = None) -> Array:
-    """Contact points (2, f) in the frame of the guides, mm: on the roller along its normal, or the
-    outermost point of the contour under a face. `lab`: origins (2, f) of the follower there.
+    """Contact points (2, f) in the frame of the guides, mm: on a roller along the contact normal,
+    under a face the outermost point of the contour.
+
+    Parameters
+    ----------
+    lab : array (2, f)       origins of the follower in the frame of the guides, mm
+    arm : DrawnArm or None   that carries the follower; its face may be curved
     """
     angle = view.to_lab + view.turn
     if view.is_roller:
@@ -428,9 +456,13 @@ def _ends(material: ReportMaterial) -> Json:
 
 
 def _end_block(field: EndField, of_body: NDArray[np.bool_], reach: float) -> dict[str, Json]:
-    """Record of the faces of one body within `reach`, mm, of the middle of contact: points,
-    triangles, von Mises stress at the points, contact pressure of the triangles; `of_body`
-    (cells,): whether a cell is of this body.
+    """Record of the faces of one body near the middle of the contact: points, mm, triangles, von
+    Mises stress at the points and contact pressure on the triangles, MPa.
+
+    Parameters
+    ----------
+    of_body : array (cells,)   whether a cell is of this body
+    reach : float              from the middle of the contact, across and in depth, mm
     """
     nodes = np.unique(field.cells[of_body])
     points, first = field.points[nodes], int(nodes[0])

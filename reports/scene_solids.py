@@ -46,7 +46,9 @@ class Solid:
 
 
 def ring(outline: Array, width: float) -> Solid:
-    """Extrusion along z of a closed outline (2, n), centred at z = 0, without end faces."""
+    """Extrusion of a closed outline (2, n), mm, along z from -`width`/2 to `width`/2, without end
+    faces.
+    """
     count = outline.shape[1]
     low, high = (np.vstack([outline, np.full(count, side * width / 2)]) for side in (-1, 1))
     here = np.arange(count)
@@ -57,7 +59,7 @@ def ring(outline: Array, width: float) -> Solid:
 
 
 def tube(outer: Array, inner: Array, height: float) -> Solid:
-    """Flat ring between two closed outlines (2, n) at a height z."""
+    """Flat ring between two closed outlines (2, n), mm, in the plane z = `height`."""
     count = outer.shape[1]
     points = np.vstack([np.hstack([outer, inner]), np.full(2 * count, height)])
     here = np.arange(count)
@@ -68,7 +70,14 @@ def tube(outer: Array, inner: Array, height: float) -> Solid:
 
 
 def sector(angles: Array, radii: tuple[float, float], width: float) -> Solid:
-    """Sector of a ring between two radii at angles (n,), rad, centred at z = 0, with end faces."""
+    """Sector of a ring with end faces, centred at z = 0, mm.
+
+    Parameters
+    ----------
+    angles : array (n,)   from one side to the other, rad
+    radii : tuple         inner and outer, mm
+    width : float         along z, mm
+    """
     count, (inner, outer) = angles.size, radii
     arc = np.stack([np.cos(angles), np.sin(angles)])
     outline = np.hstack([outer * arc, inner * arc[:, ::-1]])
@@ -149,7 +158,15 @@ def pin(radius: float, half: float) -> Solid:
 
 
 def helix(diameter: float, wire: float, turns: float, length: float) -> Solid:
-    """Round wire wound about y from zero to a length, mm; diameter: of the coil's middle."""
+    """Surface of a round wire wound about the y axis, mm.
+
+    Parameters
+    ----------
+    diameter : float   of the coils, to the middle of the wire
+    wire : float       diameter of the wire
+    turns : float      number of coils
+    length : float     along y, from zero
+    """
     winding = 2.0 * np.pi * np.linspace(0.0, turns, max(int(turns * _STEPS_OF_TURN), 8))
     out = np.stack([np.cos(winding), 0.0 * winding, np.sin(winding)])
     up = np.array([[0.0], [1.0], [0.0]])

@@ -177,12 +177,18 @@ def draw(
     ahead: Mapping[str, PendingCall] | None = None,
     progress: Progress = SILENT,
 ) -> dict[str, Sequence[Path]]:
-    """Write parts of the report of a run, recorded or not yet; files by name of the part, see
-    `report`.
+    """Write parts of the report of a run, whose record may not be complete yet; returns the files
+    by name of the part, see `report`.
 
     Parameters
     ----------
-    ahead : mapping   drawings begun before the run was complete
+    parts : iterable or None   None: all that are not on request
+    ahead : mapping            drawings begun before the run was complete
+
+    Raises
+    ------
+    ResultError
+        If the folder does not hold a run or a file cannot be written.
     """
     written: dict[str, Sequence[Path]] = {}
     try:
@@ -200,9 +206,10 @@ def draw(
 
 
 def redraw(folder: Path, names: Collection[str]) -> None:
-    """Write the parts that contain files of given names; see `report`.
+    """Write again the parts of a report that contain files of given names; see `report`.
 
-    Those on request come last, as they are added to a run that has its page already.
+    Parts that are written only on request come last, as they are added to a run that has its page
+    already.
     """
     wanted = [part for part in PARTS if any(fnmatch(name, part.files) for name in names)]
     for late in (False, True):

@@ -64,9 +64,8 @@ class SheetTurn:
 
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:
-        """Centre x, y and radius, mm, and whether it is drilled; None without a hole.
-
-        A hole that does not balance the cam is no proposal.
+        """Centre x, y and radius of the counter-hole, mm, and whether it is drilled; None without a
+        hole, or if one that is not drilled does not balance the cam.
         """
         names = ("hole_x_mm", "hole_y_mm", "hole_diameter_mm")
         values = [self.balance[name] for name in names]
@@ -93,8 +92,8 @@ class SheetTurn:
 
     @property
     def balanced(self) -> SheetTurn:
-        """The same with the first load case that has a machine torque as the drawn one; itself if
-        there is none.
+        """This turn with the first load case that has a machine torque as the drawn one; unchanged
+        if there is none.
         """
         for table in (self.columns, *self.others):
             torque = table.get("torque_before_Nm")
@@ -157,7 +156,9 @@ class SheetTurn:
 
     @property
     def half_width(self) -> float:
-        """Half-width at the maximum contact pressure, mm; of Hertz without finite elements."""
+        """Half-width of the contact at the maximum contact pressure, mm, by finite elements, else
+        of Hertz; ResultError without either.
+        """
         for name in ("half_width_fe_mm", "half_width_hertz_mm"):
             if self.columns[name][self.worst] > 0:
                 return float(self.columns[name][self.worst])
@@ -183,7 +184,15 @@ class SheetTurn:
         return None
 
     def limit(self, label: str, unit: str, check_id: str) -> tuple[LimitLine, ...]:
-        """Limit of a check as a line in the unit of a panel; empty if the dimension differs."""
+        """Limit of a check as a line, in the unit of a panel; () without a finite limit or where
+        its dimension differs.
+
+        Parameters
+        ----------
+        label : str      of the line
+        unit : str       of the panel
+        check_id : str   id of the check
+        """
         bound = self.bound(check_id)
         unit_of = {str(check["id"]): str(check["unit"]) for check in self.checks}
         value = None if bound is None else in_unit(bound, unit_of[check_id], unit)
@@ -208,10 +217,13 @@ def lowest(*limits: LimitLine) -> tuple[LimitLine, ...]:
 def curves_of(
     turn: SheetTurn, *wanted: tuple[str, str], dashed: Sequence[int] = ()
 ) -> tuple[Curve, ...]:
-    """Curves of pairs (column, label) by crank angle; columns that are missing or nowhere finite
-    are omitted.
+    """Curves over the shaft angle of the turn, each with the range of all load cases as a ribbon;
+    columns that are missing or nowhere finite are omitted.
 
-    Solid curves have the range of all load cases as a ribbon; `dashed` are indices of pairs.
+    Parameters
+    ----------
+    wanted : tuples     column, label
+    dashed : sequence   indices in `wanted` of curves that are dashed, without a ribbon
     """
     made = []
     for number, (column, label) in enumerate(wanted):
@@ -231,7 +243,14 @@ def curves_of(
 def angle_figure(
     turn: SheetTurn, figure_id: str, title: str, caption: str, *panels: Panel, mark: bool = True
 ) -> Figure | None:
-    """Figure over the turn of the panels that have curves; None without any."""
+    """Figure over the turn of the panels that have curves; None without any.
+
+    Curves that are zero at all angles are named in the caption instead, if others remain.
+
+    Parameters
+    ----------
+    mark : bool   draw a line at the angle of the maximum contact pressure
+    """
     drawn = tuple(panel for panel in panels if panel.curves)
     if not drawn:
         return None
@@ -258,10 +277,8 @@ def _size(curve: Curve) -> float:
 
 
 def _apart(panel: Panel) -> tuple[Panel, ...]:
-    """Panel without the curves that are zero; those that look flat beside the greatest one follow
-    in a second panel.
-
-    A panel in which all curves are zero is left out.
+    """Panels of the curves of a panel: without those that are zero at all angles, and with those
+    smaller than `_FLAT` of the greatest one in a second panel; () where all are zero.
     """
     curves = tuple(curve for curve in panel.curves if not _is_zero(curve))
     if not curves:

@@ -50,7 +50,12 @@ def unrolled(values: Array, depth: Array, levels: Array) -> Array:
 
 
 def drawn(envelope: dict[str, Array]) -> bytes:
-    """PNG of the maps of maximum stress over cam angle and depth."""
+    """PNG of the maps of maximum stress over cam angle and depth, MPa.
+
+    Parameters
+    ----------
+    envelope : dict   arrays of one load case, see `read_envelope`
+    """
     from matplotlib.figure import Figure
 
     angle, depth = envelope["cam_angle_deg"], envelope["depth_mm"]
@@ -72,11 +77,14 @@ def drawn(envelope: dict[str, Array]) -> bytes:
 
 
 def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Array) -> bytes:
-    """PNG of the von Mises stress as a band along the contour, depth exaggerated.
+    """PNG of the von Mises stress as a band along the contour, with the depth exaggerated.
 
-    envelope: arrays of one load case, see `read_envelope`.
-
-    The contour (2, n), mm, and its outward normals (2, n) belong to cam angles (n,), deg.
+    Parameters
+    ----------
+    envelope : dict          arrays of one load case, see `read_envelope`
+    angle : array (n,)       cam angles of the contour, deg
+    contour : array (2, n)   mm
+    normal : array (2, n)    outward unit normals of the contour
     """
     from matplotlib.figure import Figure
 

@@ -171,7 +171,14 @@ def _names_all(clause: str, titles: Collection[str]) -> bool:
 
 
 def _sentence(checks: Sequence[Check], required: Sequence[Check], missing: Sequence[Check]) -> str:
-    """Sentence on the numbers of required and optional checks by outcome."""
+    """Sentences on the numbers of required and optional checks by outcome.
+
+    Parameters
+    ----------
+    checks : sequence     all checks
+    required : sequence   those that must hold
+    missing : sequence    required ones that lack data
+    """
     if not checks:
         return "There are no checks. The verdict is FAIL without evidence."
     held = sum(c["status"] == "pass" for c in required)

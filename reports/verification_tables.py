@@ -221,8 +221,8 @@ def certified(points: Sequence[Record]) -> ReportTable:
 
 
 def ends(points: Sequence[Record]) -> ReportTable:
-    """Table of the end pressures over that of plane strain, by half-spaces and by
-    finite elements.
+    """Table of the pressures at the ends of the contact as factors over the maximum pressure of
+    plane strain, by half-spaces and by finite elements.
     """
     rows = []
     for point in points:
@@ -240,8 +240,12 @@ def ends(points: Sequence[Record]) -> ReportTable:
 
 
 def stress_below(points: Sequence[Record]) -> ReportTable:
-    """Table of the greatest stresses below middle and ends of the contact at the first certified
-    angle, MPa and mm.
+    """Table of the greatest stresses, MPa, and their depths, mm, below middle and ends of the
+    contact at the first certified angle.
+
+    Parameters
+    ----------
+    points : sequence   certified angles, stresses as factors over the pressure of plane strain
     """
     rows = []
     for point in points[:1]:
@@ -283,8 +287,8 @@ def ends_refused(trial: Record) -> str:
 
 
 def hertz_difference(record: Json) -> str:
-    """Sentence on the change of Hertz p0 by finite elements, as ranges in percent by cause; ""
-    without them.
+    """Sentence on the change of the maximum pressure of Hertz by finite elements, as ranges in
+    percent by cause; "" without a record.
     """
     if not isinstance(record, Mapping):
         return ""
@@ -332,7 +336,11 @@ def _order(figure: Record) -> str:
 
 def _deviation(figure: Record) -> str:
     """Deviation of the value in the cycle from the extrapolated one of the same quantity, %, as
-    text.
+    text; a dash if either is not known or the latter is zero.
+
+    Parameters
+    ----------
+    figure : mapping   values of one quantity at a certificate point
     """
     cycle, zero = figure.get("cycle"), figure.get("extrapolated")
     if not isinstance(cycle, int | float) or not isinstance(zero, int | float) or not zero:

@@ -38,10 +38,14 @@ def draw(run: Path, tolerance_um: float, folder: Path) -> Path:
 
 
 def figure_of(run: Path, tolerance_um: float, folder: Path) -> Figure:
-    """Panels of an inspected cam: measured deviation and form, um, contour as drawn and as
-    inspected, normal force and contact pressure of both.
+    """Panels of an inspected cam: measured deviation and form, um; contour, normal force, N, and
+    contact pressure, MPa, of the drawn and of the inspected cam.
 
-    The run is that of the drawn cam, folder that of the inspection.
+    Parameters
+    ----------
+    run : path             run folder of the drawn cam
+    tolerance_um : float   width of the tolerance zone, half to each side of the contour, um
+    folder : path          folder of the inspection, with ``deviation.csv`` and ``cycle.csv``
     """
     deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv")
     nominal = read_run(run).final
@@ -66,8 +70,13 @@ def figure_of(run: Path, tolerance_um: float, folder: Path) -> Figure:
 
 
 def _part(contour: Table, deviation: Table) -> Panel:
-    """Panel of the nominal contour and of the inspected one, its deviation from the drawing, um,
-    exaggerated along the normals.
+    """Panel of the nominal contour and of the inspected one, whose form deviation is exaggerated
+    along the normals.
+
+    Parameters
+    ----------
+    contour : Table     3_contour.csv of the drawn cam
+    deviation : Table   cam angle, deg, and form deviation, um, positive outwards
     """
     drawn, normal = (
         np.array([contour[name] for name in names])

@@ -59,7 +59,9 @@ def write(folder: Path, document: RedesignDocument) -> Path:
 
 
 def figure_of(document: RedesignDocument) -> Figure:
-    """Ripple left over size or mass: evaluated designs, front, initial design."""
+    """Figure of the ripple left, N m, over size or mass: evaluated designs, front, initial
+    design.
+    """
     name, quantity, unit = AXES[document["against"]]
     initial, curves = document["given"], list[Curve]()
     tried = [row for row in document["tried"] if not is_refused(row)]

@@ -78,7 +78,9 @@ class SecondArm:
         return 0.6 * self.pad
 
     def output(self) -> tuple[DrawnOutline, ...]:
-        """Head and stem of the output, from its flat end along y."""
+        """Outlines of stem and head of the output, its flat end at the origin and its stem along
+        +y, mm.
+        """
         edge, wide, thin = (
             Pen("ink", _EDGE, "steel"),
             _HEAD_SHARE * self.pad,
@@ -119,7 +121,13 @@ class LinkCoil:
         return (_EYE_SHARE if self.ends == "eyes" else PIN_SHARE) * self.diameter
 
     def groups(self, moving: Array, fixed: Array) -> tuple[ShapeGroup, ...]:
-        """Groups of shapes from back to front; ends (2,) in the drawing, mm."""
+        """Groups of shapes from back to front: coils behind, coils before, moving and fixed
+        fitting.
+
+        Parameters
+        ----------
+        moving, fixed : array (2,)   ends of the spring in the drawing, mm
+        """
         turn, away = _direction(moving, fixed)
         fitting = min(self.fitting, 0.25 * away)
         behind, before = coil_strands(self.diameter, self.turns)
@@ -133,7 +141,13 @@ class LinkCoil:
         )
 
     def _fitting(self, length: float) -> tuple[DrawnOutline, ...]:
-        """Pin at the origin with the eye or seat of the coils along y."""
+        """Pin at the origin with the eye, or with the seat, of the coils along +y; the seat alone
+        of a spring on an output.
+
+        Parameters
+        ----------
+        length : float   from the pin to the first coil, mm
+        """
         pin = DrawnOutline((circle(PIN_SHARE * self.diameter),), Pen("ink", _EDGE, "card"))
         if self.ends != "eyes":
             seat = rectangle(-self.half, length - PLATE_SHARE * self.diameter, self.half, length)
@@ -157,7 +171,12 @@ class LinkGas:
         return (0.5 + _WALL_SHARE) * self.bore
 
     def groups(self, moving: Array, fixed: Array) -> tuple[ShapeGroup, ...]:
-        """Groups of shapes from back to front; ends (2,) in the drawing, mm."""
+        """Groups of shapes from back to front: cylinder on the fixed end, rod on the moving one.
+
+        Parameters
+        ----------
+        moving, fixed : array (2,)   ends of the spring in the drawing, mm
+        """
         turn, _ = _direction(moving, fixed)
         wall, thin = _WALL_SHARE * self.bore, 0.5 * _ROD_SHARE * self.bore
         half, edge = 0.5 * self.bore, Pen("ink", _EDGE, "steel")

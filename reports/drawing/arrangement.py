@@ -150,8 +150,8 @@ class DrawnArm:
         return self.placed(self.second.flat(lift) + head), self.placed(fixed)
 
     def beside(self, lift: float) -> list[tuple[Array, float]]:
-        """Points (2,) of second arm, output and spring in the drawing at a lift, and what reaches
-        around each, mm.
+        """Points (2,) of second arm, output and spring in the drawing at a lift, each with the
+        radius of what lies around it, mm.
         """
         reached = []
         if self.second is not None:
@@ -214,7 +214,9 @@ class DrawnMechanism:
 
     @cached_property
     def envelope(self) -> Box:
-        """Bounding box of the mechanism over the turn, mm."""
+        """Bounding box of the mechanism over the turn, mm; of an arm with its second arm and spring
+        at zero, half and greatest lift.
+        """
         if self.arm is None:
             return self.sizes.envelope
         ends = self.arm.end(np.linspace(0.0, self.stroke, 31))
@@ -357,8 +359,12 @@ def _stem_groups(m: DrawnMechanism, lift: float) -> tuple[ShapeGroup, ...]:
 
 
 def arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
-    """Groups of a follower on an arm, from back to front: arm with its roller, turned to the lift,
-    mm, and the fixed pivot.
+    """Groups of a follower on an arm, from back to front: second arm, arm with its roller or face
+    turned to the lift, fixed pivot, spring.
+
+    Parameters
+    ----------
+    lift : float   of the reference point along its arc, mm
     """
     edge, thin = Pen("ink", _EDGE * m.scale, "steel"), Pen("muted", _THIN * m.scale)
     half, roller, end = arm.half, m.roller or 0.0, (0.0, -arm.length)
@@ -394,7 +400,13 @@ def arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGrou
 
 
 def _second_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
-    """Output and second arm of a rocker, behind the first arm; none without one; lift in mm."""
+    """Groups of the output and of the second arm of a rocker, which lie behind the first arm; ()
+    without one.
+
+    Parameters
+    ----------
+    lift : float   of the reference point along its arc, mm
+    """
     second, edge = arm.second, Pen("ink", _EDGE * m.scale, "steel")
     if second is None:
         return ()
@@ -412,7 +424,12 @@ def _second_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[Shape
 
 
 def _spring_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGroup, ...]:
-    """Spring of an arm between its ends, and the ground of the fixed one; none without one."""
+    """Groups of the spring of an arm and of the ground at its fixed end; () without a spring.
+
+    Parameters
+    ----------
+    lift : float   of the reference point along its arc, mm
+    """
     ends = arm.spring_ends(lift)
     if arm.spring is None or ends is None:
         return ()
@@ -423,8 +440,10 @@ def _spring_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[Shape
 
 
 def _lug(arm: DrawnArm, edge: Pen) -> tuple[DrawnOutline, ...]:
-    """Bar from the pivot to the end of a spring that does not lie on the arm, which hangs down from
-    its pivot at the origin; none of one that does.
+    """Bar from the pivot to the end of the spring where this end does not lie on the arm; () where
+    it does or without a spring on the arm.
+
+    The arm hangs down from its pivot at the origin, as in its group.
     """
     if arm.spring is None or arm.spring.arm_end is None:
         return ()
@@ -437,7 +456,12 @@ def _lug(arm: DrawnArm, edge: Pen) -> tuple[DrawnOutline, ...]:
 
 
 def _face_of(arm: DrawnArm, face: tuple[float, float]) -> Array:
-    """Outline (2, n), mm, of the face of an arm that hangs down from its pivot at the origin."""
+    """Outline (2, n) of the face of an arm that hangs down from its pivot at the origin, mm.
+
+    Parameters
+    ----------
+    face : tuple   width along the arm and thickness, mm
+    """
     width, thick = face
     along = 0.5 * width * np.linspace(-1.0, 1.0, _FACE_POINTS)
     sunk = 0.0 * along

@@ -150,9 +150,12 @@ def hatching(box: tuple[float, float, float, float], spacing: float) -> tuple[Ar
 
 
 def bore_outline(radius: float, keyway: tuple[float, float, float] | None) -> Array:
-    """Bore with keyway (2, n) as one closed line.
+    """Bore with keyway (2, n) about the origin as one closed line, mm.
 
-    keyway : width and depth beyond the bore, mm, and angle of its middle, rad; None without one
+    Parameters
+    ----------
+    radius : float           of the bore, mm
+    keyway : tuple or None   width and depth beyond the bore, mm, and angle of its middle, rad
     """
     if keyway is None:
         return circle(radius)

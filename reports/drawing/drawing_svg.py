@@ -69,8 +69,12 @@ def _shape(shape: DrawnOutline | Arrow | Text, stretch: float, colours: Mapping[
 
 
 def _outline(shape: DrawnOutline, stretch: float, colours: Mapping[str, str]) -> str:
-    """SVG path of an outline with its holes, stretched along y, in the colours that its
-    pen names.
+    """SVG path of an outline with its holes, in the colours that its pen names.
+
+    Parameters
+    ----------
+    stretch : float     factor of the y coordinates
+    colours : mapping   colour code by name
     """
     pen = shape.pen
     fill = colours[pen.fill] if pen.fill else "none"

@@ -193,7 +193,9 @@ def scale_words(scale: float) -> str:
 
 
 def views(part: DrawnCam) -> Drawing:
-    """Front view at the top left, section beside it, bore detail below."""
+    """Dimensioned drawing of the cam: front view, section beside it, details of bore and running
+    surface below.
+    """
     middle = (0.5 * _FRONT, HEIGHT - 0.5 * _FRONT - 12.0)
     track = _track if part.groove is None else _groove
     groups = (
@@ -266,7 +268,13 @@ def _front(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
 
 
 def _turning(part: DrawnCam, x: float, y: float, scale: float) -> Iterator[Shape]:
-    """Arrow in the direction of turning, clockwise, between bore and contour."""
+    """Arrow in the direction of turning, clockwise, between bore and contour of the front view.
+
+    Parameters
+    ----------
+    x, y : float    centre of the view, mm on paper
+    scale : float   of the view, mm on paper per mm
+    """
     held = part.bore_radius + (0.0 if part.keyway is None else part.keyway[1])
     least = float(np.hypot(*part.contour).min())
     radius = scale * (0.45 * held + 0.55 * least)
@@ -347,8 +355,12 @@ def _section(part: DrawnCam, left: float, y: float) -> Iterator[Shape]:
 def _cut(
     part: DrawnCam, groove: GrooveView, box: tuple[float, float, float, float], y: float
 ) -> Iterator[Shape]:
-    """Half of the section of a disc with its groove, open to the right, in a box of left, bottom,
-    right and top about an axis at height y, mm on paper.
+    """Half of the section of a disc with its groove, which is open to the right, hatched.
+
+    Parameters
+    ----------
+    box : tuple   left, bottom, right and top of the half, mm on paper
+    y : float     height of the axis, below or above the box, mm on paper
     """
     scale, (left, bottom, right, top) = part.scale, box
     turn = 0.5 * np.pi if bottom > y else 1.5 * np.pi
@@ -406,7 +418,13 @@ def crown_words(kind: str) -> str:
 
 
 def _track(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
-    """Axial section of the surface in contact, its middle at x, y; the drop stretched."""
+    """Axial section of the surface in contact, with flat width and ends dimensioned and the drop of
+    a crown stretched.
+
+    Parameters
+    ----------
+    x, y : float   middle of the surface, mm on paper
+    """
     track, scale = part.track, part.track_scale
     line = scale * track.line() + np.array([[x], [y]])
     left, right, low = float(line[0, 0]), float(line[0, -1]), y - 16.0
@@ -434,8 +452,12 @@ def _track(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
 
 
 def _groove(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
-    """Section of the groove across its path, open upwards, its middle at x and the face of the disc
-    at y: width, depth and fillets.
+    """Section of the groove across its path, open upwards: width, depth and fillets; nothing
+    without a groove.
+
+    Parameters
+    ----------
+    x, y : float   middle of the groove, face of the disc, mm on paper
     """
     groove, scale = part.groove, part.track_scale
     if groove is None:
@@ -485,10 +507,16 @@ def _dimension(
     flag: str = "",
     above: bool = False,
 ) -> Iterator[Shape]:
-    """Horizontal dimension between the two x of `ends`: extension lines from height `edge`, arrows
-    from outside at height `line`, text behind or above; mm on paper.
+    """Horizontal dimension: extension lines, arrows from outside, text; mm on paper.
 
-    A datum of this size, letter `flag`, stands in a frame behind the text, ISO 5459.
+    Parameters
+    ----------
+    ends : tuple   the two x between which it measures
+    edge : float   height at which the extension lines begin
+    line : float   height of the dimension line
+    words : str    text of the dimension
+    flag : str     letter of a datum of this size, in a frame behind the text, ISO 5459; "": none
+    above : bool   text above the dimension line; else behind it
     """
     low, high = ends
     beyond = 2.0 if line > edge else -2.0

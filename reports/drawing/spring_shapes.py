@@ -48,8 +48,13 @@ class SpringPlaces(NamedTuple):
 
 
 def coil_strands(diameter: float, turns: float) -> tuple[list[Array], list[Array]]:
-    """Half coils as straight segments (2, 2) on the far side and on the near side; x in mm, y from
-    0 to 1. diameter: of the coils, mm; turns: all coils
+    """Half coils as straight segments (2, 2), those on the far side and those on the near side; x
+    in mm, y from 0 to 1.
+
+    Parameters
+    ----------
+    diameter : float   of the coils, mm
+    turns : float      number of all coils
     """
     count = max(round(turns), 2)
     half = 0.5 * diameter
@@ -136,6 +141,10 @@ class DrawnGasSpring:
     def drawn(cls, case: CaseLengths, at: SpringPlaces) -> DrawnGasSpring:
         """Gas spring of the case on the end of the stem; area and volume that the case does not
         state are scaled from stem and stroke.
+
+        Parameters
+        ----------
+        at : SpringPlaces   heights where it can stand, stroke, diameter of the stem, mm
         """
         area = case.length("spring", "gas", "area", unit="mm^2") or at.stem**2
         volume = case.length("spring", "gas", "volume", unit="cm^3")
@@ -197,6 +206,10 @@ class Torsion:
     def drawn(cls, case: CaseLengths, at: SpringPlaces) -> Torsion:
         """Torsion spring of the case, its pin on the follower between the guides; lengths that the
         case does not state are scaled from the stroke.
+
+        Parameters
+        ----------
+        at : SpringPlaces   heights where it can stand, stroke, diameter of the stem, mm
         """
         arm = case.length("spring", "torsion", "arm") or 2.0 * at.stroke
         raised = case.length("spring", "torsion", "arm_angle", unit="rad") or 0.0

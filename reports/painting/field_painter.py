@@ -70,8 +70,13 @@ def paint(view: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
 
 
 def painted(folder: Path, count: int, window: str) -> bool:
-    """Whether a child process painted the views of a folder, 0 to `count` - 1, in an OpenGL window
-    of VTK's class `window`.
+    """Whether a child process has painted the views of a folder, see `main`, in time and without an
+    error.
+
+    Parameters
+    ----------
+    count : int    views, numbered from 0
+    window : str   class of VTK's OpenGL window
     """
     try:
         child = subprocess.run(  # noqa: S603 - our own interpreter and module

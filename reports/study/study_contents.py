@@ -168,8 +168,15 @@ def page_of(
     links: Mapping[int, str],
     drawn: int,
 ) -> Page:
-    """Contents of a study's page, from its title, facts and answers; `links`: page of a design's
-    run by number of the design; `drawn`: number of designs on the page.
+    """Contents of a study's page.
+
+    Parameters
+    ----------
+    title : str
+    facts : sequence    pairs (name, text) that identify the study
+    answers : mapping   ``answers.json`` of the study
+    links : mapping     page of a design's run, by number of the design
+    drawn : int         number of designs on the page
     """
     counts = answers["designs"]
     failures, silent = _failures(answers["failures"])
@@ -268,7 +275,9 @@ def _tiles(answers: Record) -> list[Tile]:
 
 
 def _failures(rows: Sequence[Record]) -> tuple[list[FailureRow], str]:
-    """Rows of the checks that fail or lack data in some designs, and a sentence on the others."""
+    """Rows of the first `_FAILURES` checks that fail or lack data in some designs, and a sentence
+    on the others.
+    """
     absent = [row["title"] for row in rows if not row["fail"] and row["not_evaluated"] >= row["of"]]
     partly = [row for row in rows if row["title"] not in absent]
     made = []
@@ -351,7 +360,13 @@ def _effect(output: Record) -> Effect | None:
 
 
 def _index(row: Record, name: str) -> Index:
-    """Sensitivity index `name` of a factor with its confidence interval, clipped to 0 to 1."""
+    """Sensitivity index of a factor, clipped to 0 to 1, with its confidence interval.
+
+    Parameters
+    ----------
+    row : mapping   indices of the factor and their intervals
+    name : str      of the index: ``first``, ``total`` or ``share``
+    """
     low, high = row[f"{name}_interval"]
     value = row[name]
     shown, left, right = (min(max(v, 0.0), 1.0) for v in (value, low, high))
@@ -360,7 +375,12 @@ def _index(row: Record, name: str) -> Index:
 
 
 def _front_lead(front: Record | None, by: str) -> str:
-    """Sentence on the objectives of the Pareto front and on the designs it is taken from."""
+    """Sentence on the objectives of the Pareto front and on the designs it is taken from.
+
+    Parameters
+    ----------
+    by : str   by what the designs are judged: screen or verdict
+    """
     if front is None:
         return "The study file does not state two objectives."
     names = [f"{titled(o['column'])[0]} ({_GOALS[o['goal']]})" for o in front["objectives"]]

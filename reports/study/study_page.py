@@ -48,7 +48,13 @@ class DesignRows:
     links: Mapping[int, str]
 
     def thinned(self, needed: Sequence[int], most: int = MOST_ROWS) -> DesignRows:
-        """At most about `most` designs, evenly spaced, those kept and `needed` included."""
+        """These designs, or, if there are more than `most`, `most` of them evenly spaced together
+        with those in `needed` and those with a page of their run.
+
+        Parameters
+        ----------
+        needed : sequence   numbers of designs
+        """
         count = self.design.size
         if count <= most:
             return self
@@ -77,7 +83,14 @@ def write(
 def text(
     title: str, facts: Sequence[tuple[str, str]], answers: Record, designs: DesignRows
 ) -> bytes:
-    """HTML of a study's page, UTF-8."""
+    """HTML of a study's page, UTF-8.
+
+    Parameters
+    ----------
+    facts : sequence       pairs (name, text) that identify the study
+    answers : mapping      ``answers.json`` of the study
+    designs : DesignRows   all designs of the study
+    """
     front = [row["design"] for row in (answers["front"] or {"designs": ()})["designs"]]
     worst = [answers["worst"]["design"]] if answers["worst"] else []
     drawn = designs.thinned([*front, *worst])
@@ -121,7 +134,9 @@ def _data(answers: Record, designs: DesignRows) -> Record:
 
 
 def _drawn(answers: Record, designs: DesignRows) -> list[str]:
-    """Columns of the drawings: factors, outputs and objectives that vary."""
+    """Columns of the drawings: factors, outputs with values and objectives, as far as the designs
+    have them.
+    """
     objectives = [o["column"] for o in (answers["front"] or {"objectives": ()})["objectives"]]
     outputs = [o["name"] for o in answers["outputs"] if o["name"] != PASS and o["count"]]
     names = [*(FACTOR + f["key"] for f in answers["factors"]), *outputs, *objectives]
@@ -129,8 +144,14 @@ def _drawn(answers: Record, designs: DesignRows) -> list[str]:
 
 
 def _first_choice(answers: Record, names: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Columns shown at first: those of the parallel axes, and those of the matrix of scatter plots;
-    factors by their effect.
+    """Columns shown at first: those of the parallel axes, and those of the matrix of scatter plots.
+
+    Factors come first, by their effect on the pass rate, else on the utilisation; then the
+    objectives, the utilisation and the outputs that vary.
+
+    Parameters
+    ----------
+    names : sequence   columns of the drawings, see `_drawn`
     """
     by_name = {output["name"]: output for output in answers["outputs"]}
     judged = by_name.get(PASS, {"effects": ()})["effects"] or \
