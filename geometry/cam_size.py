@@ -381,11 +381,17 @@ def _motion(jet: Jet, height: float, offset: float) -> RollerMotion:
 
 
 def _height_of_curvature(slope: Array, lift_d2: Array, offset: float, curvature: float) -> Array:
-    """Largest height d (...), m, >= 0, of the roller centre over the cam axis at which a pitch
-    curve with s' (...) and s'' (...), m/rad^k, has a curvature, 1/m; 0 where it has it at none.
+    """Largest height d (...), m, >= 0, of the roller centre over the cam axis at which the pitch
+    curve has a curvature; 0 where it has it at no height.
 
     Root of (a^2 + z^2)^3 = (z^2 - b z + c)^2 with lengths over the radius of curvature, by the
     eigenvalues of its companion matrix; the sign of the curvature excludes the others.
+
+    Parameters
+    ----------
+    slope, lift_d2 : array (...)   first and second derivative of the lift, m/rad, m/rad^2
+    offset : float                 of the follower's axis, m
+    curvature : float              of the pitch curve, 1/m, not 0; convex positive
     """
     k = abs(curvature)
     a = ((slope - offset) * k) ** 2

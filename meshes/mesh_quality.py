@@ -125,7 +125,15 @@ def gate(
     scaled_jacobian_min: float = LEAST_SCALED_JACOBIAN,
     edges_min: float = 0.0,
 ) -> Quality:
-    """Mesh quality after comparison with its limits; refused below one.
+    """The mesh quality itself, if it is within its limits.
+
+    Parameters
+    ----------
+    measured : Quality            of the mesh
+    angle_min_deg : float         least angle of a triangle, deg
+    scaled_jacobian_min : float   least scaled Jacobian
+    edges_min : float             least edges across the half-width of the contact, of which
+        `FACET_SHARE` is required
 
     Raises
     ------

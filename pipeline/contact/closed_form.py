@@ -73,7 +73,9 @@ def in_full(
 
 
 def _with_conforming(pair: ContactPair, history: ContactHistory) -> ContactHistory:
-    """The contact, in full in a concave wall where it is to be."""
+    """The history of Hertz contacts, with those of a concave wall that are to be solved in full
+    replaced by that solution, see `concave_line`.
+    """
     full, line = in_full(pair, history.line_load, history.relative_radius)
     if line is None:
         return history

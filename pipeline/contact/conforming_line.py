@@ -84,9 +84,15 @@ class Collocated(NamedTuple):
 def collocated(
     half_angle: float, roller: Elastic, wall: Elastic, terms: int = _TERMS
 ) -> Collocated:
-    """Pressure of a roller in a wall at a stated half contact angle, rad, > 0 and below pi/2.
+    """Pressure and clearance of a roller in a wall at a stated half contact angle, by collocation.
 
     The gap closes at `terms` + 1 Chebyshev points of one half of the contact.
+
+    Parameters
+    ----------
+    half_angle : float       half of the angle in contact, rad, > 0 and below pi/2
+    roller, wall : Elastic   materials
+    terms : int              number of terms of the pressure, see `Collocated`
 
     References
     ----------
@@ -121,9 +127,19 @@ def collocated(
 
 
 def axis_stress(contact: Collocated, half_angle: float, poisson: float, depth: Array) -> Array:
-    """Stress of the wall below the middle of the contact, over load and radius (2, k).
+    """Stress of the wall on the line of action, below the middle of the contact.
 
-    Along the wall and into the depth (k,), over the radius, the first 0; tension positive.
+    Parameters
+    ----------
+    contact : Collocated   pressure on the wall
+    half_angle : float     of `contact`, rad
+    poisson : float        Poisson's ratio of the wall
+    depth : array (k,)     into the wall over the radius, ascending, the first 0
+
+    Returns
+    -------
+    array (2, k)   stress along the wall and into its depth, over line load per radius; tension
+        positive
 
     References
     ----------
@@ -163,6 +179,9 @@ class _Ratios(NamedTuple):
 
 @lru_cache(maxsize=32)
 def _ratios(roller: Elastic, wall: Elastic) -> _Ratios:
+    """Table of the contacts of two materials, by polynomials through contacts at angles up to
+    `ANGLE_MAX`; the contact of Hertz at slenderness 0.
+    """
     angles = 0.5 * ANGLE_MAX * (1.0 - np.cos(np.pi * np.arange(1, _NODES + 1) / _NODES))
     fine = [collocated(float(each), roller, wall) for each in angles]
     coarse = [collocated(float(each), roller, wall, _FEWER) for each in angles]
@@ -289,15 +308,22 @@ def conforming_line(
 def concave_line(
     line_load: Array, relative_radius: Array, roller_radius: float, roller: Elastic, wall: Elastic
 ) -> tuple[NDArray[np.bool_], ConformingLine | None]:
-    """Where a wall is concave and its contact to be solved in full (n,), and the contact there.
+    """Whether a contact is that of a concave wall, to be solved in full (n,), bool, and these
+    contacts.
 
-    None where it is to be nowhere.
+    In full from a half-width of Hertz of `CONFORMING_FROM` times sqrt(r rho).
 
     Parameters
     ----------
-    line_load : array (n,)        P', N/m, >= 0
-    relative_radius : array (n,)  R, m: above that of the roller on a concave wall
-    roller_radius : float         r, m
+    line_load : array (n,)         P', N/m, >= 0
+    relative_radius : array (n,)   R, m, 1/R = 1/r - 1/rho: above r on a concave wall
+    roller_radius : float          r, m
+    roller, wall : Elastic         materials
+
+    Returns
+    -------
+    full : array (n,)               bool
+    line : ConformingLine or None   the contacts where `full`; None without one
     """
     modulus = hertz.contact_modulus(roller.modulus, roller.poisson, wall.modulus, wall.poisson)
     half_width, _ = hertz.line_contact(line_load, relative_radius, modulus)

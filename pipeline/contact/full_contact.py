@@ -252,6 +252,12 @@ def _with_elliptic_edges(
     else the linear contact, 0, and the reason in words.
 
     On every second knot, the resolution of the displacements.
+
+    Parameters
+    ----------
+    linear : _Pressed            contact with linear pressure shapes
+    gap : function xi -> array   distance of the undeformed surfaces along the normal, m
+    line_load : float            N/m
     """
     shapes = linear.shapes
     if not isinstance(shapes, PressureShapes) or shapes.open_ends:
@@ -315,6 +321,9 @@ def _peak_stress(
     find = PeakFinder(points * [[1.0], [-1.0]] / half_width)
 
     def fit_about(place: Array) -> FittedStress | None:
+        """Stress fitted to the displacements about a place (2,), m, along the tangent and the
+        outward normal; None where the region of the fit would reach beyond the surface.
+        """
         reach = _FIT_REACH * half_width
         if not -place[1] >= reach:  # a fit that the surface cuts has no nodes on one side: 3 % off
             return None

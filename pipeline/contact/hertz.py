@@ -29,7 +29,12 @@ ELLIPSE = np.sqrt(1 - ELLIPSE_XI**2)
 def contact_modulus(
     modulus_1: float, poisson_1: float, modulus_2: float, poisson_2: float
 ) -> float:
-    """Contact modulus E* of two elastic bodies in plane strain (Pa).
+    """Contact modulus E*, Pa, of two elastic bodies in plane strain: 1/E* = sum of (1 - nu^2)/E.
+
+    Parameters
+    ----------
+    modulus_1, modulus_2 : float   Young's moduli, Pa
+    poisson_1, poisson_2 : float   Poisson's ratios
 
     Raises
     ------
@@ -54,7 +59,7 @@ def dundurs_beta(modulus_1: float, poisson_1: float, modulus_2: float, poisson_2
     """Dundurs' constant beta of two elastic bodies in plane strain, in (-0.5, 0.5).
 
     Zero: both surfaces strain alike under a pressure, which is then that of a frictionless contact
-    for any friction. Positive where body 1 strains more.
+    for any friction. Positive where body 1 strains more. Parameters as for `contact_modulus`.
 
     References
     ----------

@@ -223,10 +223,21 @@ class HubUnits:
         return forces
 
     def _touching(self, right: Array, closed: NDArray[np.bool_]) -> tuple[Array, NDArray[np.bool_]]:
-        """Nodal forces (k,) without tension and the nodes in contact, from a first set of them.
+        """Nodal forces (k,), N/m, without tension and the nodes in contact (k,), bool, at one
+        angle.
 
         All nodes that pull or overlap change at once. Where that does not settle, the set of the
         least complementary energy, by non-negative least squares, is the next first one.
+
+        Parameters
+        ----------
+        right : array (k + 2,)        closing of the gap at the nodes, m, and the resultant force
+        closed : array (k,) of bool   nodes taken to be in contact at first
+
+        Raises
+        ------
+        ContactError
+            If the nodes in contact do not settle from either set.
         """
         touching = self._settled(right, closed)
         if touching is None:

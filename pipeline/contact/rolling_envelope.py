@@ -315,8 +315,14 @@ def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array
 
 
 def _with_body(unit: RollingPass, p0: Array, along: Array, poisson: float) -> tuple[Array, Array]:
-    """Maximum von Mises stress and in-plane shear (n, k), Pa, of a pass under p0 (n,), with the
-    stress `along` (n,) of the real body added along the surface.
+    """Maximum von Mises stress and in-plane shear (n, k), Pa, of a pass under p0 (n,), Pa, with a
+    stress of the body added.
+
+    Parameters
+    ----------
+    unit : RollingPass   stresses under p0 = 1
+    along : array (n,)   stress along the surface that the real body adds to the half-plane, Pa
+    poisson : float      of the cam
     """
     if not along.any():
         return p0[:, None] * unit.von_mises, p0[:, None] * unit.tau_max

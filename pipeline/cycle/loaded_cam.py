@@ -63,7 +63,9 @@ def _sense(numbers: Numbers) -> float:
 
 
 def pivot_of(numbers: Numbers) -> ArmPivot | None:
-    """Pivot of the arm of a follower; None without one."""
+    """Pivot of the arm of a follower, with the friction and output of its numbers; None of a
+    follower without the friction of a pivot.
+    """
     if numbers.get(FRICTION) is None:
         return None
     output = None if numbers.case is None else numbers.case.output
@@ -425,7 +427,9 @@ class LoadedCam:
         return np.asarray(getattr(balanced, name))
 
     def inertia_at(self, speed: Value) -> Array:
-        """Inertia force at a cam speed, rad/s, N."""
+        """Inertia force along the follower at a cam speed, rad/s, N: of its mass and, with a
+        rocker, of the output.
+        """
         lift, acceleration = self.jet.lift, speed**2 * self.jet.lift_d2
         force: Array = self.numbers["follower.mass"] * acceleration
         output = None if self.numbers.case is None else self.numbers.case.output

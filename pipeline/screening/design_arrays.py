@@ -89,7 +89,9 @@ class Designs:
 
     @KeptResult
     def of_springs(self) -> Mapping[str, Array]:
-        """Rate and preload on the follower (m, 1) of springs whose links or arms differ."""
+        """Rate, N/m, and preload, N, on the follower (m, 1), by key, of springs whose links or arms
+        differ between the designs; {} where the force rise is that of the case.
+        """
         shape = Numbers(self.columns, self.case).spring_shape
         if shape is None or shape is self.case.spring.shape:
             return {}

@@ -262,8 +262,8 @@ class _Neighbours:
             yield start + np.flatnonzero(good), self.at(multiples[good])
 
     def _good(self, designs: Designs, multiples: Array) -> NDArray[np.bool_]:
-        """Which designs (m,) the case accepts, without undercut and without locking in any load
-        case.
+        """Which designs (m,) of `multiples` (m, d) the case accepts, without undercut and without
+        locking in any load case.
         """
         refused = refusals_of(designs, self._values(multiples))
         good = np.array([not words for words in refused]) & (designs.least_factor > 0.0)

@@ -61,16 +61,17 @@ def solve(
 ) -> Complementarity:
     """Contact pressures under prescribed forces and moments, by a primal-dual active set method.
 
+    In any consistent units; `count` problems with n pressure shapes each.
+
     Parameters
     ----------
-    compliance : array (n, n)
-    gap : array (count, n)              weighted initial gap
-    shape_integrals : array (n,)
-    force : array (count,)              > 0
-    guess : array (n,) of bool          initial active set; the solution does not depend on
-                                        it
-    levers : array (n,)                 moments of the shapes; without them no moment is prescribed
-    moment : array (count,)             prescribed with `levers`
+    compliance : array (n, n)      displacement under unit pressures, integrated with the shapes
+    gap : array (count, n)         initial gap, integrated with the shapes
+    shape_integrals : array (n,)   resultant of a unit pressure on each knot
+    force : array (count,)         prescribed resultant, > 0
+    guess : array (n,) of bool     initial active set; the solution does not depend on it
+    levers : array (n,)            moments of the shapes; without them no moment is prescribed
+    moment : array (count,)        prescribed with `levers`
 
     Raises
     ------
