@@ -387,9 +387,13 @@ class Part:
         return replace(self, **changed)  # type: ignore[type-var]
 
     def of_many(self, values: Mapping[str, object]) -> Self:
-        """Parts of many designs at once: some fields by name as arrays (m, 1), SI.
+        """Copy of a part for m designs at once, some of its fields replaced by arrays (m, 1), SI.
 
         The arrays are not compared with their bounds: a screening refuses designs before.
+
+        Parameters
+        ----------
+        values : mapping   array by name of the field; further names are ignored
         """
         copy = object.__new__(type(self))
         for each in fields(self):  # type: ignore[arg-type]

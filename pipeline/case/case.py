@@ -340,7 +340,7 @@ class Case(Displayed, Section):
 
     @property
     def output(self) -> RockerOutput | None:
-        """Mass and force that a rocker moves; None without either."""
+        """Mass and force that a rocker moves; None without a rocker or where it has neither."""
         arm, rocker = self.follower.arm, self.rocker
         if rocker is None or not (rocker.output_mass or rocker.output_force):
             return None
@@ -357,8 +357,8 @@ class Case(Displayed, Section):
 
     @property
     def bushes(self) -> Mapping[str, Guide]:
-        """Bushes by the dotted names of their tables: of the guides, or of the pivot of an arm,
-        which has none with needles or without a description.
+        """Bushes by the dotted name of their table: those of the guides of a stem, or that of the
+        pivot of an arm; none with needles in the pivot or without a description of it.
         """
         pivot = self.follower.pivot
         if self.follower.arm is None:

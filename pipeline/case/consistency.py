@@ -286,11 +286,13 @@ def _closure(case: Case) -> None:
 
 
 def _weight(case: Case) -> None:
-    """A cam that the weight alone presses has no spring, a stated lift, and a weight.
+    """Check a cam on which the weight alone presses the follower: no spring, a stated lift, and a
+    weight towards the cam.
 
     Raises
     ------
     InputError
+        If one of these does not hold.
     """
     bears = 'cam.closure = "gravity"'
     if not case.spring.absent:
@@ -307,12 +309,14 @@ def _weight(case: Case) -> None:
 
 
 def _conjugate(case: Case, second: CamConjugate) -> None:
-    """A second roller is on the stem, or on a second arm.
+    """Check the second roller of a conjugate pair of discs: it is on the stem at a distance, or on
+    a second arm of a length and an angle.
 
     Raises
     ------
     InputError
-        If it is described for another follower than that of the case, or for none.
+        If the follower has no roller or moves a rocker, or the second roller lacks its place or
+        states one of the other kind of follower.
     """
     pair, arm = 'cam.closure = "conjugate"', case.follower.arm is not None
     if case.roller_given is None or case.rocker is not None:

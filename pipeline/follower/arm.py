@@ -112,7 +112,9 @@ class FollowerArm(Part):
         return self.width is not None or self.depth is not None
 
     def held(self, link: SpringLink | None) -> Value:
-        """Distance from the pivot at which the spring acts, along the arm, m."""
+        """Distance from the pivot at which the spring acts, along the arm, m: as stated, else by
+        the spring's end on the arm, not below 0; 0 without such a spring.
+        """
         if self.spring_distance is not None:
             return self.spring_distance
         if link is None:

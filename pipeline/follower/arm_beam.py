@@ -24,8 +24,11 @@ _EQUAL_AREA = 0.808  # diameter of a round section over the root of a rectangle'
 
 
 def torsion_of_rectangle(width: Value, depth: Value) -> tuple[Value, Value]:
-    """Torsion constant, m4, and section modulus of torsion, m3, of a rectangular bar with sides
-    `width` and `depth`, m, in any order; (...).
+    """Torsion constant, m4, and section modulus of torsion, m3, of a rectangular bar (...).
+
+    Parameters
+    ----------
+    width, depth : float or array (...)   sides of the rectangle, m, in any order
 
     References
     ----------
@@ -105,8 +108,12 @@ class ArmSection(NamedTuple):
         return float(_EQUAL_AREA * np.sqrt(self.area))
 
     def normal(self, loads: SectionLoads) -> Array:
-        """Normal stress at the four corners of the section (4, ...), Pa, of loads (...), with the
-        fatigue notch factor.
+        """Normal stress at the four corners of the section (4, ...), Pa, of bending in both planes
+        and the force along the arm, times the fatigue notch factor.
+
+        Parameters
+        ----------
+        loads : SectionLoads   of the section (...)
         """
         bent, aside = loads.bending / self.modulus, loads.sideways / self.side_modulus
         pulled = loads.along / self.area
@@ -118,8 +125,12 @@ class ArmSection(NamedTuple):
         return np.asarray(self.notch * loads.twisting / self.torsion_modulus)
 
     def amplitude_and_mean(self, loads: SectionLoads) -> tuple[Array, Array]:
-        """Von Mises amplitude and mean stress at its corners (4,) and (4,), Pa, of loads over a
-        turn (n,), from the ranges of normal and shear stress.
+        """Von Mises amplitude and mean stress at the four corners of the section, (4,) each, Pa,
+        from the ranges of normal and shear stress over a turn.
+
+        Parameters
+        ----------
+        loads : SectionLoads   of the section over the turn (n,)
         """
         normal, shear = self.normal(loads), self.shear(loads)
         high, low = normal.max(axis=-1), normal.min(axis=-1)
@@ -243,8 +254,9 @@ class ArmBar:
 
     @property
     def _end(self) -> tuple[Value, Value, Value, int]:
-        """Reach of the eye from the roller centre along the arm, m, width over all cheeks and depth
-        of the eye, m, and number of cheeks; 0 cheeks where the arm itself is the eye.
+        """Eye at the end of the arm: reach along the arm from the roller centre, m, width of all
+        cheeks together, m, depth, m, and number of cheeks; 0 cheeks where the arm itself is the
+        eye.
         """
         hub, pin, fork = _or(self.arm.roller_hub, self.depth), self.pin, self.fork
         if pin is None or fork is None or fork.cheek_height is None or fork.cheek_length is None:
@@ -288,10 +300,10 @@ class ArmBar:
         return np.asarray(self.length * moment)
 
     def loads(self, section: ArmSection, forces: ArmForces) -> SectionLoads:
-        """Moments and force (...) of a section under the forces (...) on the arm.
+        """Moments and force (...) in a section of the arm under the forces (...) on it.
 
-        Cheeks carry the couple by unequal forces: the loads are those of all cheeks as loaded as
-        the most loaded one.
+        The cheeks of a fork carry the couple of the contact by unequal forces: the loads are those
+        of all cheeks, each as loaded as the most loaded one.
         """
         loaded = np.real(forces.normal) > 0.0
         # distance of the contact force from the middle of the roller
@@ -315,7 +327,8 @@ class ArmBar:
 
     @property
     def compliance(self) -> float:
-        """Deflection of the end of the arm per force across it there, m/N, with the spring held.
+        """Deflection of the end of the arm over the force across it there, m/N, while pivot and
+        spring hold it.
 
         Bending and shear of the arm and its cheeks, between its pivot and the place of the spring.
 
@@ -343,7 +356,8 @@ class ArmBar:
 
     @property
     def couple_compliance(self) -> Value:
-        """Slope of the line of contact under a couple there in its plane, rad/(N m).
+        """Slope of the line of contact over the couple of the contact in the plane of its normal
+        and the cam axis, rad/(N m).
 
         Twist of the arm and bending of its cheeks to either side, at a pressure angle of zero.
         """

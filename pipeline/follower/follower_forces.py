@@ -162,7 +162,13 @@ class FollowerSystem:
         return self.spring.force(lift)
 
     def inertia_force(self, lift: Array, velocity: Array, acceleration: Array) -> Array:
-        """Force (..., n), N, of the moving mass, and of an output by its ratio at the lift."""
+        """Inertia force (..., n), N, of the moving mass and, with a rocker, of its output reduced
+        by the ratio at the lift.
+
+        Parameters
+        ----------
+        lift, velocity, acceleration : array (..., n)   of the follower, m, m/s, m/s2
+        """
         force = self.mass * acceleration
         if self.output is None:
             return np.asarray(force)
@@ -226,7 +232,14 @@ class Carried(NamedTuple):
 
     @classmethod
     def at(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array, wall: Array) -> Carried:
-        """At cam angles, by the track that carries there, see `wall_of`."""
+        """Contact at cam angles, on the track that carries there.
+
+        Parameters
+        ----------
+        theta : array (n,)   cam angles, rad
+        wall : array (n,)    1 where the first track carries, -1 where the second or outer one does,
+                             see `wall_of`
+        """
         touch, second = touch_of(pitch, theta, system.face_friction), system.second_track(pitch)
         reach: Array | float = 0.0
         if second is not None:
@@ -238,7 +251,7 @@ class Carried(NamedTuple):
 
 
 def _either(pulls: NDArray[np.bool_], second: Touch, first: Touch) -> Touch:
-    """Contact of the second track where that pulls, else of the first."""
+    """Contact of the second track where `pulls` (n,) holds, else that of the first."""
     pairs = zip(second.slide, first.slide, strict=True)
     slide = Slide(*(np.where(pulls, *pair) for pair in pairs))
     rest = zip(second[1:], first[1:], strict=True)
@@ -718,7 +731,14 @@ def _both_pressed(
 
 
 def jam_index(pitch: FollowerPath, system: FollowerSystem, theta: Array, wall: Array) -> Array:
-    """Jam index of the guides of a stem (n,) at cam angles (n,) on the track that carries."""
+    """Jam index (n,) of the guides of a stem at cam angles: their friction over the axial force.
+
+    Parameters
+    ----------
+    theta : array (n,)   cam angles, rad
+    wall : array (n,)    1 where the first track carries, -1 where the second or outer one does, see
+                         `wall_of`
+    """
     carrying = Carried.at(pitch, system, theta, wall)
     overhang = pitch.lift.highest.value - pitch.lift(theta)
     overhang = system.overhang_at_max_lift + overhang + carrying.reach

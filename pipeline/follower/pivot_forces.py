@@ -178,7 +178,14 @@ class ArmPivot:
         return Pull(along, across)
 
     def of_spring(self, force: Value, travel: Value) -> Pull:
-        """Resultant of the spring of a force at the reference point, N, on the arm."""
+        """Force on the arm by its spring, N; at the reference point against its travel where the
+        pivot has no `spring`.
+
+        Parameters
+        ----------
+        force : array (...)    of the spring, reduced to the reference point, N
+        travel : array (...)   direction of travel of the reference point, rad, see `_lift`
+        """
         if self.spring is None:
             return Pull(np.asarray(-force), np.asarray(0.0 * force))
         lift = np.asarray(self._lift(travel))
@@ -186,8 +193,14 @@ class ArmPivot:
         return Pull(outwards, -self.sense * along_arm)
 
     def of_output(self, travel: Value, velocity: Value, acceleration: Value) -> Pull:
-        """Push of the output on the second arm, inertia included; velocity and acceleration of the
-        reference point, m/s and m/s2.
+        """Force on the arm by the output of a rocker, inertia of the output included, N; zero
+        without an output.
+
+        Parameters
+        ----------
+        travel : array (...)                   direction of travel of the reference point, rad, see
+                                               `_lift`
+        velocity, acceleration : array (...)   of the reference point, m/s, m/s2
         """
         if self.output is None:
             return Pull(np.asarray(0.0 * travel), np.asarray(0.0 * travel))
@@ -197,7 +210,7 @@ class ArmPivot:
         return Pull(outwards, -self.sense * along_arm)
 
     def _lift(self, travel: Value) -> Value:
-        """Lift at a direction of travel, rad, m."""
+        """Lift of the reference point, m, at which it travels in the direction `travel`, rad."""
         return self.length * (_QUARTER_TURN - self.start - self.sense * travel)
 
     def locking(self, pressed: Pressed) -> Array:
@@ -211,16 +224,19 @@ class ArmPivot:
     def balanced(
         self, required: Array, pressed: Pressed, pull: Pull, direction: Value
     ) -> PivotBalance:
-        """Axial force with implicit friction of the pivot.
+        """Equilibrium of the moments about the pivot, with its friction, which depends on the
+        unknown axial force.
 
         With F the force without friction, g the contact force over the axial one, e the share that
-        the friction of a face leaves, Q the pull and k = mu r/l the axial force x fulfils
-        e x - F = d k |x g + Q|: squared, a quadratic equation whose root is on the side of F to
-        which the friction acts.
+        the friction of a face leaves, Q the pull and k = mu r/l the axial force x fulfils e x - F =
+        d k |x g + Q|: squared, a quadratic equation whose root is on the side of F to which the
+        friction acts.
 
         Parameters
         ----------
         required : array (..., n)    F, N
+        pressed : Pressed            g and e
+        pull : Pull                  Q of all forces but the contact, N
         direction : array (..., n)   d, 1 on the rise, -1 on the return, 0 at rest
         """
         k = self.friction * self.radius / self.length
@@ -241,11 +257,19 @@ class ArmPivot:
     def clipped(
         self, required: Array, pressed: Pressed, pull: Pull, direction: Array, least: float
     ) -> PivotBalance:
-        """Equilibrium as by `balanced`, with the axial force between zero and a bound; real arrays
-        (..., n), required and pull in N.
+        """Equilibrium as by `balanced` on a cam that only pushes, with the axial force between zero
+        and a bound; real arrays (..., n).
 
-        Without contact where no positive force is required, or the friction holds the arm off the
-        cam; of an arm that locks the required force over the `least` share.
+        The axial force is zero where no positive force is required or the friction holds the arm
+        off the cam; where the arm locks it is the bound.
+
+        Parameters
+        ----------
+        required : array (..., n)    axial force without friction, N
+        pull : Pull                  of all forces but the contact, N
+        direction : array (..., n)   1 on the rise, -1 on the return, 0 at rest
+        least : float                least ratio of the required to the axial force; the bound is
+                                     required / least
         """
         free = self.balanced(required, pressed, pull, direction)
         most, rises = required / least, direction > 0.0
@@ -260,14 +284,17 @@ class ArmPivot:
     def between(
         self, required: Array, pressed: tuple[Pressed, Pressed], pull: Pull, direction: Array
     ) -> tuple[PivotBalance, Array]:
-        """Equilibrium as by `balanced` on two tracks, and the one that carries: 1 the first, which
-        pushes, -1 the second; real arrays (..., n), required and pull in N.
+        """Equilibrium as by `balanced` on the track of two that carries, and which one does: 1 the
+        first, which pushes, -1 the second; real arrays (..., n).
 
-        None is pressed where the friction alone holds the arm.
+        Where the friction alone holds the arm, neither track is pressed.
 
         Parameters
         ----------
-        pressed : pair   of the first and of the second track
+        required : array (..., n)    axial force without friction, N
+        pressed : pair               of the first and of the second track
+        pull : Pull                  of all forces but the contact, N
+        direction : array (..., n)   1 on the rise, -1 on the return, 0 at rest
         """
         pushed, pulled = (self.balanced(required, one, pull, direction) for one in pressed)
         wall = np.where(pushed.axial > 0.0, 1.0, -1.0)
@@ -292,12 +319,13 @@ FRICTION = "follower.pivot.friction"
 def arm_pivot(
     at: Callable[[str], Value | None], sense: float, output: RockerOutput | None = None
 ) -> ArmPivot | None:
-    """Pivot from numbers by dotted key; None without its friction: it is not described.
+    """Pivot of an arm from numbers by dotted key; None if its friction is not stated.
 
     Parameters
     ----------
-    at : callable            dotted key -> number, SI; None where the case omits it
-    output : RockerOutput    of a second arm; None: none
+    at : callable           dotted key -> number, SI; None where the case omits it
+    sense : float           w of the arm, see `Arm`
+    output : RockerOutput   of a second arm; None: none
     """
 
     def stated(key: str, default: Value) -> Value:

@@ -120,7 +120,11 @@ class Rocker(Part):
             raise InputError("rocker.output_force", stated, "left out without a constant ratio")
 
     def linkage(self, arm_length: float | None) -> RockerLinkage:
-        """Its two arms with the lash; arm_length: of the follower's arm, m; None: of a stem.
+        """Linkage of the two arms of the rocker with the lash.
+
+        Parameters
+        ----------
+        arm_length : float or None   of the arm of the follower, m; None: a stem moves the rocker
 
         Raises
         ------
@@ -154,14 +158,16 @@ class Rocker(Part):
         return (f"rocker of {arm}, {side}{lash}",)
 
     def push_on_arm(self, force: Array, lift: Array, arm_length: float | None) -> Array:
-        """Force of the output on the rocker (2, ...), N, along the arm from the pivot and outwards.
+        """Force of the output on the rocker (2, ...), N: along the arm from the pivot, and
+        outwards.
 
-        The second arm is in line with the first at zero swing and at any other, on its side.
+        The second arm lies in line with the first one, on its side of the pivot.
 
         Parameters
         ----------
-        force : array (...)   on the output against its lift, N
-        lift : array (...)    of the follower, m
+        force : array (...)          on the output against its lift, N
+        lift : array (...)           of the follower, m
+        arm_length : float or None   of the arm of the follower, m; None: of a stem
         """
         side = -1.0 if self.side == "opposite" else 1.0
         raised = 0.0 * lift

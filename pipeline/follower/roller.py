@@ -264,8 +264,12 @@ class Roller(Part):
         return float(np.mean(np.abs(rolling_share(np.asarray(path), self.radius))))
 
     def rolling(self, contour: Contour, loads: Loads, speed: float) -> RollingRoller:
-        """Rolling without slip on the wall that carries, of the roller that does; see
-        `FollowerKind`.
+        """Motion without slip of the roller that carries at each cam angle, on the wall that
+        carries; see `FollowerKind`.
+
+        Parameters
+        ----------
+        speed : float   of the cam, rad/s
         """
         first, *others = self._rollers(contour, loads, speed)
         motion = first.motion
@@ -274,7 +278,12 @@ class Roller(Part):
         return motion
 
     def _rollers(self, contour: Contour, loads: Loads, speed: float) -> list[_Turning]:
-        """Roller of each disc without slip, at a cam speed, rad/s."""
+        """Motion of the roller of each disc without slip, and the cam angles at which it carries.
+
+        Parameters
+        ----------
+        speed : float   of the cam, rad/s
+        """
         pitch, theta, pulls = contour.require_roller().pitch, loads.theta, loads.wall < 0.0
         if loads.second is None:
             motion = roller_motion(pitch, self.radius, speed, theta, wall=loads.wall)

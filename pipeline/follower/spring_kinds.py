@@ -682,8 +682,8 @@ class ExtensionSpring(SpringShape):
 
     @property
     def twisted(self) -> float:
-        """Curvature factor K_B of the hook's torsion: (4 C - 1)/(4 C - 4), C = 2 r/d; NaN without
-        the radius of the bend.
+        """Curvature factor K_B of the torsion in the bend from the coils to the hook: (4 C - 1)/(4
+        C - 4), C = 2 r/d; NaN without the radius r of the bend.
         """
         if self.side_radius is None:
             return np.nan
@@ -705,10 +705,15 @@ class ExtensionSpring(SpringShape):
         return np.asarray(self.twisted / self.wire.wahl_factor * self.wire.stress(force))
 
     def fatigue_use(self, least: Value, greatest: Value) -> Array:
-        """Greatest utilisation (...) of the Goodman lines of coils, bend and hook, of least and
-        greatest forces, N.
+        """Greatest utilisation (...) of the Goodman lines of coils, bend and hook; NaN without the
+        radius of the bend.
 
-        Torsion has the line of the wire; bending its endurance over 0.577 and the tensile strength.
+        The torsion of coils and bend has the line of the wire; the bending of the hook has the
+        endurance of torsion over 0.577 and the tensile strength.
+
+        Parameters
+        ----------
+        least, greatest : array (...)   force of the spring over a cycle, N
         """
         wire, twist = self.wire, self.twisted / self.wire.wahl_factor
         if self.side_radius is None:

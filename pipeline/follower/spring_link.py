@@ -105,14 +105,25 @@ class SpringLink(Part):
         return self.between % np.pi
 
     def distance(self, swing: Value) -> Value:
-        """Distance (...) of the ends, m, at a swing, rad."""
+        """Distance (...) between the ends of the spring, m.
+
+        Parameters
+        ----------
+        swing : array (...)   of the arm from zero lift, rad
+        """
         a, f = self.arm_radius, self.fixed_radius
         sine = np.sin(0.5 * (self.between - swing))
         distance: Value = np.sqrt((a - f) ** 2 + 4.0 * a * f * sine**2)
         return distance
 
     def travel(self, swing: Value) -> tuple[Value, Value, Value, Value]:
-        """Travel (...) from zero lift, m, and three derivatives by the swing, m/rad^k."""
+        """Travel (...) of the ends from zero lift, m, > 0 as the spring is tightened, and its first
+        three derivatives by the swing, m/rad^k.
+
+        Parameters
+        ----------
+        swing : array (...)   of the arm from zero lift, rad
+        """
         a_f, angle, long = self.arm_radius * self.fixed_radius, self.between, self.distance(swing)
         # the difference of both cosines keeps the digits of a small swing
         wide = 4.0 * a_f * np.sin(angle - 0.5 * swing) * np.sin(0.5 * swing)
@@ -145,8 +156,12 @@ class SpringLink(Part):
         return np.stack([force * each for each in towards])
 
     def ends(self, swing: Array) -> tuple[Array, Array]:
-        """Ends of the spring, on the arm and fixed, (2, ...) each, m: along the arm from the pivot
-        and square to it, outwards; at a swing (...), rad.
+        """End of the spring on the arm and fixed end, (2, ...) each, m: along the arm from the
+        pivot, and square to it, outwards.
+
+        Parameters
+        ----------
+        swing : array (...)   of the arm from zero lift, rad
         """
         out = (self.arm_angle + 0.0 * swing, self.fixed_angle - swing)
         radii = (self.arm_radius, self.fixed_radius)
@@ -186,7 +201,17 @@ class RockerSpring(Part):
         return self.rocker.linkage(self.length)
 
     def on_arm(self, length: float | None, rocker: Rocker | None) -> Self:
-        """On a rocker, with an arm of a length, m; None: of a stem."""
+        """The spring on the output of a rocker.
+
+        Parameters
+        ----------
+        length : float or None   of the arm of the follower, m; None: a stem moves the rocker
+
+        Raises
+        ------
+        InputError
+            If there is no rocker, or it has a lash.
+        """
         if rocker is None:
             raise InputError("rocker", "missing", "given with [spring.rocker]")
         if rocker.lash > 0.0:
@@ -266,7 +291,7 @@ class LinkedSpring(SpringShape):
 
     @cached_property
     def _own(self) -> tuple[Value, Value]:
-        """Force, N, and rate, N/m, of the spring at zero lift."""
+        """Force, N, and rate, N/m, of the spring along itself at zero lift."""
         if self.spring is not None:
             return self.spring.preload, self.spring.rate
         preload, rate = self.link.preload, self.link.rate
@@ -297,7 +322,9 @@ class LinkedSpring(SpringShape):
 
     @cached_property
     def reach(self) -> Value:
-        """Lift up to which the force on the arc rises, m, short of the dead centre."""
+        """Lift up to which the force on the arc rises and the law of the spring holds, m, at most
+        that of the dead centre.
+        """
         high = np.atleast_1d(np.broadcast_arrays(self.link.most_lift, *self._own)[0])
         low = np.zeros_like(high)
         for _ in range(_ROUNDS):
@@ -309,7 +336,9 @@ class LinkedSpring(SpringShape):
         return _plain(low)
 
     def _slope(self, lift: Array) -> Array:
-        """Slope of the force by the lift (...), N/m; NaN beyond the law of the spring."""
+        """Slope of the force on the arc by the lift (...), N/m; NaN where the travel of the ends is
+        beyond the law of the spring.
+        """
         travel, lever, change, _ = map(np.asarray, self.link.by_lift(lift))
         force, rate = self._own
         law = self._risen(travel)
@@ -327,7 +356,12 @@ class LinkedSpring(SpringShape):
         return Rise.linear(travel)
 
     def within(self, lift: Array) -> Rise:
-        """Rise of the force on the arc over its slope at zero lift."""
+        """Rise of the force on the arc over its slope at zero lift, with integral and derivatives.
+
+        Parameters
+        ----------
+        lift : array (...)   of the follower, m
+        """
         preload, rate = self._own
         travel, first, second, third = map(np.asarray, self.link.by_lift(lift))
         law = self._risen(travel)

@@ -57,7 +57,13 @@ class BodyField:
         )
 
     def put(self, among: BodyField, here: NDArray[np.bool_]) -> BodyField:
-        """This field of some of more angles `here` (k,) put among the fields of the others."""
+        """Field at all angles: this one at some of them, `among` at the others.
+
+        Parameters
+        ----------
+        among : BodyField   at all k angles
+        here : array (k,)   whether this field is of the angle
+        """
 
         def whole(own: NDArray[Any], others: NDArray[Any]) -> NDArray[Any]:
             every = others.copy()
@@ -145,7 +151,9 @@ class TurnFields:
 
     @cached_property
     def _surfaces(self) -> tuple[TurnFields, ...]:
-        """The fields of each surface of the cam by itself: the first pushes, a second one pulls."""
+        """Fields of each surface of the cam by itself: of the first, which pushes the follower, and
+        of a second one, which pulls it.
+        """
         if self.pair.pulling is None:
             return (self,)
         pairs = replace(self.pair, pulling=None), self.pair.pulling
@@ -153,7 +161,9 @@ class TurnFields:
 
     @cached_property
     def coarse_points(self) -> dict[str, Array]:
-        """Corners (2, n), m, of the coarse meshes by block; in that of the cam, all its bodies."""
+        """Corners (2, n), m, of the coarse meshes by block; the block of the cam has all its
+        bodies.
+        """
         meshes = [each.bodies.cam.body.mesh for each in self._surfaces]
         other = self.bodies.follower.body.mesh
         first, second = self.names
@@ -164,7 +174,7 @@ class TurnFields:
 
     @cached_property
     def triangles(self) -> dict[str, Index]:
-        """Triangles (3, t) by block."""
+        """Triangles (3, t), as indices of the corners of their mesh, by block."""
         first, second = self.names
         meshes = [each.bodies.cam.body.mesh for each in self._surfaces]
         starts = np.cumsum([0, *(mesh.corners for mesh in meshes[:-1])])
@@ -205,8 +215,13 @@ class TurnFields:
         return joined
 
     def _among_all(self, field: BodyField, number: int) -> BodyField:
-        """Field on the coarse mesh of one body of the cam as that on all of them; the others are at
-        rest.
+        """Field on the coarse mesh of all bodies of the cam, of which one is loaded; the others are
+        at rest.
+
+        Parameters
+        ----------
+        field : BodyField   on the coarse mesh of the loaded body
+        number : int        of this body, from 0
         """
         points = self.coarse_points[self.names[0]]
         triangles, count = self.triangles[self.names[0]].shape[1], field.points.shape[2]
@@ -223,7 +238,12 @@ class TurnFields:
         return BodyField(still, displacement, stress, hidden)
 
     def _carried(self, part: IntArray) -> dict[str, BodyField]:
-        """Fields by block at positions (k,) of the cycle at which the first surface carries."""
+        """Fields by block at positions of the cycle at which the first surface of the cam carries.
+
+        Parameters
+        ----------
+        part : array (k,)   positions in the cycle
+        """
         pair, theta, contact = self.pair, self.cycle.theta[part], self.cycle.contact
         load = contact.line_load[part], contact.half_width_hertz[part]
         contour, normals = pair.contour, pair.contour.normal(theta)

@@ -96,8 +96,10 @@ def dimensions_of(case: Case) -> CamDimensions:
 
 
 def made_walls(case: Case, contour: Contour) -> dict[str, Contour]:
-    """Surfaces to make by the ending of their files: the contour; in a groove both walls, half a
-    clearance from where the roller runs on them.
+    """Surfaces to make, by the ending of the names of their files: the contour, or both walls of a
+    groove.
+
+    The walls of a groove are half a clearance away from the roller on its nominal path.
     """
     if case.cam.groove is None:
         return {"": contour}
@@ -106,8 +108,8 @@ def made_walls(case: Case, contour: Contour) -> dict[str, Contour]:
 
 
 def groove_record(case: Case, contour: Contour) -> dict[str, Json] | None:
-    """Groove in ``dimensions.json``: width, depth, fillet and clearance, circle of the disc, radii
-    of the outer wall by polar angle; None without one.
+    """Groove for ``dimensions.json``: width, clearance, depth, fillet, radius of the disc and radii
+    of the outer wall by polar angle, mm; None without a groove.
     """
     groove, walls = case.cam.groove, made_walls(case, contour)
     if groove is None:

@@ -246,8 +246,13 @@ def _put_spring(data: Tables, case: Case, spring: HelicalSpring) -> None:
 
 
 def _put_mass(data: Tables, case: Case, roller: float, spring: float) -> None:
-    """Set the mass of the follower with what roller and half of the spring are heavier, kg; of an
-    arm its mass about the pivot, too, with the roller at its end.
+    """Set the mass of the follower in `data` to that of `case` plus what the new roller and spring
+    add; of an arm with a stated mass about the pivot this one, too.
+
+    Parameters
+    ----------
+    roller : float   mass of the new roller less that of the old one, kg; on an arm at its end
+    spring : float   half of the mass of the new spring less that of the old one, kg
     """
     follower, table = case.follower, table_in(data, "follower")
     table["mass"] = units.format(follower.mass + roller + spring, "g")
