@@ -31,6 +31,7 @@ documents              ``8_signoff.pdf``, ``8_report.pdf``, shop drawing, spread
 motion_svg             ``motion.svg``: the mechanism over one turn, animated
 scene_solids           rings, boxes and rods as triangles
 scene_arm              solids of second arm, output and spring of an arm, with their poses
+scene_groove           solids of a disc with a groove, and of the follower before it
 scene_page             ``scene.html``: interactive 3-D view over the turn
 sections               parts of a report by name; `report` writes them
 ====================== ===========================================================================
