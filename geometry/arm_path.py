@@ -58,7 +58,9 @@ class Arm:
     sense: float
 
     def __post_init__(self) -> None:
-        """Refuse lengths that are not positive; complex ones, of a complex step, are not tried."""
+        """Refuse a centre distance or a length, m, that is not positive; complex ones, of a
+        derivative by a complex step, are not checked.
+        """
         if not np.iscomplexobj(self.centre_distance):
             positive("follower.arm.centre_distance", self.centre_distance, "m")
         if not np.iscomplexobj(self.length):

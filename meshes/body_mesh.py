@@ -59,6 +59,9 @@ class BodyMesh(Displayed):
     boundaries: Mapping[str, Index]
 
     def __post_init__(self) -> None:
+        """Check shapes, node numbers and numbering, and that no triangle is inverted; MeshError if
+        not.
+        """
         freeze(self, points=self.points)
         if self.points.ndim != 2 or self.points.shape[0] != 2:
             raise MeshError(f"points of a mesh = {self.points.shape}, must be (2, n)")

@@ -48,6 +48,9 @@ class ElementSize:
     wall_edges: float = 1.0
 
     def __post_init__(self) -> None:
+        """Refuse sizes, growth and extents out of their bounds, and a contact point that is not
+        (2,).
+        """
         positive("sizing.far_size", self.far_size, "m")
         positive("sizing.wall_edges", self.wall_edges)
         positive("sizing.growth", self.growth)

@@ -377,7 +377,10 @@ def tool_gouge(solution: Solution) -> Demand:
 
 
 def _gouged(disc: CamDisc, tool: float | None, solution: Solution) -> Demand:
-    """Gouge depth on the contour of one disc."""
+    """Depth, m, by which a tool of radius `tool`, m, cuts the contour of one disc away from its
+    contact; 0 of a convex contour. Without a value where the tool or the concave radius is not
+    known.
+    """
     contour, allowed = disc.contour, solution.machine.limits[SECOND_CONTACT_DEPTH]
     concave = contour.concave_radius_min().value
     if np.isposinf(concave):

@@ -138,8 +138,12 @@ class Allowed(NamedTuple):
 
 
 def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allowed]:
-    """Function for the limit stated at a key of the case, or for a `share` of it from the table of
-    limits.
+    """Function that gives the limit stated at a `key` of the case, or a share of it.
+
+    Parameters
+    ----------
+    share : AnyLimit   row of the table of limits that states the share of the value; None: all of
+        it
     """
 
     def allowed(numbers: Numbers) -> Allowed:
@@ -153,7 +157,7 @@ def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allow
 
 
 def of_row(row: AnyLimit | None) -> Callable[[Numbers], Allowed]:
-    """Limit stated in a row of the table of limits.
+    """Function that gives the limit stated in a row of the table of limits.
 
     Raises
     ------

@@ -346,8 +346,8 @@ def _integral(values: Array, at: Array) -> Array:
     moved_by_tolerance=False,
 )
 def friction_balance(solution: Solution) -> Demand:
-    """Greatest relative difference, over the load cases, of the work that friction takes from the
-    cam and the heat of guides, pivot and face.
+    """Greatest difference, over the load cases, of the work that friction takes from the cam and
+    the heat of guides, pivot and face, relative to this heat.
     """
     worst = worst_case(solution.cycles, _heat_mismatch, integral=False)
     allowed = solution.machine.limits[FRICTION_BALANCE]
@@ -562,7 +562,9 @@ def _friction_loss(cycle: Cycle, torque: Array) -> float:
 
 
 def _heat_mismatch(cycle: Cycle) -> float:
-    """Relative difference of friction work and friction heat over a turn; zero within round-off."""
+    """Difference of friction work and friction heat of a turn over this heat, or over 1e-9 of the
+    energy stored in the spring where that is larger; zero within round-off.
+    """
     heat = _heat(cycle)
     loss = _friction_loss(cycle, cycle.loads.cam_torque)
     share = _relative(loss - heat, max(heat, 1e-9 * _stored(cycle)))

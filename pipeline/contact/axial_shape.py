@@ -42,6 +42,7 @@ class BodyEnd(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a size, m, of a sharp end, and a chamfer or rounding without a positive one."""
         super().__post_init__()
         if self.kind == "sharp" and self.size != 0:
             raise InputError("end.size", self.size, "0 m at a sharp end")
@@ -102,6 +103,7 @@ class AxialCrown(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a missing key of the kind of crown, and a key that this kind does not have."""
         super().__post_init__()
         known = _KEYS[self.kind]
         for name in ("radius", "line_load", "length", "file"):

@@ -52,6 +52,7 @@ class BallRing:
     footprint: float
 
     def __post_init__(self) -> None:
+        """Refuse sizes that are not positive, and a ring without a loaded ball."""
         for name in ("thickness", "ball_stiffness", "footprint"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise InputError(f"ring.{name}", getattr(self, name), "> 0")

@@ -40,6 +40,9 @@ class FatigueLimits:
     bending: float
 
     def __post_init__(self) -> None:
+        """Refuse a torsion limit that is not positive, and a bending limit outside sqrt(3)/2 to 2
+        of it.
+        """
         if not 0 < self.torsion < np.inf:
             raise InputError("fatigue.torsion", self.torsion, "> 0 Pa")
         if not self.torsion * np.sqrt(3) / 2 < self.bending < 2 * self.torsion:

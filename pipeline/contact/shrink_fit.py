@@ -56,6 +56,7 @@ class SeatFit(Part):
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
+        """Refuse a greatest interference below the least."""
         super().__post_init__()
         if not self.greatest_interference >= self.least_interference:
             field, least = f"{self.table}.greatest_interference", self.least_interference

@@ -144,6 +144,7 @@ class Drag:
     pin_radius: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse a drag that is negative, and a friction coefficient that is not positive."""
         for name in ("inertia", "torque", "bearing_friction", "pin_radius"):
             if not 0 <= getattr(self, name) < np.inf:
                 raise InputError(f"drag.{name}", getattr(self, name), ">= 0")

@@ -98,7 +98,16 @@ def _impact(
 def _slip(
     contour: Contour, second: SecondRoller | None, flights: Sequence[Landing], number: int
 ) -> float:
-    """Slip of the roller that lands on the other track over the cam speed, m."""
+    """Slip of the roller on the track on which it lands, m: sliding speed over cam speed.
+
+    In a groove, twice the speed along the path. On a second disc, roller radius times the change of
+    the spin over the cam speed since the roller of this disc last left it.
+
+    Parameters
+    ----------
+    second : SecondRoller or None     None: both tracks are the walls of a groove
+    flights, number : sequence, int   landings over the turn, in their order, and which of them
+    """
     flight = flights[number]
     if second is None:
         return 2.0 * float(contour.pitch.speed_and_curvature(np.array([flight.landing]))[0][0])

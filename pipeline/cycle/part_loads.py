@@ -208,7 +208,8 @@ class PivotPush(NamedTuple):
 
     @classmethod
     def of(cls, machine: Machine, loads: Loads, moment: Array) -> PivotPush | None:
-        """Of a turn; None without a bush, or the material of its pin.
+        """Load of the pin over a turn, by the forces of the turn; None without a bush of the pivot,
+        or the material of its pin.
 
         moment : array (n,)   of the contact about the middle of the follower, N m
         """

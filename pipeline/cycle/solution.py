@@ -491,8 +491,15 @@ def _contact(
     store: ContactStore,
     progress: Progress,
 ) -> ContactHistory:
-    """Contact over a turn: by finite elements of the meshed bodies, Hertz without them (None); NaN
-    where the contour encloses no body (`body` False).
+    """Contact over a turn.
+
+    Parameters
+    ----------
+    pair : ContactPair             contour, bodies and materials
+    bodies : CycleBodies or None   meshed bodies: by finite elements; None: Hertz, in closed form
+    each : Turn                    with cam angles and normal forces
+    body : bool                    False: the contour encloses no body, and all values are NaN
+    store : ContactStore           of pieces that are solved already
     """
     if not body:
         return ContactHistory.unknown(each.theta.size)

@@ -142,8 +142,11 @@ class _Strokes:
     _together: bool = True
 
     def of(self, turn_input: TurnInput, system: FollowerSystem) -> Guided:
-        """Follower moving in its guides with the friction of `system`; all load cases are solved
-        with it, at the bounds of their friction too.
+        """Follower of a load case moving in its guides with the friction of `system`.
+
+        On the first call the followers of all load cases are solved together, each at the least,
+        nominal and greatest friction; where one of them cannot be solved, each load case on its
+        own.
         """
         key = _key(turn_input, system)
         if key not in self._known and self._together:

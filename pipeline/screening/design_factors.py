@@ -324,6 +324,7 @@ def _values(case: Case, values: Mapping[str, Array], count: int) -> At:
     """
 
     def at(key: str) -> Array:
+        """Values of a key (m,), SI; see `_values`."""
         if key in values:
             return values[key]
         stated = value_of(case, key)

@@ -41,6 +41,9 @@ class FiniteBody:
     depth: float
 
     def __post_init__(self) -> None:
+        """Refuse a length or depth, m, that is not positive, and ends that leave nothing between
+        them.
+        """
         for name in ("length", "depth"):
             if not getattr(self, name) > 0:
                 raise InputError(name, getattr(self, name), "> 0 m")
@@ -114,6 +117,9 @@ class LogarithmicCrown:
     straight: float = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse a scale, m, outside 0 to the length, a share outside 0 to 1, and a straight part
+        that is not shorter than the length.
+        """
         if not 0 < self.scale < self.length:
             raise InputError("crown.scale", self.scale, "> 0 m and less than the length")
         if not 0 < self.share <= 1:
@@ -142,6 +148,9 @@ class TabulatedCrown:
     table: Array
 
     def __post_init__(self) -> None:
+        """Refuse fewer than two rows, coordinates y that do not ascend, and a drop, m, of the range
+        of y or more.
+        """
         freeze(self, y=finite("crown.y", self.y), table=finite("crown.drop", self.table))
         if self.y.ndim != 1 or self.y.shape != self.table.shape or self.y.size < 2:
             raise InputError("crown.y", self.y.size, "two or more rows of y and drop")

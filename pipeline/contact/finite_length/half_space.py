@@ -125,10 +125,15 @@ def _add_free_ends(
 
 
 def _image(cells: PressureCells, shift: float, poisson: float) -> _Image:
-    """Influence of the loads mirrored at the end y = shift/2, m, times the factor of Poisson's
-    ratio that frees this end of stress.
+    """Influence of the loads mirrored at one end of a body, times the factor of Poisson's ratio
+    that frees this end of stress: integral of 1/r over displaced and mirrored loaded cell, m3.
 
     Distant loads by their mean and second moments over the cells, near ones exactly.
+
+    Parameters
+    ----------
+    shift : float     twice the axial coordinate y of the end, m
+    poisson : float   Poisson's ratio of the body
     """
     along = cells.centres_along
     # Cells of a rounded end may reach beyond the end of the other body.
@@ -246,8 +251,16 @@ class _Pairs:
 
 
 def _double_integral(across: _Pairs, along: _Pairs) -> Array:
-    """Integrals of 1/r over both cells of each pair, (p across, p along), m3: exact when near, by
-    mean and second moments when far apart.
+    """Integrals of 1/r over both cells of each pair, m3: exact when near, by mean and second
+    moments when far apart.
+
+    Parameters
+    ----------
+    across, along : _Pairs   p pairs of cells in x, and q pairs in y
+
+    Returns
+    -------
+    array (p, q)   by pair in x and pair in y
     """
     primitive = _fourth_primitive(across.edges[:, None], along.edges)
     values = along.integrated(across.integrated(primitive).T).T

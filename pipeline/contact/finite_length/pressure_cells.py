@@ -40,6 +40,7 @@ class CellSizes:
     window: float = 2.2
 
     def __post_init__(self) -> None:
+        """Refuse sizes and shares that are not positive, and a growth below 1."""
         for name in ("per_half_width", "at_end", "uniform", "largest", "largest_share", "window"):
             if not getattr(self, name) > 0:
                 raise InputError(name, getattr(self, name), "> 0")
