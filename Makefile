@@ -1,8 +1,8 @@
 # make run     set up .venv, run the redesigned GX120 into runs/gx120, print verdict and report
 # make test    set up .venv, run ruff, mypy and the tests
 # make verify  the slow tests, or PART="sizes ends" of them; writes docs/verification.md
-# make bench   benchmarks             make lint  ruff and mypy only
-# make docs    the documentation site, into build/docs/site
+# make bench   benchmarks, and all of the slow tests of which make verify runs a sample
+# make docs    the documentation site, into build/docs/site           make lint  ruff and mypy only
 # make fuzz    20,000 mutated input files     make pins   write the pinned figures of the cases anew
 
 PYTHON ?= python3
@@ -71,6 +71,7 @@ lint: .venv/developing typing
 
 bench: .venv/developing
 	@set -e; for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script; done
+	$(BIN)/python tests/slow_parts.py whole
 
 clean:
 	rm -rf .venv .typing .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info

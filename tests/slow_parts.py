@@ -2,6 +2,7 @@
 
 python tests/slow_parts.py              all parts
 python tests/slow_parts.py sizes ends   these parts
+python tests/slow_parts.py whole        what all parts try a sample of, as `make bench` does
 python tests/slow_parts.py --list       names and files of the parts
 """
 
@@ -26,6 +27,8 @@ START, END = "<!-- results of make verify -->", "<!-- end of results -->"
 FIGURES, FIGURES_END = "<!-- figures of the tests -->", "<!-- end of figures -->"
 MEASURED = "figures"
 """Name of the part of the tests that state figures, quick ones all of them."""
+WHOLE = "whole"
+"""Name of the part, and marker, of slow tests of which the other parts have a sample."""
 
 PARTS: Mapping[str, tuple[str, ...]] = {
     "contact": ("any_contour_meshes", "envelope_verification", "stress_fields", "deck",
@@ -73,7 +76,9 @@ def slow_files() -> dict[str, list[Path]]:
 
 
 def run(
-    files: Sequence[Path], marker: str = "slow", then: Callable[[Path], None] | None = None
+    files: Sequence[Path],
+    marker: str = f"slow and not {WHOLE}",
+    then: Callable[[Path], None] | None = None,
 ) -> Result:
     """Run the tests of a marker in some files in two processes.
 
@@ -200,7 +205,7 @@ def written(page: str, rows: Mapping[str, str]) -> str:
     kept |= rows
     head = ["| part | result | passed | failed | skipped | wall time | commit | date |",
             "| --- | --- | --- | --- | --- | --- | --- | --- |"]  # fmt: skip
-    body = [kept[name] for name in (*PARTS, RECORDS, MEASURED) if name in kept]
+    body = [kept[name] for name in (*PARTS, RECORDS, MEASURED, WHOLE) if name in kept]
     return before + "\n".join([START, *head, *body, END]) + after
 
 
@@ -211,14 +216,17 @@ def main(names: Sequence[str]) -> int:
         for name, files in parts.items():
             print(f"{name}: {' '.join(str(path.relative_to(ROOT)) for path in files)}")
         return 0
-    if unknown := [name for name in names if name not in (*parts, MEASURED)]:
-        known = ", ".join([*parts, MEASURED])
+    if unknown := [name for name in names if name not in (*parts, MEASURED, WHOLE)]:
+        known = ", ".join([*parts, MEASURED, WHOLE])
         print(f"part = {unknown[0]}, must be one of: {known}", file=sys.stderr)
         return 2
     begin, failed, of = time.monotonic(), 0, commit()
     for name in names or (*parts, MEASURED):
         print(f"== {name}", flush=True)
-        result = measure() if name == MEASURED else run(parts[name])
+        if name == WHOLE:
+            result = run([file for files in parts.values() for file in files], WHOLE)
+        else:
+            result = measure() if name == MEASURED else run(parts[name])
         failed += result.failed
         rows = {name: row(name, result, of, datetime.now(UTC))}
         PAGE.write_text(written(PAGE.read_text(encoding="utf-8"), rows), encoding="utf-8")

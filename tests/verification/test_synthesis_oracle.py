@@ -362,10 +362,15 @@ def tightened(limit, *about, **shares):
     return with_number(problem, number, value * np.exp(factor))
 
 
+TIGHTENED = [
+    pytest.param(limit, id=limit.check, marks=[pytest.mark.whole] if k % 3 else [])
+    for k, limit in enumerate(each for each in LIMITS if each.check != FIXED)
+]
+"""Limits to be tightened: `make verify` tries every third, `make bench` the others."""
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "limit", [each for each in LIMITS if each.check != FIXED], ids=lambda limit: limit.check
-)
+@pytest.mark.parametrize("limit", TIGHTENED)
 def test_a_tightened_limit_binds_at_the_optimum(limit):
     problem = tightened(limit)
     optimum = Oracle(problem).solved()
