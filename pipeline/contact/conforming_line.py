@@ -199,8 +199,13 @@ def _ratios(roller: Elastic, wall: Elastic) -> _Ratios:
 
 @lru_cache(maxsize=32)
 def _stresses(roller: Elastic, wall: Elastic) -> Array:
-    """Rows over the half angle: itself, in-plane shear, its depth, shear on any plane, von Mises
-    stress, its depth; greatest on the axis of the wall, over peak pressure and half-width.
+    """Table of the greatest stresses on the axis of the wall: columns by half contact angle, that
+    of Hertz first.
+
+    Returns
+    -------
+    array (6, k)   half angle, rad; in-plane shear and its depth; shear on any plane; von Mises
+        stress and its depth; stresses over the peak pressure, depths over the half-width
     """
     mises, depth = hertz.von_mises_peak(wall.poisson)
     any_plane = hertz.shear_any_plane_peak(wall.poisson)

@@ -63,9 +63,11 @@ class Conforming:
 
 
 def persson_clearance(contact_angle: ArrayLike) -> Array:
-    """Persson's load parameter E' dR / Q (...) at half contact angles, rad; < 0 for a press fit.
+    """Persson's load parameter E' dR / Q (...) at half contact angles (...), rad, of two bodies of
+    one material; < 0 for a press fit.
 
-    E' is E in plane stress and E/(1 - nu^2) in plane strain.
+    E' is E in plane stress and E/(1 - nu^2) in plane strain, dR the radial clearance, m, and Q the
+    load per length, N/m.
 
     References
     ----------
@@ -102,7 +104,8 @@ def persson_pressure(contact_angle: ArrayLike, angle: ArrayLike = 0.0) -> Array:
 
 
 def persson_contact_angle(clearance_number: float) -> float:
-    """Persson's half contact angle, rad, at a load parameter E' dR / Q >= 0.
+    """Persson's half contact angle, rad, at a load parameter `clearance_number` = E' dR / Q >= 0,
+    see `persson_clearance`.
 
     Raises
     ------

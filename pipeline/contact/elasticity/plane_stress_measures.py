@@ -74,6 +74,7 @@ class PeakFinder:
     """
 
     def __init__(self, points: ArrayLike, reach: float = 0.45) -> None:
+        """Keep the points; the fit of a neighbourhood is prepared on its first use."""
         self._reach = reach
         self._points = np.asarray(points, dtype=float)
         self._near: dict[int, Index] = {}
