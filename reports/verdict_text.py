@@ -108,19 +108,17 @@ def verdict(
     depth: Depth = CERTIFIED,
     load_ends: str = "",
 ) -> Verdict:
-    """Verdict in sentences.
+    """Verdict in sentences; its outcome is the worse of the recorded one and that of the checks.
 
     Parameters
     ----------
-    recorded : str         verdict of the run, or its screen
-    checks : sequence      records of the final trial
-    binding : sequence     ids of the binding checks
-    stopped : str          reason for which the trials ended
-    scope : str            parts that the sign-off does not cover, in a sentence
-    depth : str            of the run: below certified it has a screen, no verdict
-    load_ends : str        where the follower leaves the cam or locks, in words
-
-    The outcome is the worse of the recorded one and that of the checks.
+    recorded : str       verdict of the run, or its screen
+    checks : sequence    records of the final trial
+    binding : sequence   ids of the binding checks
+    stopped : str        reason for which the trials ended
+    scope : str          parts that the sign-off does not cover, in a sentence
+    depth : str          of the run: below certified it has a screen, no verdict
+    load_ends : str      where the follower leaves the cam or locks, in words
     """
     deciding = [each for each in in_order(of_records(checks)) if each.must_have]
     required = records_of(deciding)

@@ -73,14 +73,17 @@ class CounterweightBody:
         cls, position: Value, cam_width: Value, sizes: tuple[Value, Value | None], inner: Value,
         density: Value, product: Value,
     ) -> CounterweightBody:  # fmt: skip
-        """Body of outer radius and width; width None: of a half ring that has the unbalance.
+        """Counterweight of an outer radius and a width; without a width that of a half ring with a
+        given unbalance.
 
         Parameters
         ----------
-        position, cam_width : middle from that of the cam; width of the cam
-        sizes            : outer radius, and width or None
-        inner            : radius of the shaft below it
-        density, product : kg/m3; unbalance that it has, kg m
+        position : float    middle of the counterweight from that of the cam along the shaft, m
+        cam_width : float   m
+        sizes : tuple       outer radius, m, and width, m, or None
+        inner : float       radius of the shaft below it, m
+        density : float     kg/m3
+        product : float     unbalance for a width that is not given, kg m
         """
         radius, stated = sizes
         per_width, apart = moment_per_width(radius, inner, density), np.abs(position)

@@ -110,8 +110,9 @@ class Calibrator:
 
         Parameters
         ----------
-        read : function   edges of the second record in its file
-        harmonics : int   of the cycle, of the torque
+        record : EdgeRecord   of the measurement
+        read : function       file -> edge record, for the second record
+        harmonics : int       of the cycle, of the torque
 
         Raises
         ------

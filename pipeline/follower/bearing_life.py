@@ -127,12 +127,12 @@ def reliability_factor(reliability: float) -> float:
 def life_modification(viscosity_ratio: Values, cleanliness_ratio: Values) -> Values:
     """Life modification factor a_ISO of radial ball bearings (...), at most 50.
 
+    A complex step may have changed either ratio.
+
     Parameters
     ----------
-    viscosity_ratio : array (...)      kappa, >= 0.1; above 4 as at 4
-    cleanliness_ratio : array (...)    e_C P_u / P, >= 0
-
-    A complex step may have changed either.
+    viscosity_ratio : array (...)     kappa, >= 0.1; above 4 as at 4
+    cleanliness_ratio : array (...)   e_C P_u / P, >= 0
 
     References
     ----------

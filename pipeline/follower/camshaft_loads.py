@@ -151,15 +151,18 @@ def impact(
 ) -> Impact | None:
     """Flight across the backlash after a reversal, and the impact at its end.
 
-    None where the torque turns the rotor back before. The drive turns steadily; no oil brakes the
-    flight, `MESH_DAMPING` the impact. Both phases are linear: their modes are integrated in closed
-    form but for the torque, up to the greatest force, or half a period of the slower mode.
+    None where the torque turns the rotor back before, or the backlash is not crossed within a turn.
+    The drive turns steadily; no oil brakes the flight, `MESH_DAMPING` the impact. Both phases are
+    linear: their modes are integrated in closed form but for the torque, up to the greatest force,
+    or half a period of the slower mode.
 
     Parameters
     ----------
     theta : array (n,)    increasing cam angles of one turn, rad
     torque : array (n,)   of the cam through the teeth, drag included, N m
+    reversal : Reversal   angle and slope of the torque where it changes its sign
     cam_speed : float     rad/s, > 0
+    rotor : Rotor         gear and cam on the elastic shaft between them
     backlash : float      along the pitch circle, m, >= 0
     """
     value = np.sign(reversal.slope) * finite("torque", torque)

@@ -151,13 +151,18 @@ class ArmPivot:
     def pull(
         self, spring: Value, external: Value, travel: Value, velocity: Value, acceleration: Value
     ) -> Pull:
-        """All forces on the arm but those of contact and pivot, that of its inertia included.
+        """Sum of all forces on the arm but those of contact and pivot, that of its inertia
+        included, along and across the travel, N.
 
         A spring without a shape pulls at the reference point against its travel.
 
         Parameters
         ----------
-        spring, external : array (..., n)   forces, N
+        spring : array (..., n)                   force of the spring reduced to the reference
+                                                  point, N
+        external : array (..., n)                 external force towards the cam, that of an output
+                                                  included, N
+        travel : array (..., n)                   direction of travel of the reference point, rad
         velocity, acceleration : array (..., n)   of the reference point, m/s and m/s2
         """
         cos, sin = np.cos(self.load_angle), self.sense * np.sin(self.load_angle)

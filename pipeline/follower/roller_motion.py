@@ -68,22 +68,21 @@ def roller_motion(
 
     In the cam frame the roller centre moves along the pitch curve at w |P'| and the roller turns at
     w |P'|/r; relative to a stem it turns at w (|P'| - r)/r, relative to an arm by its own turning
-    less. The surface speed through the
-    contact is that of the contact point along the contour, w |P'| (1 - r kappa). On the outer wall
-    of a groove, -r in place of r, it turns the other way.
+    less. The surface speed through the contact is that of the contact point along the contour, w
+    |P'| (1 - r kappa). On the outer wall of a groove, -r in place of r, it turns the other way.
 
     Parameters
     ----------
     pitch : CentrePath
-    roller_radius : float      r, m, > 0
-    cam_speed : float          w, rad/s
-    theta : array (n,)         rad
-    cam_acceleration : float   rad/s2
+    roller_radius : float        r, m, > 0
+    cam_speed : float            w, rad/s
+    theta : array (n,)           rad
+    cam_acceleration : float     rad/s2
     wall : float or array (n,)   1, or -1 on the outer wall of a groove
 
     Returns
     -------
-    RollerMotion
+    RollingRoller
 
     Raises
     ------
@@ -92,8 +91,8 @@ def roller_motion(
 
     References
     ----------
-    Energy loss comparison between kinematically equivalent mechanisms: slider-crank and
-    eccentric cam (2024), eqs 35-37, at any pitch curve.
+    Energy loss comparison between kinematically equivalent mechanisms: slider-crank and eccentric
+    cam (2024), eqs 35-37, at any pitch curve.
     """
     if not 0.0 < roller_radius < np.inf:
         raise InputError("roller.radius", roller_radius, "> 0 m")

@@ -179,20 +179,21 @@ def equivalent_stress(normal: Array, shear: Array) -> Array:
 def fibre_stresses(
     theta: ArrayLike, moment: Array, torque: Array, sections: Sections
 ) -> tuple[Array, Array]:
-    """Von Mises amplitude and mean (k, m), Pa, of fibres of a rotating shaft over a turn.
+    """Von Mises amplitude and mean, Pa, of m fibres in k sections of a rotating shaft over a turn.
 
     Loads are in the engine frame, fibres rotate with the shaft.
 
     Parameters
     ----------
-    theta : array (n,)        angles of the shaft over one turn, rad
-    moment : array (k, 2, n)  at each section, N m, in the engine frame
-    torque : array (k, n)     N m
-    sections : Sections
+    theta : array (n,)         angles of the shaft over one turn, rad
+    moment : array (k, 2, n)   bending moment at each section, two components in the engine frame, N
+                               m
+    torque : array (k, n)      N m
+    sections : Sections        their diameters and notch factors (k,)
 
     Returns
     -------
-    amplitude, mean : array (k, m)    with the notch factors; NaN with an unknown load
+    amplitude, mean : array (k, m)   with the notch factors; NaN with an unknown load
 
     References
     ----------

@@ -592,7 +592,9 @@ def surge_force(
     ----------
     lift_values : array (n,)   at equal angles of one turn, m
     cam_speed : float          rad/s
-    rate, frequency, damping   see `dynamic_stiffness`
+    rate : float               of the spring, N/m
+    frequency : float          of the first mode between fixed ends, Hz
+    damping : float            damping ratio of each mode, > 0
     """
     spectrum = np.fft.rfft(finite("lift", lift_values))
     drive = np.arange(spectrum.size) * cam_speed

@@ -208,10 +208,16 @@ class RunFolder:
 
     def write_summary(self, summary: Mapping[str, object]) -> dict[str, object]:
         """``run.json``, completed by schema, case, hashes and versions; may be written again.
+        Returns what is written.
 
         Parameters
         ----------
-        summary : Mapping   the other entries of `run_reader.Summary`, and further ones
+        summary : mapping   the other entries of `run_reader.Summary`, and further ones
+
+        Raises
+        ------
+        ResultError
+            If a key figure is missing.
         """
         headline = summary["headline"]
         known = headline if isinstance(headline, Mapping) else {}

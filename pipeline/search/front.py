@@ -8,13 +8,15 @@ from collections.abc import Sequence
 def front(
     figures: Sequence[tuple[float, float]], alike: float = 0.0, gain: float = 0.0
 ) -> list[int]:
-    """Indices of the points of the front, by increasing first objective.
+    """Indices of the points of the front, by increasing first objective; both objectives are the
+    better the smaller they are.
 
     Parameters
     ----------
     figures : sequence of (float, float)   objectives; of equal points the first
-    alike : float   relative difference of first objectives up to which the better point replaces
-    gain : float    minimum decrease of the second objective between points
+    alike : float                          relative difference of first objectives up to which the
+                                           point with the smaller second one replaces the other
+    gain : float                           minimum decrease of the second objective between points
     """
     chosen: list[int] = []
     for k in sorted(range(len(figures)), key=lambda k: (*figures[k], k)):

@@ -40,8 +40,10 @@ def synthesise(
     Parameters
     ----------
     problem : Problem
-    ripple_weight : float   0: any cam within the limits
-    enough, worth : float   ripple and progress at which the search may end, see `descended`
+    ripple_weight : float   of the ripple in the objective; 0: any cam within the limits
+    enough : float          ripple over that of the engine at which the search may end; None: the
+                            least
+    worth : float           progress of the merit below which it may end, see `descended`
 
     Returns
     -------

@@ -257,11 +257,15 @@ def corrected(problem: Problem, design: Design, cams: Sequence[Comparison]) -> P
 
 
 def shares(changes: Array) -> Array:
-    """Weights (m,), of sum 1, of the corrections of each cam in the next trial.
+    """Weights (m,), of sum 1, with which the corrections of m solved cams enter the next trial.
+
+    Least squares of the weighted changes, with weights >= 0; the latest corrections have at least
+    `_LATEST_SHARE`.
 
     Parameters
     ----------
-    changes : array (n, m)   of the utilisations of one cam by the corrections of each cam
+    changes : array (n, m)   change of n utilisations of one cam by the corrections of each solved
+                             cam, against those with which that cam was found
     """
     changes = np.asarray(changes, dtype=float)
     scale = float(np.abs(changes).max(initial=0.0))

@@ -50,6 +50,7 @@ def differentiated(function: Function, at: Point, freed: bool) -> dict[str, Grad
     Parameters
     ----------
     function : callable   jet, maximum lift, variables -> values by name
+    at : Point            at which it is evaluated
     freed : bool          with the derivatives by k, P, r0
 
     References

@@ -310,13 +310,16 @@ def _replaced_by(other: Problem) -> Change:
 
 def _less_reduction(problem: Problem, fine: Problem, margin: float) -> list[Relaxation]:
     """Relaxation of the required ripple reduction to the greatest one that a cam within the other
-    limits reaches, less a margin; empty where no cam keeps the others.
+    limits reaches, less a margin; [] where no cam keeps the other limits.
 
-    Less than the one required by the margin at least, which a coarse problem may seem to keep.
+    It is less than the required reduction by the margin at least, since a coarse problem may seem
+    to keep that.
 
     Parameters
     ----------
-    fine : Problem   the same on all its splines, which leave less ripple
+    problem : Problem   on few splines
+    fine : Problem      the same on all its splines, which leave less ripple
+    margin : float      factor, > 1, on the least ripple left
     """
     ripple, ripple_of_all = _ripple_over_ceilings(problem), _ripple_over_ceilings(fine)
     best = None if ripple is None else synthesise(ripple)

@@ -78,10 +78,12 @@ def descended(
 
     Parameters
     ----------
-    ripple_weight : float   0: any cam within the limits
+    search : Search         problem with its start and its cam angles
+    ripple_weight : float   of the ripple in the merit; 0: any cam within the limits
     earlier : Descent       end of a search with fewer extra angles, to go on from
-    enough : float          ripple at which any cam within the limits is an end, as is one far from
-                            both at which little gain is foreseen; None: the least is wanted
+    enough : float          ripple over that of the engine at which any cam within the limits is an
+                            end, as is one far from both at which little gain is foreseen; None: the
+                            least is wanted
     worth : float           least decrease of the merit over `_PATIENCE` steps within the limits:
                             means of loads that jump at the reversals of an offset follower are
                             rough functions of the cam, on which the search creeps
