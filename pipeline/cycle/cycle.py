@@ -355,6 +355,22 @@ class Cycle(Tabled):
         words = "Wall of the groove that carries: 1 the inner, -1 the outer"
         return {Column("wall", "", words): self.loads.wall}
 
+    @property
+    def _conforming_columns(self) -> dict[Column, Cells]:
+        """Pressure and half-width in a groove by a preview, in which contacts may conform; nothing
+        of other cams and depths.
+        """
+        contact, pair = self.contact, self.pair
+        if contact.tier is not Tier.PREVIEW or pair.wall is None or pair.second is not None:
+            return {}
+        words = "of the contact, conforming where a wall is concave, else Hertz"
+        return {
+            Column("p0_conforming", "MPa", f"Maximum pressure {words}", unknown=True): contact.p0,
+            Column(
+                "half_width_conforming", "mm", f"Half-width {words}", unknown=True
+            ): contact.half_width,
+        }
+
     def columns(self) -> dict[Column, Cells]:
         """Columns of ``5_cycle.csv``, SI; `table` has them in their units.
 
@@ -397,6 +413,7 @@ class Cycle(Tabled):
             contact_column(
                 "half_width_fe", "mm", "Half-width of the contact, finite elements"
             ): by_elements(contact.half_width),
+            **self._conforming_columns,
             contact_column(
                 "tau_max", "MPa", "Maximum in-plane shear stress below the contact"
             ): contact.tau_max,

@@ -75,8 +75,11 @@ FIGURES: Mapping[str, tuple[str, _Figure]] = {
 _CYCLE, _CHECKS = "5_cycle.csv", "6_checks.json"
 _DEFINED = "["
 """Begins the unit of a symbol that the formula itself defines."""
-_CLOSED_FORM = {"p0_fe": "p0_hertz", "half_width_fe": "half_width_hertz"}
-"""Column in place of one that a run without finite elements leaves empty."""
+_CLOSED_FORM = {
+    "p0_fe": ("p0_conforming", "p0_hertz"),
+    "half_width_fe": ("half_width_conforming", "half_width_hertz"),
+}
+"""Columns in place of one that a run without finite elements leaves empty: the first it has."""
 ONLY = "?"
 """Symbol of the keys and words for which a formula holds, such as ``follower.kind roller``."""
 
@@ -565,6 +568,10 @@ class _Evaluation:
             raise ResultError(f"5_cycle.csv: no row at the cam angle of {self.record['id']}")
         return row
 
+    def _has(self, name: str) -> bool:
+        """Whether the cycle has a column of a name without its unit."""
+        return any(units.column(name, unit) in self._rows for unit in ("", *_UNITS))
+
     def _column(self, name: str) -> tuple[str, Array]:
         """Unit and values (n,), in this unit, of a column of the cycle, by its name without the
         unit; the closed form in place of a column of finite elements that is not solved.
@@ -579,7 +586,7 @@ class _Evaluation:
             if header not in self._rows:
                 continue
             if name in _CLOSED_FORM and np.isnan(self._rows[header]).all():
-                return self._column(_CLOSED_FORM[name])
+                return self._column(next(each for each in _CLOSED_FORM[name] if self._has(each)))
             return unit, self._rows[header]
         raise ResultError(f"5_cycle.csv: no column {name}")
 

@@ -7,6 +7,7 @@ import re
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from scipy.integrate import quad, solve_ivp
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.tables import Table
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.checks.form_closure import PLATE_MOMENT
 from camwright.pipeline.contact import hertz
@@ -22,11 +24,14 @@ from camwright.pipeline.contact.conforming_line import CONFORMING_FROM, conformi
 from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
 from camwright.pipeline.contact.rolling_envelope import FatigueLimits
 from camwright.pipeline.contact.rolling_envelope import swept as stresses_of_turn
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.crossover_history import impacts
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
 from camwright.pipeline.follower.friction_coupling import guided_loads
+from camwright.pipeline.hand_check.hand_sheet import SheetRun
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.run import run_case
 
 FILE = Path(__file__).parents[1] / "data" / "groove_feeder.toml"
 
@@ -201,18 +206,20 @@ def soft_roller():
     for old, new in changes.items():
         assert old in text
         text = text.replace(old, new, 1)
-    return preview_case(parse_case(text), corners=False)
+    return parse_case(text)
 
 
 def test_a_soft_roller_conforms_and_the_check_says_so():
     """The note has conforming pressure, error bar and Hertz; landings by the same contact."""
-    found = soft_roller()
+    found = preview_case(soft_roller(), corners=False)
     note = next(each for each in found.checks if each.id == "contact_pressure").note
     assert re.search(
         r"where the wall is concave up to [\d.]+ MPa \+- [\d.]+ %, conforming contact over"
         r" [\d.]+ deg at [\d.]+ deg in over-speed; Hertz [\d.]+ MPa", note
     )  # fmt: skip
     cycle = max(found.cycles, key=lambda each: each.cam_speed)
+    headers = [[column.header for column in each.columns()] for each in found.cycles]
+    assert "p0_conforming_MPa" in headers[0] and headers == [headers[0]] * len(headers)
     bodies, roller = (cycle.pair.follower.material, cycle.pair.cam), cycle.machine.roller.radius
     solved = 0
     for one in cycle.impacts:
@@ -231,6 +238,21 @@ def test_a_soft_roller_conforms_and_the_check_says_so():
             np.sqrt(load[0] * cycle.pair.contact_modulus * curvature / np.pi), rel=1e-9
         )
     assert solved
+
+
+@pytest.mark.slow
+def test_the_sheets_of_a_run_have_the_conforming_contact(tmp_path):
+    """Columns of pressure and half-width in all load cases, by which the formulas agree."""
+    run_case(soft_roller(), tmp_path / "run", positions=48, depth=Tier.PREVIEW, jobs=1)
+    run = SheetRun(tmp_path / "run")
+    cycle = run.run.final.cycle
+    pressure, plane = (cycle.numbers[f"p0_{name}_MPa"] for name in ("conforming", "hertz"))
+    assert (pressure != plane).any() and (pressure == plane).any()
+    numbers = MappingProxyType({**cycle.numbers, "p0_conforming_MPa": 1.001 * pressure})
+    final = replace(run.run.final, cycle=Table(numbers, cycle.rows_of))
+    altered = SheetRun(run.run.path, replace(run.run, trials=(final,)))
+    for name in ("contact_pressure", "shakedown", "shakedown_traction"):
+        assert run.sheet(name).agrees and not altered.sheet(name).agrees, name
 
 
 def test_the_roller_turns_the_other_way_on_the_outer_wall():
