@@ -1,4 +1,4 @@
-"""Size of a cam under the roller of an arm: smallest prime radius, best centre distance."""
+"""Size of a cam under an arm: smallest prime or base radius, best centre distance."""
 
 from __future__ import annotations
 
@@ -10,9 +10,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from camwright.geometry.arm_face import ArmFaceMotion
 from camwright.geometry.arm_path import Arm, ArmMotion
 from camwright.geometry.arrays import Array
-from camwright.geometry.cam_size import PitchExtremes, PitchLimits, RollerCam, RollerSize
+from camwright.geometry.cam_size import (
+    PitchExtremes,
+    PitchLimits,
+    PlaneCam,
+    RollerCam,
+    RollerSize,
+)
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, least_argument
 from camwright.geometry.lift import Jet
@@ -25,6 +32,11 @@ _RADIUS_HALVINGS = 45
 _CREEP = 0.5**10  # of a step of the scan, from what the samples pass to what the turn does
 _NO_SIZE = 1e3
 """Use of a size out of reach, beyond that of any within."""
+_SECTIONS = 40  # golden ones, which leave 4e-9 of the range of centre distances
+_SCANNED_BASES, _MOST_OF_FACE = 81, 3.0
+"""Base radii of a scan under a flat face; the greatest, and the greatest centre distance, over the
+length of the arm.
+"""
 _SWING_MARGIN = 1e-6  # rad, of the swing from both lines of centres
 
 
@@ -213,3 +225,133 @@ class ArmCam(RollerCam):
             -curvature.min(axis=1) * limits.concave_radius,
         )
         return np.where(reached, angles, _NO_SIZE), np.where(reached, curved, _NO_SIZE)
+
+
+@dataclass(frozen=True, eq=False)
+class ArmFaceCam(PlaneCam):
+    """Cam of a flat face along an arm of given length, whose centre distance is in place of the
+    offset.
+
+    Parameters
+    ----------
+    lift : LiftParts   arc of the end of the arm
+    length : float     pivot to end of the arm, m
+    sense : float      of the outward swing: 1 with the rotation of the cam, -1 against it
+    plane : float      distance of the plane of the face from the pivot towards the cam, m
+    """
+
+    lift: LiftParts
+    length: float
+    sense: float
+    plane: float
+
+    @cached_property
+    def _swing(self) -> tuple[float, float]:
+        """Least and greatest swing from zero lift, rad.
+
+        Refused where the arm turns with the cam as fast as it does.
+        """
+        low, high = (
+            each.value / self.length for each in (self.lift.least(_lift), self.lift.greatest(_lift))
+        )
+        fastest = self.lift.greatest(lambda _, s1, __: self.sense * s1).value / self.length
+        if not fastest < 1.0:
+            limit = "< 1 rad of the arm per rad of the cam that turns with it"
+            raise InputError("follower.arm swing", f"{fastest:.6g} rad/rad", limit)
+        return low, high
+
+    def reach(self, offset: float) -> tuple[float, float]:
+        """Base radii, m, between which the face stays over the cam axis and turns by less than a
+        quarter from it, with a centre distance, m.
+        """
+        low, high = self._swing
+        level = float(np.arcsin(np.clip(self.plane / offset, -1.0, 1.0)))
+        ends = level + max(-low, 0.0) + _SWING_MARGIN, 0.5 * np.pi - high - _SWING_MARGIN
+        arm = self._arm(offset)
+        return tuple(float(arm.face_radius(each, self.plane)) for each in ends)  # type: ignore[return-value]
+
+    def least_base_radius(
+        self,
+        least_radius: float = 0.0,
+        undercut_factor: float = 0.0,
+        offset: float | None = None,
+    ) -> float:
+        """Smallest base radius, m, with a centre distance, m; None: the best one of each radius.
+
+        The first of a scan within the limits, and the halved step before it.
+
+        Raises
+        ------
+        InputError
+            If none keeps them.
+        """
+
+        def keeps(base: float) -> bool:
+            distance = self.best_offset(base) if offset is None else offset
+            low, high = self.reach(distance)
+            return (
+                low <= base <= high
+                and self.least_radius(base, distance).value >= least_radius
+                and self.undercut_factor(base, distance) >= undercut_factor
+            )
+
+        most = _MOST_OF_FACE * self.length
+        low, high = (0.0, most) if offset is None else self.reach(offset)
+        bases = np.linspace(low, high, _SCANNED_BASES)
+        k = next((k for k, each in enumerate(bases) if keeps(float(each))), None)
+        if k is None:
+            stated = "open" if offset is None else offset
+            limit = "another for this swing: no base radius keeps the curvature"
+            raise InputError("follower.arm.centre_distance", stated, limit)
+        low, base = float(bases[max(k - 1, 0)]), float(bases[k])
+        for _ in range(_RADIUS_HALVINGS):
+            middle = 0.5 * (low + base)
+            low, base = (low, middle) if keeps(middle) else (middle, base)
+        return base
+
+    def least_radius(self, base_radius: float, offset: float = 0.0) -> Extremum:
+        motion = self._motion(base_radius, offset)
+        return self.lift.least(lambda *jet: motion(*jet).radius)
+
+    def undercut_factor(self, base_radius: float, offset: float = 0.0) -> float:
+        motion = self._motion(base_radius, offset)
+
+        def factor(*jet: Array) -> Array:
+            of = motion(*jet)
+            return of.radius / of.height
+
+        return self.lift.least(factor).value
+
+    def best_offset(self, base_radius: float = 0.0) -> float:
+        """Centre distance of the narrowest face, m, with a base radius, m, by the samples of the
+        lift: the contact travels as far beyond the end of the arm as before it.
+        """
+        _, high = self._swing
+        reached = base_radius + self.plane
+        least = (1.0 + _SWING_MARGIN) * abs(reached) / np.cos(high)
+        most = _MOST_OF_FACE * float(np.hypot(self.length, reached))
+        samples = np.concatenate([part.samples for part in self.lift.parts], axis=1)
+
+        def width(distance: float) -> float:
+            return float(np.abs(self._motion(base_radius, distance)(*samples).on_face).max())
+
+        return least_argument(width, least, most, _SECTIONS)
+
+    def face_width(self, offset: float = 0.0, base_radius: float = 0.0) -> float:
+        motion = self._motion(base_radius, offset)
+        return 2.0 * self.lift.greatest(lambda *jet: np.abs(motion(*jet).on_face)).value
+
+    def _arm(self, distance: float) -> Arm:
+        return Arm(distance, self.length, self.sense)
+
+    def _motion(
+        self, base_radius: float, distance: float
+    ) -> Callable[[Array, Array, Array], ArmFaceMotion]:
+        """Motion of the face by lift, s' and s'' (...)."""
+        arm = self._arm(distance)
+        start = arm.face_angle(base_radius, self.plane)
+        return lambda s, s1, s2: ArmFaceMotion(Jet(s, s1, s2), arm, start, self.plane, 0.0)
+
+
+def _lift(lift: Array, _: Array, __: Array) -> Array:
+    return lift

@@ -303,8 +303,60 @@ class EccentricCam(RollerCam):
         return float(high)
 
 
+class PlaneCam(ABC):
+    """Cam of a flat face whose base radius, offset and face are open.
+
+    Of an arm the centre distance is in place of the offset, see `ArmFaceCam`.
+    """
+
+    lift: LiftParts
+
+    def reach(self, offset: float) -> tuple[float, float]:  # noqa: ARG002
+        """Bounds of the base radius, m, with an offset, m."""
+        return 0.0, np.inf
+
+    @abstractmethod
+    def least_base_radius(
+        self,
+        least_radius: float = 0.0,
+        undercut_factor: float = 0.0,
+        offset: float | None = None,
+    ) -> float:
+        """Smallest base radius, m: radius of curvature >= rho, and >= c times the height of the
+        face.
+
+        Parameters
+        ----------
+        least_radius : float      rho, least radius of curvature, m, >= 0
+        undercut_factor : float   c, 0 <= c < 1
+        offset : float            m; None: the best one of each base radius
+
+        References
+        ----------
+        Norton, Cam Design and Manufacturing Handbook (2009), ch. 7: flat-faced followers.
+        """
+
+    @abstractmethod
+    def least_radius(self, base_radius: float, offset: float = 0.0) -> Extremum:
+        """Least radius of curvature, m, with a base radius and an offset, m."""
+
+    @abstractmethod
+    def undercut_factor(self, base_radius: float, offset: float = 0.0) -> float:
+        """Least radius of curvature over the height of the face, with a base radius, m, > 0."""
+
+    @abstractmethod
+    def best_offset(self, base_radius: float = 0.0) -> float:
+        """Offset of the narrowest face, m, with a base radius, m."""
+
+    @abstractmethod
+    def face_width(self, offset: float = 0.0, base_radius: float = 0.0) -> float:
+        """Least width of a face centred on its reference point, m, with an offset and a base
+        radius, m.
+        """
+
+
 @dataclass(frozen=True, eq=False)
-class FaceCam:
+class FaceCam(PlaneCam):
     """Cam of a translating flat face whose base radius, offset and face are open.
 
     Parameters
@@ -314,27 +366,22 @@ class FaceCam:
 
     lift: LiftParts
 
-    def least_base_radius(self, least_radius: float = 0.0, undercut_factor: float = 0.0) -> float:
-        """Smallest base radius, m: r + s + s'' >= rho and (r + s + s'')/(r + s) >= c.
-
-        Parameters
-        ----------
-        least_radius : float      rho, least radius of curvature, m, >= 0
-        undercut_factor : float   c, 0 <= c < 1
-
-        References
-        ----------
-        Norton, Cam Design and Manufacturing Handbook (2009), ch. 7: flat-faced followers.
-        """
+    def least_base_radius(
+        self,
+        least_radius: float = 0.0,
+        undercut_factor: float = 0.0,
+        offset: float | None = None,  # noqa: ARG002
+    ) -> float:
+        """Smallest base radius, m: r + s + s'' >= rho and (r + s + s'')/(r + s) >= c."""
         share = 1.0 - undercut_factor
         by_factor = self.lift.greatest(lambda s, _, s2: -s2 / share - s).value
         return max(least_radius - self.least_radius(0.0).value, by_factor)
 
-    def least_radius(self, base_radius: float) -> Extremum:
+    def least_radius(self, base_radius: float, offset: float = 0.0) -> Extremum:  # noqa: ARG002
         """Least radius of curvature r + s + s'' with a base radius, m."""
         return self.lift.least(lambda s, _, s2: base_radius + s + s2)
 
-    def undercut_factor(self, base_radius: float) -> float:
+    def undercut_factor(self, base_radius: float, offset: float = 0.0) -> float:  # noqa: ARG002
         """Least factor (r + s + s'')/(r + s) with a base radius, m, > 0."""
         return self.lift.least(lambda s, _, s2: 1.0 + s2 / (base_radius + s)).value
 
@@ -344,12 +391,11 @@ class FaceCam:
         low, high = self.lift.least(_slope), self.lift.greatest(_slope)
         return low.value, high.value
 
-    @property
-    def best_offset(self) -> float:
+    def best_offset(self, base_radius: float = 0.0) -> float:  # noqa: ARG002
         """Offset of the narrowest face, m: the middle of the travel of the contact."""
         return 0.5 * sum(self.contact_travel)
 
-    def face_width(self, offset: float = 0.0) -> float:
+    def face_width(self, offset: float = 0.0, base_radius: float = 0.0) -> float:  # noqa: ARG002
         """Least width 2 max|s' - e| of a face centred on the stem, m, with an offset, m."""
         low, high = self.contact_travel
         return 2.0 * max(high - offset, offset - low)

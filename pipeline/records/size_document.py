@@ -31,18 +31,18 @@ class SizeLengths(TypedDict):
     """Offset of the follower."""
     governs: str
     """What governs the base radius, in words."""
+    centre_distance_mm: NotRequired[float]
+    """Distance of the pivot of an arm from the cam axis; absent of a stem."""
 
 
 @form()
 class RollerSizeRecord(SizeLengths):
-    """A cam with a roller, with its extremes on the exact lift."""
+    """A cam with a roller or the curved face of an arm, with its extremes on the exact lift."""
 
-    centre_distance_mm: NotRequired[float]
-    """Distance of the pivot of an arm from the cam axis; absent of a stem."""
     prime_radius_mm: float
     """Prime radius of the cam."""
     roller_radius_mm: float
-    """Radius of the roller."""
+    """Radius of roller or curved face."""
     pressure_angle_rise_deg: float
     """Greatest pressure angle of the rise."""
     pressure_angle_rise_at_deg: float

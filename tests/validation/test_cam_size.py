@@ -243,10 +243,10 @@ def test_face_of_a_given_lift() -> None:
     lift = Lift(theta, 4e-3 * (1.0 - np.cos(theta)) ** 2)
     face = FaceCam(LiftParts.of_lift(lift))
     base = face.least_base_radius(undercut_factor=0.3)
-    contour = FlatFaceContour(FacePath(lift, base, face.best_offset))
+    contour = FlatFaceContour(FacePath(lift, base, face.best_offset()))
     assert contour.undercut().factor == pytest.approx(0.3, abs=1e-9)
-    assert face.face_width(face.best_offset) == pytest.approx(contour.face_width_min(), rel=1e-9)
-    assert face.face_width(0.0) >= face.face_width(face.best_offset)
+    assert face.face_width(face.best_offset()) == pytest.approx(contour.face_width_min(), rel=1e-9)
+    assert face.face_width(0.0) >= face.face_width(face.best_offset())
 
 
 @pytest.mark.parametrize("angle", [0.0, -1.0, math.nan, 0.5 * math.pi])

@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from swung_face import face_text
 
+from camwright.geometry.arm_face import ArmFaceContour, ArmFacePath
 from camwright.geometry.arm_path import Arm, ArmContour, ArmPath
-from camwright.geometry.arm_size import ArmCam
+from camwright.geometry.arm_size import ArmCam, ArmFaceCam
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.cam_size import PitchLimits
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift_parts import LiftParts
 from camwright.geometry.motion_laws import Segment, SegmentMotion
+from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.template import first_case
-from camwright.pipeline.search.sizes.open_case import DISTANCE, PRIME, ROLLER, parse_open_case
+from camwright.pipeline.search.sizes.open_case import (
+    DISTANCE,
+    FACE,
+    PRIME,
+    ROLLER,
+    parse_open_case,
+)
 from camwright.pipeline.search.sizes.sizing import sized
 
 LENGTH = 0.1
@@ -105,3 +114,79 @@ def test_an_open_case_on_an_arm_is_completed() -> None:
         rises["pressure_angle_return_deg"], abs=0.1
     )
     assert parse_open_case(text, None, [ROLLER]).gaps == (ROLLER,)
+
+
+def faced(base: float, distance: float, sense: float, plane: float) -> ArmFaceContour:
+    """Contour under a flat face, by its path."""
+    arm = Arm(distance, LENGTH, sense)
+    start = float(arm.face_angle(base, plane))
+    return ArmFaceContour(ArmFacePath(MOTION.lift(), arm, start, plane))
+
+
+@pytest.mark.parametrize(("sense", "plane"), [(1.0, 0.0), (1.0, 0.005), (-1.0, -0.01)])
+def test_the_least_base_radius_under_a_face_is_at_a_limit_of_its_contour(
+    sense: float, plane: float
+) -> None:
+    """Curvature and undercut factor of the contour at a tenth of a degree, to 1e-4 of their value;
+    a smaller cam passes neither, with the centre distance of the narrowest face or with another.
+    """
+    cam = ArmFaceCam(LiftParts.of_motion(MOTION), LENGTH, sense, plane)
+    for stated in (None, 0.115):
+        base = cam.least_base_radius(0.005, 0.2, stated)
+        distance = cam.best_offset(base) if stated is None else stated
+        contour = faced(base, distance, sense, plane)
+        radius = contour.pitch.radius_of_curvature(THETA)
+        factor = contour.factor(THETA)
+        assert cam.least_radius(base, distance).value == pytest.approx(radius.min(), rel=1e-4)
+        assert cam.undercut_factor(base, distance) == pytest.approx(factor.min(), rel=1e-4)
+        uses = 0.005 / radius.min(), 0.2 / factor.min()
+        assert max(uses) == pytest.approx(1.0, abs=2e-4)
+        smaller = 0.99 * base
+        shorter = cam.best_offset(smaller) if stated is None else stated
+        other = faced(smaller, shorter, sense, plane)
+        least = other.pitch.radius_of_curvature(THETA).min()
+        assert least < 0.005 or other.factor(THETA).min() < 0.2
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_the_best_centre_distance_has_the_narrowest_face(sense: float) -> None:
+    """Its contact travels as far beyond the end of the arm as before it, by the samples of the
+    lift: within 1e-3 of the width by the contour, over which no other distance gains.
+    """
+    cam = ArmFaceCam(LiftParts.of_motion(MOTION), LENGTH, sense, 0.005)
+    best = cam.best_offset(0.075)
+    width = faced(0.075, best, sense, 0.005).face_width_min()
+    assert cam.face_width(best, 0.075) == pytest.approx(width, rel=1e-6)
+    on_face = faced(0.075, best, sense, 0.005).pitch.slide(THETA).on_face
+    assert on_face.max() == pytest.approx(-on_face.min(), rel=2e-3)
+    for share in (0.9, 0.99, 1.01, 1.1):
+        assert faced(0.075, share * best, sense, 0.005).face_width_min() > width
+
+
+def test_a_face_that_turns_with_the_cam_is_refused() -> None:
+    """An arm as short as its greatest slope; and a swing that no base radius draws."""
+    lift = LiftParts.of_motion(MOTION)
+    with pytest.raises(InputError, match=r"follower\.arm swing"):
+        ArmFaceCam(lift, 0.02, 1.0, 0.0).least_base_radius()
+    with pytest.raises(InputError, match=r"follower\.arm\.centre_distance = 0\.3"):
+        ArmFaceCam(lift, LENGTH, 1.0, 0.0).least_base_radius(10.0, offset=0.3)
+
+
+@pytest.mark.parametrize("kind", ["flat", "curved"])
+def test_an_open_case_with_a_face_on_an_arm_is_completed(kind: str) -> None:
+    """Radius, centre distance and face of the first case with a face; the preview agrees that the
+    contact stays on it with its half-width, and on no narrower one.
+    """
+    opened = parse_open_case(face_text(kind), None, [PRIME, DISTANCE, FACE])
+    assert opened.gaps == (PRIME, FACE, DISTANCE)
+    sizing = sized(opened)
+    assert sizing.verdict == "pass"
+    case, record = sizing.case, sizing.shapes.record(sizing.shape)
+    assert record["centre_distance_mm"] == pytest.approx(1e3 * case.follower.arm.centre_distance)
+    assert sizing.values[PRIME] == case.cam.prime_radius
+    (width,) = (each for each in sizing.checks if each.id == "face_width")
+    assert width.utilisation is not None
+    assert 0.99 < width.utilisation <= 1.0
+    contour = case.contour(given_lift(case))
+    assert sizing.shape.face_width > contour.face_width_min()
+    assert [panel.quantity for panel in sizing.figure.panels]

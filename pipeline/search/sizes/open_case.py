@@ -40,6 +40,7 @@ follower on a stem."""
 GAPS = tuple(_PROVISIONAL)
 """Keys that a case may leave open."""
 
+_WITHIN_THICKNESS = 0.999  # depth of a provisional curved face over its thickness
 HUB_WALL = 1.1
 """Least radius of a roller over that of its hub, where the bearing has no ring."""
 _HEAD = "\n# Values of the keys that the case left open, by camwright design sizes.\n"
@@ -170,26 +171,34 @@ def parse_open_case(
 
 
 def _of_arm(tables: Tables) -> Mapping[str, str]:
-    """Provisional prime radius and centre distance of an arm, as texts by key, where they are open;
-    empty without an arm or its length.
-
-    Beside a stated prime radius the arm is square to the line from its roller to the cam axis, else
-    to the line of centres.
+    """Values of the open keys that contradict no others of an arm, {} of a stem: prime radius and
+    centre distance of an arm square to its line to the cam, or of a flat face that touches where
+    the arm ends; the width of a curved face that its thickness allows.
     """
     arm = _entry(tables, "follower.arm")
     if not isinstance(arm, dict):
         return {}
-    length, distance, prime = (
+    length, distance, prime, plane, radius, thickness = (
         None if (stated := _entry(tables, key)) is None else units.parse(stated, "mm", key)
-        for key in ("follower.arm.length", DISTANCE, PRIME)
+        for key in (
+            *("follower.arm.length", DISTANCE, PRIME),
+            *("follower.face.offset", "follower.face.radius", "follower.face.thickness"),
+        )
     )
+    face = dict[str, str]()
+    if radius is not None:
+        deep = radius if thickness is None else min(_WITHIN_THICKNESS * thickness, radius)
+        face = {FACE: units.format(2.0 * float(np.sqrt(deep * (2.0 * radius - deep))), "mm")}
     if length is None:
-        return {}
+        return face
+    lowered = 0.0 if plane is None else plane
     if distance is None:
-        distance = float(np.hypot(length, length if prime is None else prime))
-    if prime is None:
+        distance = float(np.hypot(length, length if prime is None else prime + lowered))
+    if prime is None and plane is None:
         prime = float(np.hypot(length, distance))
-    return {PRIME: units.format(prime, "mm"), DISTANCE: units.format(distance, "mm")}
+    elif prime is None:
+        prime = float(np.sqrt(max(distance**2 - length**2, 0.5 * distance**2))) - lowered
+    return face | {PRIME: units.format(prime, "mm"), DISTANCE: units.format(distance, "mm")}
 
 
 def _least_roller(tables: Tables) -> str:

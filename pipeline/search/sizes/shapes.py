@@ -9,13 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arm_size import ArmCam
+from camwright.geometry.arm_size import ArmCam, ArmFaceCam
 from camwright.geometry.arrays import Array
 from camwright.geometry.cam_size import (
     EccentricCam,
     FaceCam,
     GivenLiftCam,
     PitchLimits,
+    PlaneCam,
     RollerCam,
     RollerSize,
 )
@@ -82,7 +83,8 @@ class Shape(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RollerShapes:
-    """Shapes of a roller cam within the geometric limits of a case.
+    """Shapes of a cam under a roller or the curved face of an arm within the geometric limits of a
+    case.
 
     Parameters
     ----------
@@ -100,7 +102,7 @@ class RollerShapes:
     @property
     def _aside(self) -> str:
         """Key of the offset, or of the centre distance of an arm."""
-        return OFFSET if self.case.follower.arm is None else DISTANCE
+        return aside_of(self.case)
 
     @property
     def _stated(self) -> float:
@@ -132,8 +134,10 @@ class RollerShapes:
 
     @property
     def _least_roller(self) -> float:
-        """Radius of the roller, m; the smallest one that fits its bearing where it is open."""
-        return self.case.roller.radius
+        """Radius of roller or curved face, m; the smallest roller that fits its bearing where it is
+        open.
+        """
+        return self.case.contact_radius
 
     def smallest(self) -> Shape:
         """Smallest shape of the cam within the geometric limits, with the smallest roller, and the
@@ -149,7 +153,7 @@ class RollerShapes:
         """
         if PRIME not in self.gaps:
             prime, roller = self.case.cam.prime_radius, self._least_roller
-            return Shape(prime, self._offset(prime, roller), roller, 0.0, "given")
+            return self._faced(Shape(prime, self._offset(prime, roller), roller, 0.0, "given"))
         roller = self._roller_of_tool()
         limits = self.limits(roller)
         offset = rounded(self._smallest(limits).offset)
@@ -164,7 +168,16 @@ class RollerShapes:
         if wall > prime:
             prime, governs = wall, "wall around the bore"
             offset, by_offset = self._offset(prime, roller), BALANCE
-        return Shape(prime, offset, roller, 0.0, governs, by_offset)
+        return self._faced(Shape(prime, offset, roller, 0.0, governs, by_offset))
+
+    def _faced(self, shape: Shape) -> Shape:
+        """Shape with the narrowest curved face, whose contact lies r sin(alpha) from its middle;
+        unchanged where the face is not open.
+        """
+        if FACE not in self.gaps:
+            return shape
+        angle = self.cam.extremes(shape.prime_radius, shape.offset).pressure_angle.value
+        return shape._replace(face_width=2.0 * shape.roller_radius * float(np.sin(angle)))
 
     def _smallest(self, limits: PitchLimits) -> RollerSize:
         """Smallest prime radius within limits of the pitch curve, and its offset, m: the best one
@@ -206,7 +219,12 @@ class RollerShapes:
     def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:
         """Shape with a larger prime radius, m, and its best offset."""
         offset = self._offset(prime, shape.roller_radius)
-        return Shape(prime, offset, shape.roller_radius, shape.face_width, governs, BALANCE)
+        larger = Shape(prime, offset, shape.roller_radius, shape.face_width, governs, BALANCE)
+        return self._faced(larger)
+
+    def with_radius(self, shape: Shape, prime: float) -> Shape:
+        """A shape with another prime radius, m, and the narrowest face for it where it is open."""
+        return self._faced(shape._replace(prime_radius=prime))
 
     def parts(self, shape: Shape) -> LiftParts:
         """Lift of a shape."""
@@ -286,8 +304,18 @@ class FaceShapes:
 
     case: Case
     gaps: tuple[str, ...]
-    cam: FaceCam
+    cam: PlaneCam
     least_radius: float = 0.0
+
+    @property
+    def _aside(self) -> str:
+        """Key of the offset, or of the centre distance of an arm."""
+        return aside_of(self.case)
+
+    @property
+    def _stated(self) -> float | None:
+        """Offset or centre distance of the case, m; None: open."""
+        return None if self._aside in self.gaps else float(value_of(self.case, self._aside))
 
     def smallest(self) -> Shape:
         """Smallest shape of the cam within the geometric limits, with the narrowest face, and the
@@ -298,18 +326,34 @@ class FaceShapes:
         """
         case, base, governs = self.case, self.case.cam.prime_radius, "given"
         if PRIME in self.gaps:
-            base = self.cam.least_base_radius(undercut_factor=case.limits[UNDERCUT_FACTOR])
-            governs = f"undercut factor of {case.limits[UNDERCUT_FACTOR]:g}"
-            by_radius = self.cam.least_base_radius(self.least_radius)
+            factor, stated = case.limits[UNDERCUT_FACTOR], self._stated
+            base = self.cam.least_base_radius(undercut_factor=factor, offset=stated)
+            governs = f"undercut factor of {factor:g}"
+            by_radius = self.cam.least_base_radius(self.least_radius, offset=stated)
             if by_radius > base:
                 base = by_radius
                 governs = f"radius of curvature of {shown(self.least_radius, 'mm')}"
             wall = least_base_circle(case)
             if wall > base:
                 base, governs = wall, "wall around the bore"
-        offset = rounded(self.cam.best_offset) if OFFSET in self.gaps else case.cam.offset
-        width = self.cam.face_width(offset) if FACE in self.gaps else value_of(case, FACE)
+        return self._of(base, governs)
+
+    def _of(self, base: float, governs: str) -> Shape:
+        """Shape of a base radius, m, with the narrowest face and its offset where they are open."""
+        stated = self._stated
+        offset = rounded(self.cam.best_offset(base)) if stated is None else stated
+        if FACE in self.gaps:
+            width = self.cam.face_width(offset, base)
+        else:
+            width = float(value_of(self.case, FACE))
         return Shape(base, offset, 0.0, width, governs, NARROWEST)
+
+    def with_radius(self, shape: Shape, prime: float) -> Shape:
+        """A shape with another base radius, m, and the narrowest face for it where it is open."""
+        shape = shape._replace(prime_radius=prime)
+        if FACE not in self.gaps:
+            return shape
+        return shape._replace(face_width=self.cam.face_width(shape.offset, prime))
 
     def parts(self, _: Shape) -> LiftParts:
         """Lift of any shape."""
@@ -317,27 +361,32 @@ class FaceShapes:
 
     def words(self, shape: Shape) -> str:
         """Extremes of a shape in words."""
-        least = self.cam.least_radius(shape.prime_radius)
+        base, offset = shape.prime_radius, shape.offset
+        least = self.cam.least_radius(base, offset)
         return (
             f"least radius of curvature {shown(least.value, 'mm')}, undercut factor"
-            f" {self.cam.undercut_factor(shape.prime_radius):.4g}, face at least"
-            f" {shown(self.cam.face_width(shape.offset), 'mm')} wide"
+            f" {self.cam.undercut_factor(base, offset):.4g}, face at least"
+            f" {shown(self.cam.face_width(offset, base), 'mm')} wide"
         )
 
     def record(self, shape: Shape) -> FaceSizeRecord:
         """Record of a shape with its extremes on the exact lift."""
-        return {
-            **_lengths(shape),
+        base, offset = shape.prime_radius, shape.offset
+        swings = self._aside == DISTANCE
+        record: FaceSizeRecord = {
+            **_lengths(shape._replace(offset=0.0) if swings else shape),
             "face_width_mm": in_unit(shape.face_width, "mm"),
-            "radius_of_curvature_min_mm": in_unit(
-                self.cam.least_radius(shape.prime_radius).value, "mm"
-            ),
-            "undercut_factor_min": self.cam.undercut_factor(shape.prime_radius),
+            "radius_of_curvature_min_mm": in_unit(self.cam.least_radius(base, offset).value, "mm"),
+            "undercut_factor_min": self.cam.undercut_factor(base, offset),
         }
+        if swings:
+            record["centre_distance_mm"] = in_unit(offset, "mm")
+        return record
 
     def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:
-        """A shape with a larger base radius, m."""
-        return shape._replace(prime_radius=prime, governs=governs)
+        """A shape with a larger base radius, m, at least as wide as it is."""
+        larger = self._of(prime, governs)
+        return larger._replace(face_width=max(larger.face_width, shape.face_width))
 
 
 Shapes = RollerShapes | FaceShapes
@@ -382,10 +431,17 @@ def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
     if case.follower.kind == "flat":
         return FaceShapes(case, gaps, FaceCam(parts), least_radius)
     if arm is not None:
-        if case.facing.slides:
-            raise InputError("follower.face", "a table", "left out for the sizes of an arm")
+        plane = None if case.follower.face is None else case.follower.face.offset
+        if plane is not None:
+            of_face = ArmFaceCam(parts, arm.length, arm.sense, plane)
+            return FaceShapes(case, gaps, of_face, least_radius)
         return RollerShapes(case, gaps, ArmCam(parts, arm.length, arm.sense), least_radius)
     return RollerShapes(case, gaps, GivenLiftCam(parts), least_radius)
+
+
+def aside_of(case: Case) -> str:
+    """Key of the offset of a case, or of the centre distance of its arm."""
+    return OFFSET if case.follower.arm is None else DISTANCE
 
 
 def allowance(case: Case) -> float:

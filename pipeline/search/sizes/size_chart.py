@@ -138,12 +138,12 @@ def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[Panel]:
     shapes : FaceShapes   cams at other base radii
     shape : Shape         the sized cam
     """
-    bases, cam = (
-        _about(_RADIUS_FROM * shape.prime_radius, shape.prime_radius, _CHART_POINTS),
-        shapes.cam,
-    )
-    radii, least = bases + cam.least_radius(0.0).value, in_unit(shapes.least_radius, "mm")
-    factors = np.array([cam.undercut_factor(float(each)) for each in bases])
+    cam, offset = shapes.cam, shape.offset
+    low, high = cam.reach(offset)
+    bases = _about(max(_RADIUS_FROM * shape.prime_radius, low), shape.prime_radius, _CHART_POINTS)
+    bases, least = np.minimum(bases, high), in_unit(shapes.least_radius, "mm")
+    radii = [cam.least_radius(float(each), offset).value for each in bases]
+    factors = np.array([cam.undercut_factor(float(each), offset) for each in bases])
     edge, limit = LimitLine(least, "limit" if least else "cusp"), case.limits[UNDERCUT_FACTOR]
     x = _in(bases, "mm")
     return [

@@ -41,7 +41,7 @@ from camwright.pipeline.checks.contact_strength import (
     edge_pressure,
     shakedown,
 )
-from camwright.pipeline.checks.flat_face_sliding import face_width
+from camwright.pipeline.checks.flat_face_sliding import face_width, self_locking
 from camwright.pipeline.checks.jump_and_jamming import (
     contact_at_overspeed,
     contact_force_margin,
@@ -103,7 +103,15 @@ _HELD = (contact_force_margin, jump, jump_speed, contact_at_overspeed, contact_o
 """Checks that a greater preload can pass."""
 _WOUND = (spring_surge, spring_solid, spring_coil_gap)
 """Checks that the winding of a stiffer spring can pass."""
-_SHAPE = (*_GROWTH, cam_radius, self_intersection, second_contact, arm_gap, arm_cam_gap)
+_SHAPE = (
+    *_GROWTH,
+    cam_radius,
+    self_intersection,
+    second_contact,
+    self_locking,
+    arm_gap,
+    arm_cam_gap,
+)
 _SPRING = (*_HELD, *_WOUND, spring_travel, spring_rate)
 JUDGED: Mapping[str, tuple[Declaration, ...]] = {
     PRIME: _SHAPE, OFFSET: _SHAPE, DISTANCE: _SHAPE, ROLLER: _SHAPE, FACE: (face_width,),
@@ -418,7 +426,7 @@ class _SizeSearch:
         gaps = self.opened.gaps
         if PRIME in gaps:
             prime = rounded_up(shape.prime_radius + allowance(self.opened.case))
-            shape = shape._replace(prime_radius=prime)
+            shape = self.shapes.with_radius(shape, prime)
         if FACE in gaps:
             shape = shape._replace(face_width=rounded_up(shape.face_width))
         screened = self._screened(shape, spring)
