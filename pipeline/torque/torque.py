@@ -166,7 +166,7 @@ def over_cam_turn(torque: Torque, period: Period) -> Torque:
 
 def together(one: Torque, other: Torque) -> Torque:
     """Sum of the torques of two machines on one shaft, over the longer cycle; components of equal
-    name are added.
+    name, and error bars, are added.
 
     Raises
     ------
@@ -184,9 +184,16 @@ def together(one: Torque, other: Torque) -> Torque:
     parts = dict(first.components)
     for name, part in second.components.items():
         parts[name] = parts[name] + part if name in parts else part
-    known = [each.varying_inertia for each in (first, second) if each.varying_inertia is not None]
-    varying = np.asarray(sum(known)) if known else None
-    return Torque(second.theta, parts, varying, second.error_bar, long.span)
+    varying = _sum_of_known(first.varying_inertia, second.varying_inertia)
+    bar = _sum_of_known(first.error_bar, second.error_bar)
+    return Torque(second.theta, parts, varying, bar, long.span)
+
+
+def _sum_of_known(one: Array | None, other: Array | None) -> Array | None:
+    """Sum of two arrays, of which None counts as zero; None if both are."""
+    if one is None or other is None:
+        return other if one is None else one
+    return one + other
 
 
 def uniform_cycle(count: int, span: float = FOUR_STROKE.angle) -> Array:

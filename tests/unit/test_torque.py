@@ -19,7 +19,7 @@ from camwright.pipeline.engine.engine_torque import (
     torque_from_cycle,
     torque_from_cylinder,
 )
-from camwright.pipeline.torque.torque import Torque, uniform_cycle
+from camwright.pipeline.torque.torque import Torque, together, uniform_cycle
 
 ENGINE = CylinderEngine(
     bore=0.060,
@@ -205,3 +205,19 @@ def test_resampled_inertia_is_not_negative(count):
     """It vanishes at the dead centres, where a spline may fall below zero by round-off."""
     varying = torque_from_cylinder(ENGINE, SPEED).resampled(count).varying_inertia
     assert varying.min() >= 0.0
+
+
+@pytest.mark.parametrize("measured", ["longer", "shorter", "both"])
+def test_the_error_bars_of_two_machines_on_a_shaft_are_added(measured):
+    """Over the longer cycle; the bar of the machine of the shorter one recurs."""
+
+    def made(span, bar):
+        theta = uniform_cycle(72, span)
+        return Torque(theta, {"gas": np.sin(theta)}, None, bar * np.ones(72) if bar else None, span)
+
+    short = made(2.0 * np.pi, 0.2 if measured != "longer" else 0.0)
+    long = made(4.0 * np.pi, 0.5 if measured != "shorter" else 0.0)
+    bar = together(long, short).error_bar
+    expected = {"longer": 0.5, "shorter": 0.2, "both": 0.7}[measured]
+    np.testing.assert_allclose(bar, expected, rtol=1e-12)
+    assert together(made(2.0 * np.pi, 0.0), made(4.0 * np.pi, 0.0)).error_bar is None
