@@ -46,6 +46,7 @@ from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.arm_beam import ArmBar
 from camwright.pipeline.follower.camshaft_loads import Camshaft
+from camwright.pipeline.follower.disc_preload import DiscPreload
 from camwright.pipeline.follower.flat_face import FollowerFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.follower_kind import FollowerKind
@@ -448,7 +449,24 @@ class Machine(Displayed):
             pivot=self.arm_pivot,
             held=self.cam.pulls,
             second=self.cam.second,
+            preload=self.disc_preload,
         )
+
+    @property
+    def disc_preload(self) -> DiscPreload | None:
+        """Preload of conjugate discs by their interference; None of other cams.
+
+        Raises
+        ------
+        InputError
+            If nothing between disc and follower mass is compliant.
+        """
+        pair = self.cam.conjugate
+        if pair is None or pair.interference is None:
+            return None
+        if not self.axial_stiffness < np.inf:
+            raise InputError("follower.stiffness", "missing", "given with an interference")
+        return DiscPreload(pair.interference, 1.0 / self.axial_stiffness)
 
     @property
     def mass_without_spring(self) -> float:

@@ -11,12 +11,14 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
+from camwright.geometry.second_track import relative_radius
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     ASSEMBLY_GAP,
     CAM_RADIUS,
+    CONTACT_FORCE_MARGIN,
     CONTACT_SAFETY,
     CROSSOVER_SLIP,
     FATIGUE_SAFETY,
@@ -29,6 +31,7 @@ from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.checks.missing_keys import lacking_of_card
+from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.cycle.cam_balance import groove_of
 from camwright.pipeline.cycle.crossover_history import WallImpact
 from camwright.pipeline.cycle.cycle import Cycle
@@ -36,6 +39,8 @@ from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.crossover import Landing
+from camwright.pipeline.follower.disc_preload import Squeezed
+from camwright.pipeline.follower.follower_forces import Carried
 
 PLATE_MOMENT = 0.509
 """Greatest moment per length at the root of a long cantilever plate over a load at its edge."""
@@ -206,6 +211,166 @@ def second_disc_gap(cam: LoadedCam) -> Array:
     spacing, offset = numbers["cam.conjugate.spacing"], numbers.get("roller.axial_offset")
     beside = 0.0 if offset is None else magnitude(np.asarray(offset))
     return np.asarray(spacing - 0.5 * (numbers["cam.width"] + numbers["roller.width"]) - beside)
+
+
+def _squeezed(cycle: Cycle, narrower: float) -> tuple[Squeezed, Array, Array] | None:
+    """Preload over a turn with an interference larger by a length, m, and the forces (2, n) of both
+    tracks along the travel of the first roller; None without an interference.
+    """
+    loads, preload = cycle.loads, cycle.machine.disc_preload
+    if preload is None or loads.second is None:
+        return None
+    more = replace(preload, interference=preload.interference + narrower)
+    squeeze = more.at(loads.second.track(cycle.contour.pitch), loads.theta)
+    first, second = squeeze.forces(loads.axial_force)
+    return squeeze, first, second
+
+
+def _of_turns(
+    solution: Solution, measure: Callable[[Cycle], Array | None], sign: float
+) -> tuple[float, Cycle, int] | None:
+    """Worst value of a measure over the turns, greatest for a `sign` of 1, least for -1, with its
+    cycle and number; None where it does not apply.
+    """
+    worst: tuple[float, Cycle, int] | None = None
+    for cycle in solution.cycles:
+        values = measure(cycle)
+        if values is None:
+            return None
+        k = first_greatest(sign * values)
+        if worst is None or not sign * values[k] <= sign * worst[0]:
+            worst = float(values[k]), cycle, k
+    return worst
+
+
+@check(
+    CONTACT_FORCE_MARGIN,
+    id="preload_least",
+    title="Minimum force on the disc that bears less over the preload",
+    formula="min(f - P T/i)/P >= c; f: force on the disc that bears less, along the travel of the"
+    " first roller, P: that of both without an axial force, T: cam.profile_tolerance, i:"
+    " cam.conjugate.interference, c: limits.contact_force_margin",
+    symbols={
+        **dict.fromkeys("fP", f"{STATED} [N]"),
+        "T": "cam.profile_tolerance",
+        "i": "cam.conjugate.interference",
+        "c": f"limits.{CONTACT_FORCE_MARGIN.id}",
+    },
+    reason="A roller without load stops and lands with a blow.",
+    method="axial force shared by the compliances of both rollers with their arms, the interference"
+    " less by the width of the profile tolerance",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    needs="roller",
+    closed_by="conjugate",
+    values=(*given.LOADS, "cam.conjugate.interference", "cam.profile_tolerance"),
+    levers=(levers.one("cam.conjugate.interference"), *levers.GENTLER),
+    page="Contact",
+)
+def preload_least(solution: Solution) -> Demand | None:
+    """Least force of both discs over the preload; None without an interference."""
+
+    def left(cycle: Cycle) -> Array | None:
+        pressed = _squeezed(cycle, 0.0)
+        if pressed is None:
+            return None
+        squeeze, first, second = pressed
+        return np.minimum(first, second) / squeeze.preload - _tolerance_over_interference(solution)
+
+    worst = _of_turns(solution, left, -1.0)
+    if worst is None:
+        return None
+    value, cycle, k = worst
+    pressed = _squeezed(cycle, 0.0)
+    stated = {}
+    if pressed is not None:
+        squeeze, first, second = pressed
+        least = min(float(first[k]), float(second[k]))
+        stated = {"f": least, "P": float(squeeze.preload[k])}
+    at = Extreme(value, cycle.load_case, float(cycle.theta[k]))
+    limit = solution.machine.limits[CONTACT_FORCE_MARGIN]
+    return Demand(value, limit, at, note=_preload_words(solution), stated=stated)
+
+
+def _tolerance_over_interference(solution: Solution) -> float:
+    cam = solution.machine.cam
+    pair = cam.conjugate
+    if pair is None or pair.interference is None:
+        return np.nan
+    return cam.profile_tolerance / pair.interference
+
+
+def _preload_words(solution: Solution) -> str:
+    """Least and greatest preload over the turn, in words."""
+    pressed = _squeezed(solution.cycles[0], 0.0)
+    if pressed is None:
+        return ""
+    low, high = float(pressed[0].preload.min()), float(pressed[0].preload.max())
+    return f"preload {shown(low, 'N')} to {shown(high, 'N')} over the turn"
+
+
+@check(
+    title="Contact pressure of both discs at the greatest preload",
+    unit="MPa",
+    source=Source("surface endurance of cam and follower", confirmed=True),
+    formula="max(p) <= p_E/S; p: sqrt(N E*/(pi b R)) on either disc, N: its normal force with an"
+    " interference greater by cam.profile_tolerance, p_E: least endurance pressure of cam and"
+    " roller, S: limits.contact_safety",
+    symbols={
+        "p": f"{STATED} [MPa]",
+        "p_E": f"{STATED} [MPa]",
+        "S": "limits.contact_safety",
+    },
+    reason="The preload presses at every angle, on the disc that bears less, too.",
+    method="pressure of Hertz on both discs, the interference greater by the width of the profile"
+    " tolerance",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    needs="roller",
+    closed_by="conjugate",
+    values=(
+        *given.LOADS, *given.CONTACT, "cam.conjugate.interference", "cam.profile_tolerance",
+    ),
+    levers=(levers.one("cam.conjugate.interference", -1),),
+    page="Contact",
+)  # fmt: skip
+def preload_pressure(solution: Solution) -> Demand | None:
+    """Greatest pressure of Hertz on either disc, Pa; None without an interference."""
+    if contact_strength.contact_pressure.measured is None:
+        return None
+    tolerance = solution.machine.cam.profile_tolerance
+
+    def pressure(cycle: Cycle) -> Array | None:
+        pressed = _squeezed(cycle, tolerance)
+        if pressed is None:
+            return None
+        machine, loads = cycle.machine, cycle.loads
+        every = []
+        for wall, force in zip((1.0, -1.0), pressed[1:], strict=True):
+            walls = np.full(loads.theta.size, wall)
+            there = Carried.at(cycle.contour.pitch, machine.system, loads.theta, walls)
+            normal = force / (there.slide.lever * np.cos(there.pressure_angle))
+            radius = relative_radius(
+                cycle.contour.require_roller(), loads.second, loads.theta, walls
+            )
+            load = normal / machine.contact_width
+            every.append(peak_pressure_square(load, 1.0 / radius, machine.contact_modulus))
+        return np.sqrt(np.maximum(*every))
+
+    worst = _of_turns(solution, pressure, 1.0)
+    if worst is None:
+        return None
+    value, cycle, k = worst
+    limit = contact_strength.contact_pressure.measured.allowed(solution.numbers)
+    allowed = None if limit.value is None else float(limit.value)
+    if limit.if_exceeded and not (allowed is not None and value > allowed):
+        allowed = None
+    stated = {"p": value}
+    if allowed is not None:
+        stated["p_E"] = allowed * solution.machine.limits[CONTACT_SAFETY]
+    at = Extreme(value, cycle.load_case, float(cycle.theta[k]))
+    words = _preload_words(solution)
+    return Demand(value, allowed, at, limit.missing, note=words, stated=stated)
 
 
 class _Worst(NamedTuple):

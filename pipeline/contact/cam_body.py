@@ -171,9 +171,13 @@ class CamConjugate(Part):
     ] = None
     """of an arm: angle between both arms, across the line of centres"""
     clearance: Annotated[
-        float, In("mm", above=0, at_most=1), Known("drawing, tolerance chain", "0.02 mm")
-    ]
+        float | None, In("mm", above=0, at_most=1), Known("drawing, tolerance chain", "0.02 mm")
+    ] = None
     """between the second disc and its roller while the first presses"""
+    interference: Annotated[
+        float | None, In("mm", above=0, at_most=1), Known("drawing, adjusted", "0.02 mm")
+    ] = None
+    """of an arm, in place of a clearance: of the second disc with its roller, which loads both"""
     spacing: Annotated[Length, Known("drawing", "20 mm")]
     """of the second disc from the first along the shaft, between their middles, away from bearing
     1"""
@@ -279,7 +283,7 @@ class CamBody(Part):
     def clearance(self) -> float:
         """Clearance of the follower between both tracks, square to them, m; 0 of one track."""
         stated = self.groove or self.conjugate
-        return 0.0 if stated is None else stated.clearance
+        return 0.0 if stated is None else stated.clearance or 0.0
 
     @property
     def held_radius(self) -> float:

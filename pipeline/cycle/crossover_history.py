@@ -43,7 +43,7 @@ def impacts(machine: Machine, contour: Contour) -> tuple[WallImpact, ...]:
     spin with which it last left the disc. A mass m that lands at v under a force F on a
     stiffness k is stopped by F + sqrt(F^2 + k m v^2); contact and walls are taken as rigid.
     """
-    if not (machine.cam.pulls and machine.speed > 0.0):
+    if not (machine.cam.clearance > 0.0 and machine.speed > 0.0):
         return ()
     theta, pitch = uniform_turn(FINE), contour.pitch
     rigid = machine.system.with_friction(0.0, 0.0)

@@ -19,6 +19,7 @@ In the order of the calculation:
 | `guide_friction`        | friction bounds and power, temperature     | mu, -; W; K           |
 | `elastic_follower`      | elastic follower, periodic response        | x, m; N, N            |
 | `follower_flight`       | flights and landings in time               | m; m/s; J             |
+| `disc_preload`          | both discs of a pair pressed               | P, N; b, -            |
 | `crossover`             | flight and landing between two tracks      | t, s; v, m/s          |
 | `roller_parts`          | bearing, outer ring, pin, fork             |                       |
 | `roller_motion`         | spin, traction demand, rating life         | rad/s; L10, s         |

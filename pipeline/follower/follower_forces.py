@@ -15,7 +15,8 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath, Slide
 from camwright.geometry.second_track import SecondRoller, SecondTrack, Touch, touch_of
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
-from camwright.pipeline.follower.pivot_forces import ArmPivot, Pressed, Pull
+from camwright.pipeline.follower.disc_preload import DiscPreload, Squeezed
+from camwright.pipeline.follower.pivot_forces import ArmPivot, PivotBalance, Pressed, Pull
 from camwright.pipeline.follower.rocker import RockerOutput
 from camwright.pipeline.follower.spring import Spring
 
@@ -116,6 +117,7 @@ class FollowerSystem:
     output : RockerOutput           that a rocker moves, its mass at zero lift part of `mass`; None
     second : SecondRoller           by which it pulls on a track of its own; None: the same roller
                                     does, if any
+    preload : DiscPreload           of both tracks on an arm; None: they have a clearance
 
     Raises
     ------
@@ -138,6 +140,7 @@ class FollowerSystem:
     held: bool = False
     output: RockerOutput | None = None
     second: SecondRoller | None = None
+    preload: DiscPreload | None = None
 
     def __post_init__(self) -> None:
         """Refuse a spacing that is not positive, and a negative mass, overhang, friction or
@@ -212,6 +215,11 @@ class FollowerSystem:
             return push.rubbing_on_points(overhang)
         return self.rubbing.at(theta)
 
+    def squeezed(self, pitch: FollowerPath, theta: Array) -> Squeezed | None:
+        """Preload of both tracks at cam angles (n,), rad; None of tracks with a clearance."""
+        track = self.second_track(pitch)
+        return None if self.preload is None or track is None else self.preload.at(track, theta)
+
     def second_track(self, pitch: FollowerPath) -> SecondTrack | None:
         """Track under the second roller, by the path of the first; None without one."""
         return None if self.second is None else self.second.track(pitch)
@@ -279,7 +287,9 @@ class Loads(Displayed):
     travel, and `pivot_friction` the moment of its friction over the length of the arm, a magnitude;
     0 of a stem. With a pivot `jam_index` is that over the axial force. `held`: the cam
     pulls the follower, too: the axial force is negative where it does, the normal force its
-    magnitude. `second`: roller by which it does, whose pressure angle is that of its own travel.
+    magnitude. `second`: roller by which it does, whose pressure angle is that of its own travel. Of
+    preloaded discs `idle_force` is the normal force on the one that bears less, and `pressed_along`
+    the force of both along the travel beyond the axial force; 0 of others.
     """
 
     theta: Array
@@ -315,6 +325,8 @@ class Loads(Displayed):
     pivot_load: Array = field(default_factory=lambda: readonly(np.zeros((2, 1))))
     pivot_friction: Array = field(default_factory=lambda: readonly(0.0))
     turned: Array = field(default_factory=lambda: readonly(0.0))
+    idle_force: Array = field(default_factory=lambda: readonly(0.0))
+    pressed_along: Array = field(default_factory=lambda: readonly(0.0))
     held: bool = False
     second: SecondRoller | None = None
 
@@ -334,7 +346,8 @@ class Loads(Displayed):
         That axis is the one of a stem, or runs from the cam axis to the pivot of an arm.
         """
         cos, sin = np.cos(self.travel), np.sin(self.travel)
-        along, across = self.axial_force * self.pressing, self.tangential_force
+        along = self.axial_force * self.pressing + self.pressed_along
+        across = self.tangential_force
         return np.stack([along * cos + across * sin, across * cos - along * sin])
 
     @property
@@ -602,8 +615,7 @@ def follower_loads(
             spring_force, system.external.at(theta), travel, slope * speed, acceleration
         )
         if system.held:
-            both = _both_pressed(pitch, system, theta)
-            swung, wall = pivot.between(demand, both, pull, np.sign(slope))
+            swung, wall = _swung(pitch, system, theta)(demand, pull, np.sign(slope))
     carrying = Carried.at(pitch, system, theta, wall)
     slide, push, pressure_angle = carrying.slide, carrying.push, carrying.pressure_angle
     overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift) + carrying.reach
@@ -626,6 +638,25 @@ def follower_loads(
     friction = friction_a + friction_b + pivot_friction
     friction_power = friction * np.abs(slope) + viscous_force * slope + sliding
     friction_power = friction_power + slide.lock * axial_force * slope
+    normal_force = axial_force * wall / (slide.lever * np.cos(pressure_angle))
+    tangential_force = axial_force * push.side
+    idle_force = pressed_along = np.zeros(theta.size)
+    squeeze = system.squeezed(pitch, theta)
+    if squeeze is not None:
+        forces, tracks = squeeze.forces(axial_force), _both_carried(pitch, system, theta)
+        along, across = (
+            sum(sign * force * np.asarray(getattr(each.slide, name))
+                for sign, force, each in zip((1.0, -1.0), forces, tracks, strict=True))
+            for name in ("pressing", "side")
+        )  # fmt: skip
+        normal = [
+            force / (each.slide.lever * np.cos(each.pressure_angle))
+            for force, each in zip(forces, tracks, strict=True)
+        ]
+        normal_force, idle_force = (np.where(wall > 0.0, *each) for each in (normal, normal[::-1]))
+        tangential_force, pressed_along = across, along - axial_force * slide.pressing
+        if pivot is not None and pull is not None:
+            pivot_load = np.stack([along + pull.along, across + pull.across])
     return Loads(
         theta=theta,
         lift=lift,
@@ -638,8 +669,8 @@ def follower_loads(
         applied_force=applied_force,
         inertia_force=inertia_force,
         axial_force=axial_force,
-        normal_force=axial_force * wall / (slide.lever * np.cos(pressure_angle)),
-        tangential_force=axial_force * push.side,
+        normal_force=normal_force,
+        tangential_force=tangential_force,
         friction_force_a=friction_a,
         friction_force_b=friction_b,
         reaction_a=axial_force * on_points[0],
@@ -660,6 +691,8 @@ def follower_loads(
         pivot_load=pivot_load,
         pivot_friction=pivot_friction,
         turned=carrying.turned,
+        idle_force=idle_force,
+        pressed_along=pressed_along,
         held=system.held,
         second=system.second,
     )
@@ -684,6 +717,7 @@ def torque_on_cam(
     slope, lift_d2 = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
     closing, lock = still.closing_force, still.lock
     external = system.external.at(theta)
+    swung = _swung(pitch, system, theta)
     pressed = _both_pressed(pitch, system, theta)
     walls = still.wall, -still.wall
     carrying = [Carried.at(pitch, system, theta, wall) for wall in walls]
@@ -709,7 +743,7 @@ def torque_on_cam(
                 still.spring_force, external, still.travel, slope * speed, acceleration
             )
             if system.held:
-                axial = system.pivot.between(demand, pressed, pull, np.sign(slope))[0].axial
+                axial = swung(demand, pull, np.sign(slope))[0].axial
             else:
                 axial = system.pivot.clipped(
                     demand, pressed[0], pull, np.sign(slope), JAM_FLOOR
@@ -719,15 +753,40 @@ def torque_on_cam(
     return torque
 
 
+def _both_carried(
+    pitch: FollowerPath, system: FollowerSystem, theta: Array
+) -> tuple[Carried, Carried]:
+    """Contact of the first and of the second track at cam angles (n,)."""
+    one = np.ones(theta.shape)
+    return Carried.at(pitch, system, theta, one), Carried.at(pitch, system, theta, -one)
+
+
 def _both_pressed(
     pitch: FollowerPath, system: FollowerSystem, theta: Array
 ) -> tuple[Pressed, Pressed]:
     """Contact forces of the first and of the second track at cam angles (n,)."""
-    one = np.ones(theta.shape)
-    first, second = (
-        Pressed.of(Carried.at(pitch, system, theta, wall).slide) for wall in (one, -one)
-    )
-    return first, second
+    first, second = _both_carried(pitch, system, theta)
+    return Pressed.of(first.slide), Pressed.of(second.slide)
+
+
+_Swung = Callable[[Array, Pull, Array], tuple[PivotBalance, Array]]
+
+
+def _swung(pitch: FollowerPath, system: FollowerSystem, theta: Array) -> _Swung:
+    """Equilibrium of an arm between its tracks at cam angles (n,), and the track that carries, by
+    the required force, the pull and the direction of the motion.
+    """
+    pivot, squeeze = system.pivot, system.squeezed(pitch, theta)
+    pressed = _both_pressed(pitch, system, theta)
+
+    def balance(demand: Array, pull: Pull, direction: Array) -> tuple[PivotBalance, Array]:
+        if pivot is None:
+            raise InputError("follower.pivot", "missing", "given for its friction")
+        if squeeze is None:
+            return pivot.between(demand, pressed, pull, direction)
+        return pivot.squeezed(demand, pressed, squeeze, pull, direction)
+
+    return balance
 
 
 def jam_index(pitch: FollowerPath, system: FollowerSystem, theta: Array, wall: Array) -> Array:

@@ -16,6 +16,7 @@ from camwright.geometry.arm_path import Arm
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base.external_force import STANDARD_GRAVITY
+from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.rocker import RockerOutput
 from camwright.pipeline.follower.spring_kinds import SpringShape
 
@@ -292,7 +293,9 @@ class ArmPivot:
         """Equilibrium as by `balanced` on the track of two that carries, and which one does: 1 the
         first, which pushes, -1 the second; real arrays (..., n).
 
-        Where the friction alone holds the arm, neither track is pressed.
+        Where the friction alone holds the arm, neither track is pressed. The jam index is
+        that of the contact force alone, of which an arm locks at 1: that of the whole load has a
+        pole where the axial force changes its sign.
 
         Parameters
         ----------
@@ -306,8 +309,46 @@ class ArmPivot:
         first, axial = wall > 0.0, np.where(wall > 0.0, pushed.axial, np.minimum(pulled.axial, 0.0))
         one = Pressed(*(np.where(first, *pair) for pair in zip(*pressed, strict=True)))
         rubbed = np.where(direction == 0.0, 0.0, np.abs(one.share * axial - required))
-        jam = np.where(first, pushed.jam_index, pulled.jam_index)
-        return PivotBalance(axial, _size(one.total(axial, pull)), rubbed, jam), wall
+        load = _size(one.total(axial, pull))
+        return PivotBalance(axial, load, rubbed, self._locking(one)), wall
+
+    def _locking(self, pressed: Pressed) -> Array:
+        """Friction of the contact force alone over the axial force."""
+        size: Array = _size((pressed.along, pressed.across))
+        return self.friction * self.radius / self.length * size
+
+    def squeezed(
+        self,
+        required: Array,
+        pressed: tuple[Pressed, Pressed],
+        squeeze: Squeezed,
+        pull: Pull,
+        direction: Array,
+    ) -> tuple[PivotBalance, Array]:
+        """Equilibrium as by `between` with both tracks under a preload, which presses the pivot.
+
+        A pair of forces P on both tracks has no moment; the share b of the axial force is borne by
+        the first, the rest by the second.
+        """
+        first, second = pressed
+        share, force = squeeze.share, squeeze.preload
+        mixed = Pressed(
+            *(share * a + (1.0 - share) * b for a, b in zip(first[:2], second[:2], strict=True))
+        )
+        both = Pull(
+            pull.along + force * (first.along - second.along),
+            pull.across + force * (first.across - second.across),
+        )
+        held = self.balanced(required, mixed, both, direction)
+        alone, _ = self.between(required, pressed, pull, direction)
+        pair = squeeze.both(held.axial)
+        chosen = (np.where(pair, *each) for each in zip(held, alone, strict=True))
+        balance = PivotBalance(*chosen)
+        still = np.where(direction == 0.0, 0.0, balance.friction)
+        jam = np.where(pair, self._locking(mixed), alone.jam_index)
+        return balance._replace(friction=still, jam_index=jam), np.where(
+            balance.axial < 0.0, -1.0, 1.0
+        )
 
 
 def _size(vector: tuple[Array, Array]) -> Array:

@@ -287,11 +287,16 @@ class Roller(Part):
         pitch, theta, pulls = contour.require_roller().pitch, loads.theta, loads.wall < 0.0
         if loads.second is None:
             motion = roller_motion(pitch, self.radius, speed, theta, wall=loads.wall)
-            return [_Turning(motion, self.radius, np.ones(theta.size, dtype=bool))]
+            every = np.ones(theta.size, dtype=bool)
+            return [_Turning(motion, self.radius, every, loads.normal_force)]
         track, first = loads.second.track(pitch), roller_motion(pitch, self.radius, speed, theta)
         disc, there = track.contour, theta + track.turn
         second = roller_motion(disc.pitch, disc.roller_radius, speed, there)
-        return [_Turning(first, self.radius, ~pulls), _Turning(second, disc.roller_radius, pulls)]
+        carried, idle = loads.normal_force, loads.idle_force + 0.0 * loads.normal_force
+        return [
+            _Turning(first, self.radius, ~pulls, np.where(pulls, idle, carried)),
+            _Turning(second, disc.roller_radius, pulls, np.where(pulls, carried, idle)),
+        ]
 
     def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:  # noqa: ARG002
         """Contact body of the roller: solid on its hub, or outer ring on balls; see `FollowerKind`.
@@ -322,9 +327,9 @@ class Roller(Part):
         """
         motion, force = self.rolling(contour, loads, speed), loads.normal_force
         first, *others = self._rollers(contour, loads, speed)
-        driven = self._driven(first, contact, force, speed)
+        driven = self._driven(first, contact, speed)
         for other in others:
-            driven = driven.where(other.carries, self._driven(other, contact, force, speed))
+            driven = driven.where(other.carries, self._driven(other, contact, speed))
         loaded = force > 0
         demand = np.abs(driven.demand) / np.where(loaded, force, np.nan)
         if self.friction is None:
@@ -348,15 +353,11 @@ class Roller(Part):
             pin_radius=self.hub_radius,
         )
 
-    def _driven(
-        self, roller: _Turning, contact: ContactHistory, force: Array, speed: float
-    ) -> RollingContact:
-        """Rolling contact of a roller under inertia and bearing drag, free where it carries no
-        load.
-        """
+    def _driven(self, roller: _Turning, contact: ContactHistory, speed: float) -> RollingContact:
+        """Rolling contact of a roller under inertia and bearing drag."""
         motion = roller.motion
         return rolling_contact(
-            np.where(roller.carries, force, 0.0),
+            roller.force,
             motion.spin,
             motion.spin_acceleration,
             motion.rolling_speed,
@@ -369,8 +370,11 @@ class Roller(Part):
 
 
 class _Turning(NamedTuple):
-    """Roller of a disc: motion without slip, radius, m, and whether it carries (n,), bool."""
+    """Roller of a disc: motion without slip, radius, m, whether it carries (n,), bool, and its
+    normal force (n,), N.
+    """
 
     motion: RollingRoller
     radius: float
     carries: NDArray[np.bool_]
+    force: Array

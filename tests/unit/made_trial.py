@@ -150,6 +150,21 @@ def pair_case() -> Case:
     return case_of(tables)
 
 
+@cache
+def preloaded_case() -> Case:
+    """The same case with two discs, whose rollers are pressed on two arms without friction."""
+    tables = tomllib.loads(CASE_FILE.read_text())
+    del tables["spring"], tables["guides"]
+    second = {"roller_radius": "8 mm", "arm_length": "60 mm", "arm_angle": "100 deg"}
+    second |= {"interference": "0.02 mm", "spacing": "30 mm", "source": "second"}
+    tables["cam"] |= {"closure": "conjugate", "conjugate": second}
+    tables["follower"] = {
+        "kind": "oscillating", "mass": "175 g", "arm": ARM, "stiffness": "20000 N/mm",
+    }  # fmt: skip
+    tables["scope"] = {"not_covered": ["arm", "pivot"], "reason": "made up"}
+    return case_of(tables)
+
+
 def limits(**values: Any) -> Case:
     """The case with some of its limits replaced."""
     return case(limits=changed(_case().limits, **values))
@@ -500,6 +515,15 @@ def in_groove() -> Solution:
 def on_two_discs() -> Solution:
     """A preview of the pair of discs likewise."""
     solved = solving.solution(pair_case(), contour(), Tier.PREVIEW, torques={}, positions=POSITIONS)
+    return replace(solved, machines=solved.machines[:1], cycles=solved.cycles[:1])
+
+
+@cache
+def preloaded() -> Solution:
+    """A preview of the preloaded pair likewise."""
+    whole = preloaded_case()
+    shape = whole.contour(contour().pitch.lift)
+    solved = solving.solution(whole, shape, Tier.PREVIEW, torques={}, positions=POSITIONS)
     return replace(solved, machines=solved.machines[:1], cycles=solved.cycles[:1])
 
 

@@ -35,6 +35,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "landing_speed", "landing_pressure", "crossover_slip",
     ),
     (_PAIR, "test_both_discs_are_judged"): ("second_disc_gap",),
+    (_PAIR, "test_the_preload_is_judged_on_both_discs"): ("preload_least", "preload_pressure"),
     (_GROOVE, "test_the_rim_is_a_cantilever_plate"): ("groove_wall",),
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",

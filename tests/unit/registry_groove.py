@@ -74,6 +74,42 @@ def weak(**values) -> Solution:
     return made.changed_solution(base, case=made.with_card(base.case, card))
 
 
+def weak_pair(**values) -> Solution:
+    base = made.preloaded()
+    card = replace(base.case.materials["steel"], **values)
+    return made.changed_solution(base, case=made.with_card(base.case, card))
+
+
+def unpressed() -> Solution:
+    """Axial forces that are not known."""
+    base = made.preloaded()
+    (cycle,) = base.cycles
+    loads = replace(cycle.loads, axial_force=NAN)
+    return replace(base, cycles=(made.changed_cycle(cycle, loads=loads),))
+
+
+def pressed(more: float) -> tuple[float, float]:
+    """Least share of the preload and greatest pressure, MPa, with `more` interference, m.
+
+    Both rollers on springs of 20 kN/mm, arms of 60 mm under the inertia of 175 g.
+    """
+    base = made.preloaded()
+    machine, first = base.machine, base.contour
+    theta, path = made.THETA, first.pitch
+    disc = machine.cam.conjugate.roller.of(path).contour
+    axial = 0.175 * machine.cam_speed**2 * HALF * np.cos(theta)
+    tilt = [np.cos(each.pressure_angle(theta)) for each in (path, disc.pitch)]
+    preload = (20e-6 + more) / tilt[1] * 20e6 / 2.0
+    forces = preload + 0.5 * axial, preload - 0.5 * axial
+    least = (np.minimum(*forces) / preload).min() - 4.0 / 20.0
+    flat = [1.0 / made.ROLLER + 1.0 / each.radius_of_curvature(theta) for each in (first, disc)]
+    squares = [
+        force / cosine / machine.contact_width * curved * machine.contact_modulus / np.pi
+        for force, cosine, curved in zip(forces, tilt, flat, strict=True)
+    ]
+    return float(least), 1e-6 * float(np.sqrt(np.max(squares)))
+
+
 # --- by hand: s = h/2 (1 - cos theta), inertia alone ------------------------------------------
 def gap(theta: float) -> float:
     """Clearance along the travel, m."""
@@ -202,6 +238,23 @@ by_limit(
     1e3 * (0.030 - 0.5 * (WIDTHS[0] + WIDTHS[1])),
     "discs 30 mm apart, less half of a disc and half of a roller",
     base=made.on_two_discs,
+)
+by_limit(
+    "preload_least",
+    "contact_force_margin",
+    unpressed,
+    pressed(0.0)[0],
+    "share of the axial force of two equal springs, less 4 um of 20 um",
+    base=made.preloaded,
+)
+tried(
+    "preload_pressure",
+    limited("preload_pressure", lambda p: weak_pair(endurance_pressure=p), made.preloaded),
+    lambda: weak_pair(endurance_pressure=None, sliding_endurance_pressure=None),
+    unpressed,
+    pressed(4e-6)[1],
+    "Hertz (1882) of both discs, the springs pressed by 24 um",
+    made.preloaded,
 )
 by_limit(
     "landing_speed",

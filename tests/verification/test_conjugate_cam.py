@@ -28,6 +28,8 @@ from camwright.pipeline.solver import solve
 
 DATA = Path(__file__).parents[1] / "data"
 STEM, ARM = DATA / "conjugate_feeder.toml", DATA / "conjugate_arm.toml"
+PRESSED = DATA / "preloaded_arm.toml"
+FILES = {"arm": ARM, "pressed": PRESSED}
 BOTH = pytest.mark.parametrize("name", ["stem", "arm"])
 
 
@@ -50,7 +52,7 @@ def uneven():
 
 @cache
 def trial(name):
-    case = parse_case(uneven()) if name == "stem" else read_case(ARM)
+    case = parse_case(uneven()) if name == "stem" else read_case(FILES[name])
     return preview_case(case, corners=False)
 
 
@@ -121,9 +123,13 @@ def test_forces_by_the_equilibrium_of_the_stem(speed):
     assert (axial > 1.0).any() and (axial < -1.0).any()
 
 
-def test_forces_by_the_equilibrium_of_the_arm():
-    """Moments about the pivot in fixed axes, of inertia, weight, contact and friction."""
-    cycle, machine, track = running("arm")
+@pytest.mark.parametrize("name", ["arm", "pressed"])
+def test_forces_by_the_equilibrium_of_the_arm(name):
+    """Moments about the pivot in fixed axes, of inertia, weight, contact and friction.
+
+    Of both contacts, where the rollers are preloaded.
+    """
+    cycle, machine, track = running(name)
     theta, path, speed = uniform_turn(240), cycle.contour.pitch, machine.cam_speed
     loads, arm = follower_loads(path, machine.system, speed, theta), path.arm
     pulls = loads.axial_force < 0.0
@@ -138,10 +144,13 @@ def test_forces_by_the_equilibrium_of_the_arm():
         return centre, normal / np.hypot(*normal)
 
     first, second = touching(cycle.contour, path), touching(track.contour, track.contour.pitch)
-    normal = np.where(pulls, second[1], first[1])
-    pressed = np.where(pulls, second[0], first[0]) - np.array([[arm.centre_distance], [0.0]])
-    force = loads.normal_force * normal
-    moment = pressed[0] * force[1] - pressed[1] * force[0]
+    idle = loads.idle_force
+    sizes = (np.where(pulls, idle, loads.normal_force), np.where(pulls, loads.normal_force, idle))
+    assert (idle > 0.0).all() if name == "pressed" else not idle.any()
+    moment, force = 0.0, 0.0
+    for size, (centre, normal) in zip(sizes, (first, second), strict=True):
+        pushed, reach = size * normal, centre - np.array([[arm.centre_distance], [0.0]])
+        moment, force = moment + reach[0] * pushed[1] - reach[1] * pushed[0], force + pushed
     outwards = -arm.sense  # of the moment of a push outwards, counter-clockwise
     _, s1, s2 = path.lift.derivatives(theta, 2)
     turning = machine.mass * arm.length * speed**2 * s2
@@ -162,21 +171,23 @@ def test_forces_by_the_equilibrium_of_the_arm():
     friction = machine.friction.nominal[0] * 0.5 * 0.020 / arm.length * along
     loaded = (np.abs(loads.axial_force) > 1.0) & (rubbing != 0.0)
     assert loads.pivot_friction[loaded] == pytest.approx(friction[loaded], rel=1e-9)
-    out, aside = np.stack([normal[0], normal[1]]), place / pivot.mass_distance
+    aside = place / pivot.mass_distance
     tangent = outwards * np.stack([-aside[1], aside[0]])
     away = pivot.swinging_mass * pivot.mass_distance
     turned, spun = speed**2 * s2 / arm.length, (speed * s1 / arm.length) ** 2
     inertia = -away * (turned * tangent - spun * aside)
-    whole = loads.normal_force * out + weight + inertia
+    whole = force + weight + inertia
     assert np.hypot(*whole)[loaded] == pytest.approx(along[loaded], rel=1e-6)
+    on_shaft = np.stack([force[0], -force[1]])  # across: clockwise
+    assert loads.on_shaft == pytest.approx(on_shaft, abs=1e-6 * np.abs(force).max())
 
 
-@BOTH
+@pytest.mark.parametrize("name", ["stem", "arm", "pressed"])
 def test_the_cam_pays_for_friction_alone(name):
     """Work of the cam over a turn is the loss in guides or pivot: 1e-6 of that on the rises."""
     cycle, machine, _ = running(name)
     loads = cycle.loads
-    if name == "arm":  # the force steps where friction alone holds the arm: sampled more finely
+    if name != "stem":  # the force steps where friction alone holds the arm: sampled more finely
         theta = uniform_turn(28800)
         loads = follower_loads(cycle.contour.pitch, machine.system, machine.cam_speed, theta)
     rubbed = loads.friction_force * np.abs(loads.lift_slope)
@@ -186,7 +197,7 @@ def test_the_cam_pays_for_friction_alone(name):
     assert work == pytest.approx(lost, abs=1e-6 * scale)
 
 
-@BOTH
+@pytest.mark.parametrize("name", ["stem", "arm", "pressed"])
 def test_the_torque_of_the_crank_is_that_of_the_loads(name):
     """At a cam speed without acceleration, and at the rate that a case with a crankshaft has."""
     cycle, machine, _ = running(name)
@@ -212,6 +223,70 @@ def test_without_clearance_and_compliance_the_track_is_the_sign_of_the_force(nam
         assert flight.landing == pytest.approx(flight.take_off, abs=np.radians(0.5))
         beyond = np.interp(flight.landing + np.radians(0.5), theta, force, period=2.0 * np.pi)
         assert np.sign(beyond) == flight.wall
+
+
+def test_preloaded_discs_are_two_springs_on_the_arm():
+    """The place of the arm between two springs that only push, by bisection, at every angle."""
+    cycle, machine, track = running("pressed")
+    theta, path = uniform_turn(120), cycle.contour.pitch
+    loads = follower_loads(path, machine.system, machine.cam_speed, theta)
+    stiff, interference = machine.axial_stiffness, machine.cam.conjugate.interference
+    ratio, second = 85.0 / 90.0, track.contour.pitch.pressure_angle(theta)
+    low, high = np.full(120, -1e-3), np.full(120, 1e-3)  # of the arm's end outwards, m
+    for _ in range(80):
+        y = 0.5 * (low + high)
+        pushed = stiff * np.maximum(-y, 0.0)
+        pressed = interference / np.cos(second) + ratio * y  # of the second roller on its arm
+        pulled = ratio * stiff * np.maximum(pressed, 0.0)
+        over = pushed - pulled > loads.axial_force
+        low, high = np.where(over, y, low), np.where(over, high, y)
+    normal = pushed / np.cos(path.pressure_angle(theta)), pulled / ratio / np.cos(second)
+    carried = np.where(loads.axial_force < 0.0, *normal[::-1])
+    idle = np.where(loads.axial_force < 0.0, *normal)
+    assert loads.normal_force == pytest.approx(carried, rel=1e-6)
+    assert loads.idle_force == pytest.approx(idle, rel=1e-6)
+    assert idle.min() > 0.0
+
+
+def test_a_vanishing_interference_is_a_pair_without_clearance():
+    """An interference of a picometre has the forces of either disc alone."""
+    cycle, machine, _ = running("pressed")
+    theta, path = uniform_turn(120), cycle.contour.pitch
+    light = replace(machine.system.preload, interference=1e-12)
+    systems = replace(machine.system, preload=light), replace(machine.system, preload=None)
+    pressed, loose = (follower_loads(path, each, machine.cam_speed, theta) for each in systems)
+    for name in ("axial_force", "normal_force", "cam_torque", "pivot_load"):
+        assert getattr(pressed, name) == pytest.approx(getattr(loose, name), abs=1e-3), name
+
+
+def test_the_preload_is_judged_on_both_discs():
+    """preload_least and preload_pressure from the normal forces of the load cases."""
+    checks = {each.id: each for each in trial("pressed").checks}
+    machine, (tolerance, interference) = running("pressed")[1], (8e-6, 20e-6)
+    least, pressures = np.inf, []
+    for cycle in trial("pressed").cycles:
+        path, loads = cycle.contour.pitch, cycle.loads
+        disc = running("pressed")[2].contour
+        pulled, ratio = loads.axial_force < 0.0, 85.0 / 90.0
+        cosines = [np.cos(each.pressure_angle(loads.theta)) for each in (path, disc.pitch)]
+        normal = (np.where(pulled, loads.idle_force, loads.normal_force),
+                  np.where(pulled, loads.normal_force, loads.idle_force))  # fmt: skip
+        forces = normal[0] * cosines[0], ratio * normal[1] * cosines[1]
+        # the preload is that of both springs without an axial force
+        compliance = (1.0 + 1.0 / ratio**2) / machine.axial_stiffness
+        preload = interference / (ratio * cosines[1]) / compliance
+        least = min(least, (np.minimum(*forces) / preload).min() - tolerance / interference)
+        grown = [each + preload * tolerance / interference for each in forces]
+        grown = grown[0] / cosines[0], grown[1] / ratio / cosines[1]
+        for force, contour, radius in zip(
+            grown, (cycle.contour, disc), (machine.roller.radius, 0.022), strict=True
+        ):
+            flat = 1.0 / radius + 1.0 / contour.radius_of_curvature(loads.theta)
+            load = force / machine.contact_width
+            pressures.append(np.sqrt(load * machine.contact_modulus * flat / np.pi).max())
+    assert checks["preload_least"].demand == pytest.approx(least, rel=1e-9)
+    assert checks["preload_pressure"].demand == pytest.approx(max(pressures), rel=1e-9)
+    assert "preload_least" not in {each.id for each in trial("arm").checks}
 
 
 # --- contact ----------------------------------------------------------------------------------
@@ -350,7 +425,7 @@ def test_both_discs_are_judged():
     assert checks["second_disc_gap"].demand == pytest.approx(0.034 - 0.5 * 0.0455 - 0.0003)
 
 
-@pytest.mark.parametrize("file", [STEM, ARM])
+@pytest.mark.parametrize("file", [STEM, ARM, PRESSED])
 def test_the_cases_pass_by_check(file):
     """No check of the designs fails or lacks data; none of a closing force is made."""
     checks = preview_case(read_case(file), corners=False).checks
@@ -383,6 +458,12 @@ def test_what_is_not_done_is_refused(tmp_path):
         (STEM, 'distance = "154 mm"', 'distance = "80 mm"', "cam.conjugate.distance = 80 mm, must"),
         (STEM, 'spacing = "34 mm"', 'spacing = "27 mm"', "cam.conjugate.spacing = 27 mm, must be"),
         (STEM, 'clearance = "0.02 mm"', 'clearance = "0 mm"', "cam.conjugate.clearance = 0 mm"),
+        (STEM, 'clearance = "0.02 mm"', 'interference = "0.02 mm"',
+         "cam.conjugate.interference = stated, must be left out of a stem"),
+        (ARM, 'clearance = "0.02 mm"', 'clearance = "0.02 mm"\ninterference = "0.02 mm"',
+         "cam.conjugate.clearance = stated beside an interference, must be left out, or"),
+        (ARM, 'clearance = "0.02 mm"\nspacing', "spacing",
+         "cam.conjugate.clearance = missing, must be given, or cam.conjugate.interference"),
         (ARM, 'arm_length = "85 mm"\n', "", "cam.conjugate.arm_length = missing, must be given"),
         (ARM, 'arm_angle = "79 deg"', 'arm_angle = "40 deg"', "cam.conjugate.arm_angle = 40 deg"),
     ],

@@ -1,0 +1,67 @@
+"""Preload of conjugate discs: both rollers pressed by an interference on their compliances."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.second_track import SecondTrack
+
+
+class Squeezed(NamedTuple):
+    """Axial forces of both tracks at the first roller by their difference x, the axial force.
+
+    The first bears P + b x and the second P - (1 - b) x while both are pressed, else one bears
+    all.
+
+    Parameters
+    ----------
+    preload : array (n,)   P, N, > 0
+    share : float          b, of the axial force that the first bears
+    """
+
+    preload: Array
+    share: float
+
+    def forces(self, axial: Array) -> tuple[Array, Array]:
+        """Forces (n,) of the first and of the second track at axial forces (n,), N, >= 0."""
+        first = self.preload + self.share * axial
+        second = self.preload - (1.0 - self.share) * axial
+        pushed, pulled = second < 0.0, first < 0.0
+        first = np.where(pushed, axial, np.where(pulled, 0.0, first))
+        second = np.where(pulled, -axial, np.where(pushed, 0.0, second))
+        return first, second
+
+    def both(self, axial: Array) -> Array:
+        """Whether both tracks are pressed at axial forces (n,), N; bool (n,)."""
+        first, second = self.forces(axial)
+        return np.asarray((first > 0.0) & (second > 0.0))
+
+
+@dataclass(frozen=True)
+class DiscPreload:
+    """Interference of a pair of discs with its rollers.
+
+    Parameters
+    ----------
+    interference : float   square to the second disc, m, > 0
+    compliance : float     of each roller with its arm, from disc to follower mass, along the travel
+                           of that roller, m/N, > 0
+    """
+
+    interference: float
+    compliance: float
+
+    def at(self, track: SecondTrack, theta: Array) -> Squeezed:
+        """Preload at cam angles (n,), rad, reduced to the first roller.
+
+        The interference i opens i/(l_2/l_1 cos alpha_2) along the travel of the first roller; the
+        compliance of the second is (l_1/l_2)^2 of its own there.
+        """
+        touch = track.touch(theta)
+        closed = self.interference / (touch.slide.lever * np.cos(touch.pressure_angle))
+        first, second = self.compliance, self.compliance * track.leverage**2
+        return Squeezed(closed / (first + second), second / (first + second))
