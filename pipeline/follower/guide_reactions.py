@@ -85,11 +85,11 @@ class Guide(Part):
     length: Annotated[Length, Known("bush catalogue", "20 mm")]
     """length of the bush"""
     diameter: Annotated[Length, Known("bush catalogue", "10 mm")]
-    """bore of the bush: stem diameter"""
+    """bore of the bush: diameter of stem or pin"""
     wall: Annotated[Length | None, Known("bush catalogue", "2 mm")] = None
     """wall thickness of the bush"""
     friction: Annotated[float, In(at_least=0, at_most=1), Known("data sheet of the bush", 0.1)]
-    """coefficient of friction of stem and bush"""
+    """coefficient of friction of bush and stem or pin"""
     friction_min: Annotated[
         float | None, In(at_least=0, at_most=1), Known("data sheet of the bush", 0.05)
     ] = None

@@ -61,6 +61,22 @@ def test_a_table_lists_its_keys_and_tables(capsys):
     assert "  bore_radius        half of the bore diameter" in text
 
 
+def test_pivot_and_arm_are_explained_as_guides_are(capsys):
+    """Tables with the keys of both bearings; a check of the bush by its own keys, not by a guide's;
+    that of the arm's section with what it rests on.
+    """
+    table = explained(capsys, "follower.pivot")
+    assert "  tables      bush, needle_bearing" in table and "  gravity_angle " in table
+    bush = explained(capsys, "follower.pivot.bush.wear_rate")
+    assert "  table       [follower.pivot.bush]" in bush and "pivot_wear" in bush.split()
+    pressure = " ".join(explained(capsys, "pivot_pressure").split())
+    assert "follower.pivot.bush.pressure_limit" in pressure and "part pivot" in pressure
+    assert "guides.a.length" not in pressure
+    arm = " ".join(explained(capsys, "arm_fatigue_roller").split())
+    for words in ("limits.arm_safety, default 1.5", "part arm", "follower.arm.*_notch"):
+        assert words in arm
+
+
 @pytest.mark.parametrize(
     ("word", "closest"),
     [("guides.a.wal", "guides.a.wall"), ("wall", "guides.b.wall"), ("jam_indx", "jam_index"),

@@ -329,13 +329,19 @@ def test_a_long_arm_has_the_demands_of_a_stem():
 
 
 def test_the_screening_judges_arms_as_their_previews():
-    """Prime radius, rate and preload of an arm as arrays, within the stated deviations."""
-    case = parse_case(text()).with_positions(180)
+    """Prime radius, rate, preload, section and pivot of the first case of an arm as arrays, within
+    the stated deviations: of the pivot every check that is judged with them.
+    """
+    case = parse_case(first_case("swing", "arm").text).with_positions(180)
     factors = {
         "cam.prime_radius": np.array([0.058, 0.060, 0.064]),
         "roller.radius": np.array([0.0235, 0.0235, 0.0235]),
         "spring.rate": np.array([100e3, 102e3, 98e3]),
         "spring.preload": np.array([900.0, 1000.0, 1100.0]),
+        "follower.arm.depth": np.array([0.024, 0.026, 0.025]),
+        "follower.pivot.bush.length": np.array([0.025, 0.022, 0.028]),
+        "follower.pivot.bush.friction": np.array([0.10, 0.08, 0.12]),
+        "follower.pivot.swinging_mass": np.array([0.9, 1.0, 0.8]),
     }
     columns = screen_designs(case, factors)
     compared = set()
@@ -353,6 +359,9 @@ def test_the_screening_judges_arms_as_their_previews():
             assert not away > screened.deviation, one.id
             compared.add(one.id)
     assert {"contact_pressure", "pressure_angle", "undercut", "roller_speed"} <= compared
+    of_pivot = {each.check for each in SCREENED if each.check.startswith("pivot_")}
+    assert of_pivot - compared == {"pivot_static", "pivot_life"}  # of needles
+    assert {"arm_yield", "arm_gap"} <= compared
 
 
 def test_a_torque_is_balanced_by_an_arm():

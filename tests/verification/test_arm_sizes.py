@@ -105,6 +105,8 @@ def test_an_open_case_on_an_arm_is_completed() -> None:
     assert opened.gaps == (PRIME, "spring.preload", DISTANCE)
     sizing = sized(opened)
     assert sizing.verdict == "pass"
+    assert {"arm_gap", "arm_cam_gap"} <= {each.id for each in sizing.checks}
+    assert not sizing.others  # pivot and arm are judged, too
     case = sizing.case
     contour = case.contour(MOTION.lift())
     assert isinstance(contour, ArmContour)
@@ -172,7 +174,7 @@ def test_a_face_that_turns_with_the_cam_is_refused() -> None:
         ArmFaceCam(lift, LENGTH, 1.0, 0.0).least_base_radius(10.0, offset=0.3)
 
 
-@pytest.mark.parametrize("kind", ["flat", "curved"])
+@pytest.mark.parametrize("kind", ["flat", pytest.param("curved", marks=pytest.mark.slow)])
 def test_an_open_case_with_a_face_on_an_arm_is_completed(kind: str) -> None:
     """Radius, centre distance and face of the first case with a face; the preview agrees that the
     contact stays on it with its half-width, and on no narrower one.

@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 from small_machine import small_machine
 
-from camwright.pipeline.case.case_file import case_of, read_case, with_values
+from camwright.pipeline.case.case_file import case_of, parse_case, read_case, with_values
+from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial
@@ -126,6 +127,39 @@ def test_two_workers_find_the_same_remedies(trial: Trial, texts: dict[str, str])
     assert len(whole.parts) == 2 and again == texts
     marked = {one.id: one.remedy for one in with_remedies(trial.checks, again)}
     assert {name: text for name, text in marked.items() if text} == texts
+
+
+FEEBLE = {
+    "wear": {"limits.target_life": "100000 h"},
+    "pressure": {"follower.pivot.bush.pressure_limit": "1 MPa"},
+    "section": {
+        "follower.arm.depth": "14 mm", "follower.arm.bore": "10 mm", "follower.arm.hub": "20 mm",
+    },
+}  # fmt: skip
+"""Values of the first case of an arm with which its pivot wears or is pressed too much, or its
+section is too weak."""
+STRENGTHENED = {
+    "wear": {"pivot_wear": "follower.pivot.bush.wear_rate"},
+    "pressure": {"pivot_pressure": "follower.pivot.bush.length"},
+    "section": {"arm_fatigue_pivot": "follower.arm.depth", "arm_yield": "follower.arm.depth"},
+}
+
+
+@pytest.mark.parametrize("feeble", [
+    "wear", *(pytest.param(each, marks=pytest.mark.slow) for each in ("pressure", "section")),
+])  # fmt: skip
+def test_the_remedies_of_pivot_and_arm_hold(feeble: str) -> None:
+    """Each failing check of pivot and arm has the key that cures it, and is cured by its value."""
+    first = parse_case(first_case("swing", "arm").text).with_positions(36)
+    case = with_values(first, FEEBLE[feeble])
+    failing = failures_of(preview_case(case, corners=False))
+    cures = remedies(case, None, None, failing)
+    keys = {name: next(iter(changes_in(each.text))) for name, each in cures.items()}
+    assert keys == STRENGTHENED[feeble]
+    for name, remedy in cures.items():
+        changed = Change.of(changes_in(remedy.text)).applied(case, None)
+        one = next(each for each in preview_case(changed, corners=False).checks if each.id == name)
+        assert one.status == "pass", f"{remedy.text}: {one}"
 
 
 def assert_cures(name: str, text: str) -> None:
