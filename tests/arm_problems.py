@@ -1,12 +1,22 @@
 """Cases and problems of synthesis with an arm: roller, flat and curved face, bearings, springs."""
 
 import tomllib
+from collections.abc import Mapping
+from dataclasses import replace
 
+from oracle_arms import OracleArm
+from oracle_limits import TORQUE_REDUCTION
 from swung_face import face_text
+from synthesis_problems import nominal, thinned
 
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.template import first_case
+from camwright.pipeline.smoothing.constraints import CONSTRAINTS
+from camwright.pipeline.smoothing.objective import TORQUE, Weighted
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 ARM = {
     "centre_distance": "110 mm", "length": "95 mm", "swing": "with", "width": "28 mm",
@@ -43,8 +53,17 @@ SPRINGS = {
 }  # fmt: skip
 
 
-def arm_case(kind: str, bearing: str, spring: str, swing: str = "with") -> Case:
-    """Case with the torque of a cylinder, a described arm and pivot; kind: roller, flat, curved."""
+MASS_ALONE = ("pin_material", "ambient_temperature", "swinging_mass", "mass_distance", "mass_angle")
+"""Keys of a pivot about which neither weight nor external forces act."""
+
+
+def arm_case(
+    kind: str, bearing: str, spring: str, swing: str = "with", stated: Mapping[str, object] = PIVOT
+) -> Case:
+    """Case with the torque of a cylinder, a described arm and pivot.
+
+    kind : roller, flat or curved; stated: keys of the pivot besides its bearing
+    """
     if kind == "roller":
         tables = tomllib.loads(first_case("swing", "cylinder").text)
         tables["follower"] = {"kind": "oscillating", "mass": "1.1 kg"}
@@ -53,11 +72,31 @@ def arm_case(kind: str, bearing: str, spring: str, swing: str = "with") -> Case:
         tables = tomllib.loads(face_text(kind, "cylinder"))
         del tables["scope"]
     tables["follower"] |= {
-        "arm": ARM | {"swing": swing}, "pivot": PIVOT | {bearing: BEARINGS[bearing]}
+        "arm": ARM | {"swing": swing}, "pivot": dict(stated) | {bearing: BEARINGS[bearing]}
     }  # fmt: skip
     if spring != "coil":
         tables["spring"] = {"travel_max": "20 mm"} | SPRINGS[spring]
     tables["limits"] = tables.get("limits", {}) | {
-        "curvature_rate": "0.5 1/mm^2", "pivot_life": "2000 h", "return_pressure_angle": "40 deg",
+        "curvature_rate": "0.5 1/mm^2", "pivot_life": "2000 h",
     }  # fmt: skip
     return case_of(tables)
+
+
+def arm_problem(
+    *about: str, coefficients: int, points: int, **tighter: float
+) -> tuple[Problem, OracleArm]:
+    """Synthesis of a cam under an arm without weight, and its formulas, at nominal values.
+
+    about : kind, bearing, spring and sense of the swing of `arm_case`; tighter: factors on bounds
+    """
+    case = arm_case(*about, stated={key: PIVOT[key] for key in MASS_ALONE})
+    problem = thinned(nominal(problem_of(case, engine_torques(case))), coefficients, points)
+    bounds = dict(problem.ratings.bounds)
+    for name, factor in tighter.items():
+        bounds[name] *= factor
+    ratings = replace(problem.ratings, bounds=bounds)
+    problem = replace(problem, ratings=ratings, objective=(Weighted(TORQUE, 1.0),))
+    arm = OracleArm.of(case, problem)
+    kept = {each.check for each in arm.limits} | {TORQUE_REDUCTION}
+    left_out = frozenset(each.check for each in CONSTRAINTS) - kept
+    return replace(problem, left_out=left_out), arm

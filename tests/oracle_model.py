@@ -62,13 +62,18 @@ def operated(scenarios):
     return [[(k, item.duty) for k, item in running if item.corner == each] for each in corners]
 
 
-class CamModel:
-    """Formulas of one problem; `changed`: other values of `NUMBERS`."""
+STEM = SimpleNamespace(lift_of=lift_of, shape_at=shape_at, loads_at=loads_at, limits=LIMITS)
+"""Formulas of a roller on a stem; of an arm `OracleArm` has them."""
 
-    def __init__(self, problem, **changed):
+
+class CamModel:
+    """Formulas of one problem; follower: of its kind; `changed`: other values of `NUMBERS`."""
+
+    def __init__(self, problem, follower=STEM, **changed):
         assert problem.ratings.offset == 0.0
         assert problem.objective == (Weighted(TORQUE, 1.0),)
         assert not np.isfinite(problem.energy[1])
+        self.follower = follower
         self.count, self.points = problem.coefficients, problem.points
         self.theta = 2 * np.pi * np.arange(self.points) / self.points
         self.basis = [periodic_basis(self.theta, self.count, k) for k in range(4)]
@@ -83,7 +88,7 @@ class CamModel:
         left_out = problem.left_out
         self.limits = [
             each
-            for each in LIMITS
+            for each in follower.limits
             if each.check not in left_out
             and all(nominal[name] is not None for name in each.needs.split())
         ]
@@ -105,8 +110,8 @@ class CamModel:
         scenario = SimpleNamespace(**{name: numbers[k] for k, name in enumerate(SCENARIO)})
         ratios = ca.SX.sym("fix", len(CORRECTION))
         fix = SimpleNamespace(**{name: ratios[k] for k, name in enumerate(CORRECTION)})
-        cam = shape_at(energy, free, p)
-        at = loads_at(cam, top, scenario, fix)
+        cam = self.follower.shape_at(energy, free, p)
+        at = self.follower.loads_at(cam, top, scenario, fix)
         self.rows, self._terms, self._at = {}, {}, {}
         inputs = {"shape": [energy, free, symbols]}
         inputs["loads"] = [energy, top, free, symbols, numbers, ratios]
@@ -135,7 +140,8 @@ class CamModel:
         self._jerk = ca.Function("jerk", [energy, free], [cam.jerk]).map(
             self.points, [False, True], [False]
         )
-        self._lift = ca.Function("lift", [energy[0], free], [lift_of(energy[0], free[0], free[1])])
+        lift = self.follower.lift_of(energy[0], free[0], free[1])
+        self._lift = ca.Function("lift", [energy[0], free], [lift])
 
     def _of_rows(self, of, taken=None):
         """Function of the limits of one kind, or of those rows of them."""
@@ -250,7 +256,9 @@ class CamModel:
             left = engine - torque / numbers["gear_ratio"]
             ripples.append(float(np.std(left) / np.std(item.torque)) if item.weight > 0 else 0.0)
         uses["life"] = [
-            np.array([[self._life_used(row, worn, machine)] for row in range(len(self.lives))])
+            np.reshape(
+                [self._life_used(row, worn, machine) for row in range(len(self.lives))], (-1, 1)
+            )
             for machine in self.machines
         ]
         jerk = self._jerk(parts, own).full().ravel() / self.jerk_norm

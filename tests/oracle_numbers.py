@@ -63,7 +63,7 @@ def numbers_of(problem):
     known |= {name: getattr(variables, name) for name in FREE}
     known["gear_ratio"] = problem.gear_ratio
     known["torque_reduction"] = required_reduction(problem)
-    if (known["hollow_radius"] or 0.0) <= known["roller_radius"]:
+    if (known["hollow_radius"] or 0.0) <= (known["roller_radius"] or 0.0):
         known["hollow_radius"] = None  # the roller cannot roll in a smaller hollow
     if any(figures(item).worst_a is None for item in problem.scenarios):
         known["friction_worst_factor"] = None
@@ -95,7 +95,8 @@ def scenario_numbers(item, theta):
     """Values of `SCENARIO`; corrections at cam angles theta (n,), (len(CORRECTION), n)."""
     own = vars(figures(item))
     in_operation = 1.0 if item.duty is None else float(item.duty > 0.0)
-    own |= {name: own[name] or 0.0 for name in ("worst_a", "worst_b")}
+    of_guides = ("worst_a", "worst_b", "friction_a", "friction_b", "guide_spacing", "overhang")
+    own |= {name: own[name] or 0.0 for name in of_guides}
     own["in_operation"] = in_operation
     numbers = [float(own[name]) for name in SCENARIO]
     turn = np.linspace(0, 2 * np.pi, item.correction.contact.size, endpoint=False)

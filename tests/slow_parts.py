@@ -40,7 +40,7 @@ PARTS: Mapping[str, tuple[str, ...]] = {
     "synthesis": ("constrained_verification", "face_synthesis", "infeasible_verification",
                   "kept_synthesis", "objective_verification", "part_constraints_agree",
                   "prices_verification", "synthesis_properties"),
-    "oracle": ("synthesis_oracle",),
+    "oracle": ("synthesis_oracle", "synthesis_of_arms"),
     "measured": ("measured_traces", "period_of_a_case", "pitch_errors", "papers",
                  "paper_figures"),
     "cases": ("bad_parts", "compare", "feedback_case", "first_case", "first_case_run",

@@ -37,6 +37,8 @@ def changed(item, **values):
 
 
 def figures(item):
-    """Fields and numbers of a scenario by short names."""
-    known = {name: item.numbers.get(key) for name, key in NUMBERS.items()}
+    """Fields and numbers of a scenario by short names; None of guides that an arm does not have."""
+    guided = "guides.a.friction" in item.numbers.changed
+    known = {name: item.numbers.get(key) if guided or not key.startswith("guides.") else None
+             for name, key in NUMBERS.items()}  # fmt: skip
     return SimpleNamespace(**(vars(item) | known))
