@@ -335,11 +335,12 @@ def conforming_sentence(solution: Solution) -> str:
     worst = greatest(solved, lambda each: np.where(each.contact.conforming, each.contact.p0, 0.0))
     cycle, k = row_of(solved, worst)
     contact = cycle.contact
-    _, line = in_full(cycle.pair, contact.line_load[[k]], contact.relative_radius[[k]])
+    loaded = contact.line_load[[k]], contact.relative_radius[[k]]
+    _, line = in_full(cycle.pair, cycle.theta[[k]], *loaded)
     if line is None:
         return ""
     return (
-        f"where the wall is concave up to {shown(float(line.p0[0]), 'MPa')} +-"
+        f"where the cam is concave up to {shown(float(line.p0[0]), 'MPa')} +-"
         f" {100.0 * float(line.error[0]):.2g} %, conforming contact over"
         f" {shown(2.0 * float(line.half_angle[0]), 'deg', 3)} at"
         f" {shown(float(cycle.theta[k]), 'deg')} in {cycle.load_case}; Hertz"

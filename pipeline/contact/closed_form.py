@@ -1,4 +1,4 @@
-"""Contact over the cam turn in closed form: Hertz, and in full in a concave wall of a groove."""
+"""Contact over the cam turn in closed form: Hertz; in full where a cam that pulls is concave."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) ->
     """Hertz line contact at cam angles theta (n,), rad, under normal forces (n,), N; a negative
     force counts as none.
 
-    In a groove the contact of the roller with a concave wall is solved in full where its half-width
-    is not small against the radii, see `concave_line`.
+    Where a cam that pulls is concave and the half-width is not small against the radii, the contact
+    of a roller is solved in full, see `concave_line`.
     """
     load = np.maximum(normal_force, 0.0) / pair.width
     radius = pair.relative_radius(theta)
@@ -56,27 +56,32 @@ def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) ->
         pressure_xi=half_width[:, None] * hertz.ELLIPSE_XI,
         tier=Tier.PREVIEW,
     )
-    return history if pair.wall is None else _with_conforming(pair, history)
+    return history if pair.wall is None else _with_conforming(pair, theta, history)
 
 
 def in_full(
-    pair: ContactPair, line_load: Array, relative_radius: Array
+    pair: ContactPair, theta: Array, line_load: Array, relative_radius: Array
 ) -> tuple[NDArray[np.bool_], ConformingLine | None]:
-    """Where the contact of a roller in a groove is to be solved in full, and it; `concave_line`.
+    """Where the contact of a roller with a cam that pulls is to be solved in full, and it; see
+    `concave_line`.
 
-    Nowhere on the plates of a conjugate pair.
+    Parameters
+    ----------
+    theta : array (n,)             cam angles, rad
+    line_load : array (n,)         N/m
+    relative_radius : array (n,)   m
     """
-    if pair.second is not None:
-        return np.zeros(line_load.shape, dtype=bool), None
-    radius = pair.contour.require_roller().follower_radius
+    radius = np.full(theta.shape, pair.contour.require_roller().follower_radius)
+    if pair.second is not None and pair.wall is not None:
+        radius[pair.wall(theta) < 0] = pair.second.radius
     return concave_line(line_load, relative_radius, radius, pair.follower.material, pair.cam)
 
 
-def _with_conforming(pair: ContactPair, history: ContactHistory) -> ContactHistory:
+def _with_conforming(pair: ContactPair, theta: Array, history: ContactHistory) -> ContactHistory:
     """The history of Hertz contacts, with those of a concave wall that are to be solved in full
     replaced by that solution, see `concave_line`.
     """
-    full, line = in_full(pair, history.line_load, history.relative_radius)
+    full, line = in_full(pair, theta, history.line_load, history.relative_radius)
     if line is None:
         return history
     changed = {name: getattr(history, name).copy() for name in (*CONFORMING, *_SHAPE)}

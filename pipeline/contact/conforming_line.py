@@ -258,7 +258,7 @@ class ConformingLine:
 
 def conforming_line(
     line_load: ArrayLike,
-    roller_radius: float,
+    roller_radius: ArrayLike,
     wall_radius: ArrayLike,
     roller: Elastic,
     wall: Elastic,
@@ -268,7 +268,7 @@ def conforming_line(
     Parameters
     ----------
     line_load : array (n,)      P', N/m, >= 0
-    roller_radius : float       r, m, > 0
+    roller_radius : float or array (n,)   r, m, > 0
     wall_radius : array (n,)    rho, m, > r
 
     Raises
@@ -277,12 +277,13 @@ def conforming_line(
         If a value is out of these bounds; NaN included.
     """
     radius = positive("wall_radius", wall_radius, "m")
-    if not 0.0 < roller_radius < radius.min(initial=np.inf):
-        raise InputError("roller_radius", roller_radius, "> 0 m and below the radius of the wall")
+    inner = positive("roller_radius", roller_radius, "m")
+    if not (inner < radius).all():
+        raise InputError("roller_radius", float(inner.max()), "below the radius of the wall")
     modulus = hertz.contact_modulus(roller.modulus, roller.poisson, wall.modulus, wall.poisson)
-    relative = roller_radius * radius / (radius - roller_radius)
+    relative = inner * radius / (radius - inner)
     half_width, p0 = hertz.line_contact(line_load, relative, modulus)
-    middle = np.sqrt(roller_radius * radius)
+    middle = np.sqrt(inner * radius)
     slenderness, ratios = half_width / middle, _ratios(roller, wall)
     at = np.arctan(slenderness) / ratios.most
     abscissa = 2.0 * np.where(at <= 1.0, at, np.nan) - 1.0
@@ -311,7 +312,7 @@ def conforming_line(
 
 
 def concave_line(
-    line_load: Array, relative_radius: Array, roller_radius: float, roller: Elastic, wall: Elastic
+    line_load: Array, relative_radius: Array, roller_radius: Array, roller: Elastic, wall: Elastic
 ) -> tuple[NDArray[np.bool_], ConformingLine | None]:
     """Whether a contact is that of a concave wall, to be solved in full (n,), bool, and these
     contacts.
@@ -322,7 +323,7 @@ def concave_line(
     ----------
     line_load : array (n,)         P', N/m, >= 0
     relative_radius : array (n,)   R, m, 1/R = 1/r - 1/rho: above r on a concave wall
-    roller_radius : float          r, m
+    roller_radius : array (n,)     r, m
     roller, wall : Elastic         materials
 
     Returns
@@ -337,5 +338,5 @@ def concave_line(
     full = half_width * np.sqrt(square) >= CONFORMING_FROM
     if not full.any():
         return full, None
-    radius = 1.0 / (roller_radius * square[full])
-    return full, conforming_line(line_load[full], roller_radius, radius, roller, wall)
+    inner = roller_radius[full]
+    return full, conforming_line(line_load[full], inner, 1.0 / (inner * square[full]), roller, wall)

@@ -103,7 +103,7 @@ class ContactHistory(Displayed):
         if self.tier is Tier.PREVIEW:
             words = "closed form: Hertz line contact"
             if count := int(self.conforming.sum()):
-                words += f"; conforming contact in the concave wall at {count} angles"
+                words += f"; conforming contact where the cam is concave at {count} angles"
             return words
         words = TWO_SCALE
         if count := int(self.unsolved.sum()):

@@ -85,12 +85,14 @@ def _impact(
     pressure = np.array([np.nan])
     if np.isfinite(force) and radius[0] > 0.0:
         _, pressure = hertz.line_contact(load, radius, machine.contact_modulus)
-        if second is None:
-            bodies = (
-                Elastic(card.E, card.nu) for card in (machine.roller.material, machine.cam.material)
-            )
-            _, line = concave_line(load, radius, machine.roller.radius, *bodies)
-            pressure = pressure if line is None else line.p0
+        carrying = (
+            machine.roller.radius if second is None or flight.wall == INNER else second.radius
+        )
+        bodies = (
+            Elastic(card.E, card.nu) for card in (machine.roller.material, machine.cam.material)
+        )
+        _, line = concave_line(load, radius, np.array([carrying]), *bodies)
+        pressure = pressure if line is None else line.p0
     slip = machine.cam_speed * _slip(contour, second, flights, number) if flight.crosses else 0.0
     return WallImpact(flight, force, float(pressure[0]), slip)
 

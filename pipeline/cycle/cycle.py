@@ -357,13 +357,13 @@ class Cycle(Tabled):
 
     @property
     def _conforming_columns(self) -> dict[Column, Cells]:
-        """Pressure and half-width in a groove by a preview, in which contacts may conform; nothing
-        of other cams and depths.
+        """Pressure and half-width of a cam that pulls by a preview, in which contacts may conform;
+        nothing of other cams and depths.
         """
         contact, pair = self.contact, self.pair
-        if contact.tier is not Tier.PREVIEW or pair.wall is None or pair.second is not None:
+        if contact.tier is not Tier.PREVIEW or pair.wall is None:
             return {}
-        words = "of the contact, conforming where a wall is concave, else Hertz"
+        words = "of the contact, conforming where the cam is concave, else Hertz"
         return {
             Column("p0_conforming", "MPa", f"Maximum pressure {words}", unknown=True): contact.p0,
             Column(

@@ -175,14 +175,14 @@ def test_stress_below_the_wall_by_finite_elements():
 
 def test_a_wall_is_solved_in_full_from_the_limit_on():
     relative = np.array([0.5, 1.0, 2.0, 2.0, 50.0]) * RADIUS  # convex, plane, concave
-    load = np.array([1e6, 1e6, 1e4, 1e6, 1e6])
-    full, line = concave_line(load, relative, RADIUS, STEEL, STEEL)
+    load, radius = np.array([1e6, 1e6, 1e4, 1e6, 1e6]), np.full(5, RADIUS)
+    full, line = concave_line(load, relative, radius, STEEL, STEEL)
     assert full.tolist() == [False, False, False, True, True]
     wall = RADIUS * relative[3:] / (relative[3:] - RADIUS)
     direct = conforming_line(load[3:], RADIUS, wall, STEEL, STEEL)
     assert line.p0 == pytest.approx(direct.p0, rel=1e-12)
     assert line.half_width_hertz == pytest.approx(direct.half_width_hertz, rel=1e-12)
-    nowhere, none = concave_line(0.0 * load, relative, RADIUS, STEEL, STEEL)
+    nowhere, none = concave_line(0.0 * load, relative, radius, STEEL, STEEL)
     assert none is None and not nowhere.any()
 
 

@@ -15,6 +15,8 @@ from scipy.integrate import solve_ivp
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.contact.closed_form import in_full
+from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.crank_speed import mechanism_torque
 from camwright.pipeline.cycle.crossover_history import impacts
@@ -309,6 +311,24 @@ def test_contact_on_both_discs_by_their_radii(name):
     # differences over 0.06 deg miss the jerk: 1e-3 beside the steps of it
     assert cycle.contact.p0 == pytest.approx(pressure, rel=2e-3, abs=1e3)
     assert pulled.any() and not pulled.all()
+
+
+def test_a_concave_disc_conforms_to_the_roller_that_it_carries():
+    """Persson's closed form with the radius of that roller, in hollows of 0.1 m relative radius."""
+    cycle, machine, _ = running("stem")
+    shape, relative = cycle.theta.shape, 0.1
+    load = np.full(shape, 2e6)
+    full, line = in_full(cycle.pair, cycle.theta, load, np.full(shape, relative))
+    roller = np.where(
+        cycle.loads.axial_force < 0.0, machine.cam.second.radius, machine.roller.radius
+    )
+    assert full.all() and np.unique(roller).size == 2
+    for k in range(0, roller.size, 60):
+        wall = 1.0 / (1.0 / roller[k] - 1.0 / relative)
+        number = 2.0 * cycle.pair.contact_modulus * (wall - roller[k]) / load[k]
+        angle = persson_contact_angle(number)
+        exact = float(persson_pressure(angle)) * load[k] / np.sqrt(roller[k] * wall)
+        assert line.p0[k] == pytest.approx(exact, rel=1e-6)
 
 
 @BOTH

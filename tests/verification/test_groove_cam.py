@@ -167,7 +167,7 @@ def test_a_concave_wall_is_conforming_under_great_loads():
         load = np.trapezoid(pressure, place)
         assert load == pytest.approx(contact.line_load[k], rel=2e-3)
     assert (contact.p0 > contact.p0_hertz)[full].all()
-    assert "conforming contact in the concave wall" in contact.method
+    assert "conforming contact where the cam is concave" in contact.method
     bare = closed_form_history(replace(cycle.pair, wall=None), cycle.theta, 0.0 * cycle.theta)
     assert not bare.conforming.any() and bare.method == "closed form: Hertz line contact"
 
@@ -214,7 +214,7 @@ def test_a_soft_roller_conforms_and_the_check_says_so():
     found = preview_case(soft_roller(), corners=False)
     note = next(each for each in found.checks if each.id == "contact_pressure").note
     assert re.search(
-        r"where the wall is concave up to [\d.]+ MPa \+- [\d.]+ %, conforming contact over"
+        r"where the cam is concave up to [\d.]+ MPa \+- [\d.]+ %, conforming contact over"
         r" [\d.]+ deg at [\d.]+ deg in over-speed; Hertz [\d.]+ MPa", note
     )  # fmt: skip
     cycle = max(found.cycles, key=lambda each: each.cam_speed)
