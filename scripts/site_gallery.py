@@ -31,7 +31,8 @@ GROUPS = {
     ),
     "motions": (
         "Cams of a given motion",
-        "A swing with two dwells on an arm, without a torque to balance.",
+        "A swing with two dwells on an arm, and a stroke with two dwells in a groove, without a "
+        "torque to balance.",
     ),
     "papers": (
         "Cams of papers",
@@ -123,10 +124,14 @@ def cam_of(one: Shown, name: str) -> str:
     """The turning cam of a case."""
     bore = one.trial.case.cam.bore_radius or 0.0
     words = f"Turning cam with follower and spring: {one.title}"
-    contour = one.trial.contour
+    contour, groove = one.trial.contour, one.trial.case.cam.groove
     if isinstance(contour, ArmContour):
         return swinging_cam(contour, bore, name, words)
-    return turning_cam(TurningCam.of(contour, bore), name, words)
+    cam = TurningCam.of(contour, bore)
+    if groove is not None:
+        words = f"Turning disc with the follower in its groove: {one.title}"
+        cam = cam.in_groove(contour, groove.outer_radius)
+    return turning_cam(cam, name, words)
 
 
 def _state(trial: Trial) -> str:

@@ -20,6 +20,7 @@ from camwright.geometry.figures import (
     Panel,
     closed,
 )
+from camwright.geometry.form_closure import groove_wall
 from camwright.reports.figure_svg import FIGURE_WIDTH, svg_of, themed
 
 STEPS = 72
@@ -53,6 +54,8 @@ class TurningCam(NamedTuple):
     height : array (STEPS,)  of roller centre or face over the cam axis
     roller : float           radius of the roller; 0: a flat face
     bore : float             radius of the bore; 0: not stated
+    wall : array (2, n)      outer wall of a groove around the contour; None: a spring closes it
+    disc : float             radius of the disc with a groove
     """
 
     outline: Array
@@ -60,6 +63,13 @@ class TurningCam(NamedTuple):
     height: Array
     roller: float
     bore: float
+    wall: Array | None = None
+    disc: float = 0.0
+
+    @property
+    def reach(self) -> float:
+        """Greatest radius of the cam."""
+        return self.disc if self.wall is not None else float(np.hypot(*self.outline).max())
 
     @classmethod
     def of(cls, contour: Contour, bore: float = 0.0, points: int = 360) -> TurningCam:
@@ -77,6 +87,19 @@ class TurningCam(NamedTuple):
         return cls(1e3 * contour.points(uniform_turn(points)), 1e3 * axis, 1e3 * height,
                    1e3 * roller, 1e3 * bore)  # fmt: skip
 
+    def in_groove(self, contour: Contour, disc: float) -> TurningCam:
+        """The same in a disc of a radius, m, with a groove around the contour."""
+        track = contour.require_roller()
+        wall = groove_wall(track, "outer", track.roller_radius)
+        points = 1e3 * wall.points(uniform_turn(self.outline.shape[1]))
+        return self._replace(wall=points, disc=1e3 * disc)
+
+
+def circle_path(radius: float) -> str:
+    """Circle about the origin as a path."""
+    r = f"{radius:.4g}"
+    return f"M{r} 0A{r} {r} 0 1 0 -{r} 0A{r} {r} 0 1 0 {r} 0Z"
+
 
 def closed_line(points: Array) -> str:
     """Closed path through points (2, n), y upward."""
@@ -85,12 +108,11 @@ def closed_line(points: Array) -> str:
 
 
 def path_of(cam: TurningCam) -> str:
-    """Contour and bore of a cam as one path."""
+    """Contour and bore of a cam, with groove and disc around it, as one path."""
     path = closed_line(cam.outline)
-    if cam.bore:
-        b = cam.bore
-        path += f"M{b:.4g} 0A{b:.4g} {b:.4g} 0 1 0 {-b:.4g} 0A{b:.4g} {b:.4g} 0 1 0 {b:.4g} 0Z"
-    return path
+    if cam.wall is not None:
+        path = circle_path(cam.disc) + closed_line(cam.wall) + path
+    return path + circle_path(cam.bore) if cam.bore else path
 
 
 def turning_cam(cam: TurningCam, name: str, words: str) -> str:
@@ -101,7 +123,7 @@ def turning_cam(cam: TurningCam, name: str, words: str) -> str:
     name : str    letters, digits and hyphens, one of its own on the page
     words : str   what a screen reader says
     """
-    reach = float(np.hypot(*cam.outline).max())
+    reach = cam.reach
     lowest, highest = float(cam.height.min()), float(cam.height.max())
     stroke = highest - lowest
     wheel = cam.roller or 0.12 * reach
@@ -127,9 +149,12 @@ def turning_cam(cam: TurningCam, name: str, words: str) -> str:
     follower = [
         f'<rect class="steel" x="{cam.axis - 0.5 * stem:.4g}" y="{-end:.4g}" '
         f'width="{stem:.4g}" height="{end - foot:.4g}"/>',
-        f'<rect class="steel" x="{cam.axis - 1.2 * stem:.4g}" y="{-collar:.4g}" '
-        f'width="{2.4 * stem:.4g}" height="{0.07 * reach:.4g}"/>',
     ]
+    if cam.wall is None:  # the lower seat of the spring
+        follower.append(
+            f'<rect class="steel" x="{cam.axis - 1.2 * stem:.4g}" y="{-collar:.4g}" '
+            f'width="{2.4 * stem:.4g}" height="{0.07 * reach:.4g}"/>'
+        )
     if cam.roller:
         follower += [
             f'<circle class="roller" cx="{cam.axis:.4g}" cy="{-lowest:.4g}" r="{cam.roller:.4g}"/>',
@@ -153,6 +178,16 @@ def turning_cam(cam: TurningCam, name: str, words: str) -> str:
     ]
     spring = "L".join(f"{a:.4g} {b:.4g}" for a, b in ((u, v + length) for u, v in wire))
     hang = -(top - 0.06 * reach)
+    pressed_by = (
+        f'<g transform="translate(0 {hang:.4g})"><g class="pressed" '
+        f'transform="scale(1 {shares[0]:.4g})"><path class="wire" d="M{spring}"/></g></g>'
+    )
+    above = (
+        f'<rect class="fixed" x="{cam.axis - 1.6 * stem:.4g}" y="{-top:.4g}" '
+        f'width="{3.2 * stem:.4g}" height="{0.06 * reach:.4g}"/>'
+    )
+    if cam.wall is not None:
+        pressed_by = above = ""
     return (
         f'<svg class="turning-cam" id="{name}" viewBox="{" ".join(f"{v:.4g}" for v in box)}" '
         f'role="img" aria-label="{escape(words)}"><style>{style}</style>'
@@ -160,11 +195,9 @@ def turning_cam(cam: TurningCam, name: str, words: str) -> str:
         f'<g class="turned" transform="rotate(-90)"><path class="cam-body" d="{path_of(cam)}"/>'
         f'<circle class="mark" cx="{mark:.4g}" cy="0" r="{0.045 * reach:.4g}"/></g>'
         f'<circle class="hub" r="{0.03 * reach:.4g}"/>'
-        f'<g transform="translate(0 {hang:.4g})"><g class="pressed" '
-        f'transform="scale(1 {shares[0]:.4g})"><path class="wire" d="M{spring}"/></g></g>'
+        f"{pressed_by}"
         f'<g class="lifted" transform="translate(0 {-lifted[0]:.4g})">{"".join(follower)}</g>'
-        f'{guides}<rect class="fixed" x="{cam.axis - 1.6 * stem:.4g}" y="{-top:.4g}" '
-        f'width="{3.2 * stem:.4g}" height="{0.06 * reach:.4g}"/></svg>'
+        f"{guides}{above}</svg>"
     )
 
 

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 _NAMED = re.compile(r"{([^}]+)}")  # keys in the words of a limit
 _KEYWAY_WIDTH = 1.8  # greatest, over the bore radius
 _MESSAGE_DIGITS = (4, 8, 17)  # more where a value and its limit would read alike
+_DECIMALS = 12  # of a difference of lengths, m
 _RULE_ROUND_OFF = 1e-9  # of a share of the friction, and of an angle
 _POSITIONS_MIN = 36  # of the cam per cycle of the machine
 _DUTY_TOLERANCE = 1e-6  # of the sum of the duty
@@ -354,7 +355,8 @@ def _groove() -> Iterator[Rule]:
     limit = ">= {roller.width}: the roller is within the groove"
     yield _at_least(depth, lambda at: at("roller.width"), limit)
     limit = "<= {}, {cam.groove.depth} less {roller.width}: the roller runs above the fillet"
-    yield _at_most(fillet, lambda at: at(depth) - at("roller.width"), limit)
+    room = lambda at: np.round(at(depth) - at("roller.width"), _DECIMALS)  # noqa: E731
+    yield _at_most(fillet, room, limit)
     limit = "> {}, {cam.prime_radius} plus {roller.radius}"
     key = "cam.groove.outer_radius"
     yield _more(key, lambda at: at("cam.prime_radius") + at("roller.radius"), limit)

@@ -85,6 +85,17 @@ def test_cam_under_an_arm_keeps_every_limit_at_its_corners(tmp_path):
 
 
 @pytest.mark.slow
+def test_a_stroke_in_a_groove_passes_certified(tmp_path):
+    """Both walls carry, within the limits of all checks, by finite elements as by Hertz."""
+    case = read_case(CASES / "motions" / "feeder-groove.toml")
+    summary = run_case(case, tmp_path / "run", progress=Silent()).summary
+    assert summary["verdict"] == "pass", summary["binding"]
+    final = read_run(tmp_path / "run").final
+    assert set(np.unique(final.cycle["wall"])) == {-1.0, 1.0}
+    assert np.abs(final.cycle["p0_difference_percent"]).max() < 0.1
+
+
+@pytest.mark.slow
 def test_an_arm_with_two_dwells_passes_certified(tmp_path):
     """15 deg of swing by the laws of its case: the contour at rest and in the dwell is round."""
     case = read_case(CASES / "motions" / "packaging-arm.toml")

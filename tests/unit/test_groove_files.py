@@ -21,7 +21,7 @@ from camwright.pipeline.run import run_case
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of
 from camwright.reports.report_data import read_material
 
-FILE = Path(__file__).parents[1] / "data" / "groove_feeder.toml"
+FILE = Path(__file__).parents[2] / "cases" / "motions" / "feeder-groove.toml"
 
 
 @cache

@@ -1,6 +1,6 @@
 """A groove cam by other formulations: its limits, walls, forces, energy, landings and rim.
 
-The case is that of tests/data/groove_feeder.toml: two strokes a turn, no spring.
+The case is that of cases/motions/feeder-groove.toml: two strokes a turn, no spring.
 """
 
 import re
@@ -33,7 +33,7 @@ from camwright.pipeline.hand_check.hand_sheet import SheetRun
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.run import run_case
 
-FILE = Path(__file__).parents[1] / "data" / "groove_feeder.toml"
+FILE = Path(__file__).parents[2] / "cases" / "motions" / "feeder-groove.toml"
 
 
 @cache
@@ -200,8 +200,8 @@ def soft_roller():
         ' density = "1150 kg/m^3", expansion = "8e-5 1/K", source = "made up" }\n',
         'mass = "3 kg"': 'mass = "30 kg"',
         "positions = 720": "positions = 90",
-        'end = { kind = "sharp" }\n': "",
-        'end = { kind = "chamfer", size = "0.6 mm" }\n': "",
+        'end = { kind = "sharp" }': "",
+        'end = { kind = "chamfer", size = "0.6 mm" }': "",
     }
     for old, new in changes.items():
         assert old in text

@@ -19,7 +19,7 @@ from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
 from camwright.pipeline.preview import preview_case
 
-FILE = Path(__file__).parents[1] / "data" / "groove_feeder.toml"
+FILE = Path(__file__).parents[2] / "cases" / "motions" / "feeder-groove.toml"
 SECTORS = 48
 
 

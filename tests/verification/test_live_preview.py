@@ -33,8 +33,9 @@ from camwright.pipeline.screening.response_surface import Surface, SurfaceFit, s
 from camwright.pipeline.solver import solve
 
 NO_CASE = "papers/mechanisms"
-WITHOUT = ("papers/petrescu_b3", "papers/petrescu_b4")
-"""Cases of which the screening refuses the design itself: its contour bounds no body."""
+WITHOUT = ("papers/petrescu_b3", "papers/petrescu_b4", "motions/feeder-groove")
+"""Cases of which the screening refuses the design itself: its contour bounds no body, or a groove
+holds its follower."""
 FOLLOWED = [
     name
     for file in sorted(live_settings.CASES.rglob("*.toml"))
