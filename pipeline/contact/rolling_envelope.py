@@ -255,7 +255,7 @@ def swept(
     half_width, p0 = hertz.line_contact(load, pair.relative_radius(at), pair.contact_modulus)
     half_width = half_width * _between(at, turn, contact.half_width, contact.half_width_hertz)
     p0 = p0 * _between(at, turn, contact.p0, contact.p0_hertz)
-    if contact.conforming.any():
+    if pair.wall is not None and contact.conforming.any():
         # The pass is that of half-planes: scaled to the greatest shear in the wall.
         flat = hertz.SHEAR_MAX * contact.p0
         share = _between(at, turn, contact.tau_max, flat)
