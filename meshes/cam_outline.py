@@ -81,12 +81,18 @@ def trace(contour: ContourLike) -> SampledContour:
 
 
 def contour_piece(path: SampledContour, sizing: ElementSize) -> OutlinePiece:
-    """Outline piece of the contour by arc length, with equal facets about the contact.
+    """Outline of the cam by its arc length, m, with equal element edges about the contact point,
+    where the sizes have one.
+
+    Parameters
+    ----------
+    path : SampledContour   cam contour, m, with its arc length at cam angles
+    sizing : ElementSize    with the contact point in the axes of the cam, m
 
     Raises
     ------
     InputError
-        If the contact point does not lie on the contour.
+        If the contact point is further from the contour than its zone of equal size.
     """
     theta_of = MonotoneCubic(path.arc_length, path.theta)
 

@@ -265,11 +265,16 @@ class WoundSprings(WoundWire[Number]):
 
 
 def wound_spring(case: Case, at: Callable[[str], Value | None]) -> WoundSprings[Value] | None:
-    """Wound springs of designs; None where the case has no spring design.
+    """Coil springs of one design, or of many (...), by the numbers of their wire, coils and ends;
+    None where the case has no table ``spring.design``.
+
+    A number that may be left out, and is by all designs, is None. Treatment and temperature, K, are
+    those of the case.
 
     Parameters
     ----------
-    at : callable   dotted key -> value or values (...), SI; None or NaN where it is left out
+    at : callable   dotted key of the case -> number, or one a design (...), SI; None or NaN where
+                    it is left out
     """
     design = case.spring.design
     if design is None:

@@ -43,14 +43,14 @@ class MotorLine:
     ------
     InputError
         If the points are fewer than 2 or more than 200, their speeds do not increase, or the
-        torque falls nowhere.
+        torque does not fall from the last but one to the last.
     """
 
     points: tuple[MotorPoint, ...]
 
     def __post_init__(self) -> None:
-        """Refuse fewer or more points than allowed, speeds that do not increase, and a torque that
-        does not fall to the last point.
+        """Refuse fewer or more points than allowed, speeds, rad/s, that do not increase, and a
+        torque, N m, that does not fall from the last point but one to the last.
         """
         least, most = POINTS
         if not least <= len(self.points) <= most:

@@ -257,7 +257,7 @@ class _Run:
                 self.home.write_shard(task.name, rows, clock)
                 watch.take(Shard(task.name, task.ids), table_from(rows))
                 if runs:
-                    made = self._still_wanted(made | set(runs), tier, watch)
+                    made = self._delete_unwanted(made | set(runs), tier, watch)
                 if watch.stopped:
                     break
         shards = watch.shards()
@@ -282,13 +282,14 @@ class _Run:
             return None
         return self.figures.of(tier, watch.certain).wanted(kind, most)
 
-    def _still_wanted(self, made: set[str], tier: Tier, watch: _Watch) -> set[str]:
-        """Ids of the run folders made so far that may be kept in the end; the others are deleted.
+    def _delete_unwanted(self, made: set[str], tier: Tier, watch: _Watch) -> set[str]:
+        """Delete the run folders that cannot be among those that the study keeps in the end; ids of
+        the others. None is deleted as long as each of them may be kept.
 
         Parameters
         ----------
         made : set       ids of the designs with a run folder
-        tier : Tier      depth
+        tier : Tier      depth at which the designs are solved now
         watch : _Watch   designs solved so far
         """
         wanted = self._wanted(tier, watch)
