@@ -1,7 +1,7 @@
-"""Second track of a cam that pulls its follower: a second disc under a second roller.
+"""Second track of a cam that pulls its follower: a second disc, or the same under a second face.
 
-The second roller is fixed to the first, on the same stem or arm; its disc is on the same shaft. The
-path of its centre follows from that of the first.
+The second roller or face is fixed to the first, on the same stem or arm; its disc is on the same
+shaft. Its path follows from that of the first.
 """
 
 from __future__ import annotations
@@ -9,31 +9,34 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arm_path import Arm, ArmContour, ArmMotion, ArmPath
 from camwright.geometry.arrays import FULL_TURN, Array, Value, positive
-from camwright.geometry.contour import Contour, RollerContour, RoundContour
+from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
-from camwright.geometry.follower_path import FollowerPath, Slide
+from camwright.geometry.flat_face_contour import FaceMotion, FacePath, FlatFaceContour
+from camwright.geometry.follower_path import FollowerPath, Motion, Slide
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import PitchCurve, RollerMotion, RoundMotion
 
 _HALF_TURN = np.pi
 
 
-class SecondRoller(ABC):
-    """Roller that is fixed to the first and pulls the follower back."""
+class SecondFollower(ABC):
+    """Roller or face that is fixed to the first and pulls the follower back."""
 
+    own_disc: ClassVar[bool] = True
+    """whether its track is on a disc of its own"""
     radius: float
-    """m"""
+    """of its surface, m; infinite of a face"""
 
     @abstractmethod
     def of(self, first: FollowerPath) -> SecondTrack:
-        """Track under it, from the path of the first roller."""
+        """Track under it, from the path of the first roller or face."""
 
     def track(self, first: FollowerPath) -> SecondTrack:
         """`of`, computed once for a path."""
@@ -41,7 +44,7 @@ class SecondRoller(ABC):
 
 
 @dataclass(frozen=True)
-class OppositeRoller(SecondRoller):
+class OppositeRoller(SecondFollower):
     """Second roller on the same stem, opposite the first across the cam axis.
 
     Both centres are a distance apart: r1(theta) + r2(theta + 180 deg) is constant.
@@ -81,7 +84,7 @@ class OppositeRoller(SecondRoller):
 
 
 @dataclass(frozen=True)
-class ConjugateArm(SecondRoller):
+class ConjugateArm(SecondFollower):
     """Second arm on the same pivot, on the other side of the line of centres.
 
     Parameters
@@ -126,6 +129,25 @@ class ConjugateArm(SecondRoller):
         return SecondTrack(first, contour, 0.0, float(first.arm.length / self.length), 0.0)
 
 
+@dataclass(frozen=True)
+class OppositeFace(SecondFollower):
+    """Second face of a yoke, parallel to the first on the other side of the same cam.
+
+    It touches the contour half a turn after the first, whose breadth h(theta) + h(theta + 180 deg)
+    is constant.
+    """
+
+    own_disc: ClassVar[bool] = False
+    radius: float = np.inf
+
+    def of(self, first: FollowerPath) -> SecondTrack:
+        if not isinstance(first, FacePath):
+            raise InputError("cam.yoke", "a table", "left out without a flat face on a stem")
+        contour = FlatFaceContour(replace(first, offset=-first.offset))
+        breadth = 2.0 * first.base_radius + first.lift.highest.value
+        return SecondTrack(first, contour, _HALF_TURN, 1.0, breadth)
+
+
 class Touch(NamedTuple):
     """Contact of one track (...): forces over the axial force at the first roller.
 
@@ -154,31 +176,34 @@ class SecondTrack:
     Parameters
     ----------
     first : FollowerPath     path of the first roller
-    contour : RoundContour   contour of the disc, at the cam angles of the second roller
+    contour : Contour        of the disc, at the cam angles of the second roller
     turn : float             by which these are ahead of those of the first, rad
     leverage : float         force along the travel of the second over that of the first roller
     reach : float            by which it is farther from the guides of a stem, m
     """
 
     first: FollowerPath
-    contour: RoundContour
+    contour: Contour
     turn: float
     leverage: float
     reach: float
 
-    def touch(self, theta: Array) -> Touch:
-        """Contact with the second roller, over the axial force at the first one."""
-        touch = touch_of(self.contour.pitch, theta + self.turn)
+    def touch(self, theta: Array, friction: Value = 0.0) -> Touch:
+        """Contact with the second roller or face, over the axial force at the first one.
+
+        friction : of a face
+        """
+        touch = touch_of(self.contour.pitch, theta + self.turn, friction)
         turned = self.turned(theta)
         cos, sin = np.cos(turned), np.sin(turned)
-        side, scale = touch.slide.side, -self.leverage
-        slide = Slide(
-            side=scale * (side * cos - sin),
-            torque=np.zeros(side.shape),
-            lever=1.0 / self.leverage,
-            pressing=scale * (cos + side * sin),
+        side, along, scale = touch.slide.side, touch.slide.pressing, -self.leverage
+        slide = touch.slide._replace(
+            side=scale * (side * cos - along * sin),
+            torque=scale * touch.slide.torque,
+            lever=touch.slide.lever / self.leverage,
+            pressing=scale * (along * cos + side * sin),
         )
-        return Touch(slide, touch.push_arm, touch.pressure_angle, turned)
+        return Touch(slide, scale * touch.push_arm, touch.pressure_angle, turned)
 
     def turned(self, theta: Array) -> Array:
         """Direction of travel of the second roller from that of the first, rad."""
@@ -187,12 +212,23 @@ class SecondTrack:
 
     def relative_radius(self, theta: Array) -> Array:
         """Relative radius of curvature of the contact, m; negative if undercut."""
-        return self.contour.relative_radius(theta + self.turn, np.asarray(1.0))
+        return _relative_radius(self.contour, theta + self.turn)
 
-    def motion(self, theta: Array, order: int = 2) -> RoundMotion:
-        """Kinematics of the second roller by itself."""
-        jet = self.contour.lift.jet(theta + self.turn, order)
-        return self.contour.pitch.centre_motion(jet, self.contour.roller_radius)
+    def carried(
+        self, first: Motion, theta: Array, pulls: NDArray[np.bool_], friction: Value
+    ) -> Motion:
+        """Motion at cam angles (n,), rad, of the track that carries: this one where it pulls.
+
+        Parameters
+        ----------
+        first : Motion      of the first roller or face there
+        friction : float    of a face
+        """
+        jet = self.contour.lift.jet(theta + self.turn, 2)
+        second, touch = self.contour.motion(jet, friction), self.touch(theta, friction)
+        if isinstance(first, FaceMotion):
+            return CarriedFaceMotion.of(first, self.contour.pitch, jet, pulls)
+        return CarriedMotion.of(first, second, pulls, touch)
 
 
 class CamDisc(NamedTuple):
@@ -206,30 +242,72 @@ class CamDisc(NamedTuple):
         return float(np.mod(theta - self.turn, FULL_TURN))
 
 
-def discs_of(contour: Contour, second: SecondRoller | None) -> tuple[CamDisc, ...]:
+def discs_of(contour: Contour, second: SecondFollower | None) -> tuple[CamDisc, ...]:
     """Disc of the first contour, and that of a second roller."""
     first = CamDisc(contour, 0.0)
-    if second is None:
+    if second is None or not second.own_disc:
         return (first,)
     track = second.track(contour.pitch)
     return first, CamDisc(track.contour, track.turn)
 
 
 def relative_radius(
-    contour: RoundContour, second: SecondRoller | None, theta: Array, wall: Array
+    contour: Contour, second: SecondFollower | None, theta: Array, wall: Array
 ) -> Array:
     """Relative radius of curvature (...), m, on the track that carries: 1 the first or inner wall,
     -1 the second, or without one the outer wall of a groove; negative if undercut.
     """
     if second is None:
-        return contour.relative_radius(theta, wall)
-    first = contour.relative_radius(theta, np.ones(np.shape(wall)))
+        return contour.require_roller().relative_radius(theta, wall)
+    first = _relative_radius(contour, theta)
     return np.where(wall < 0.0, second.track(contour.pitch).relative_radius(theta), first)
 
 
+def _relative_radius(contour: Contour, theta: Array) -> Array:
+    """Relative radius of curvature (...), m, of a contour and its follower."""
+    return np.asarray(1.0 / (contour.follower_curvature + contour.curvature(theta)))
+
+
 @lru_cache(maxsize=64)
-def _kept(second: SecondRoller, first: FollowerPath) -> SecondTrack:
+def _kept(second: SecondFollower, first: FollowerPath) -> SecondTrack:
     return second.of(first)
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedFaceMotion(FaceMotion):
+    """Kinematics and force ratios of the face of a yoke that carries; see `Motion`.
+
+    jet and offset are those of the face that carries, in its own axes.
+
+    Parameters
+    ----------
+    sense : array (..., n)   1 where the first face carries, -1 the second
+    """
+
+    sense: Array
+
+    @classmethod
+    def of(
+        cls, first: FaceMotion, path: FollowerPath, jet: Jet, pulls: NDArray[np.bool_]
+    ) -> CarriedFaceMotion:
+        """From the motion of the first face, and path and lift of the second at its cam angles."""
+        mixed = Jet(*(np.where(pulls, *pair) for pair in zip(jet[:3], first.jet[:3], strict=True)))
+        sense = np.where(pulls, -1.0, 1.0)
+        offset = sense * first.offset
+        return cls(mixed, path.height_base, offset, first.friction, sense)
+
+    @cached_property
+    def arm(self) -> Array:
+        """Lever arm of the axial force at the first face about the stem axis."""
+        return self.sense * (self.jet.slope - self.offset)
+
+    @property
+    def sliding(self) -> Array:
+        return self.sense * self.friction * self.height
+
+    @property
+    def on_face(self) -> Array:
+        return self.jet.slope - self.offset
 
 
 def _chosen(pulls: NDArray[np.bool_], second: Value, first: Value) -> Array:
@@ -261,7 +339,7 @@ class CarriedMotion(RoundMotion):
 
     @classmethod
     def of(
-        cls, first: RoundMotion, second: RoundMotion, pulls: NDArray[np.bool_], touch: Touch
+        cls, first: Motion, second: Motion, pulls: NDArray[np.bool_], touch: Touch
     ) -> CarriedMotion:
         """From both motions at the same angles, and the contact of the second track.
 

@@ -64,10 +64,11 @@ MISSING_KINDS = (
         'kind = "oscillating" with follower.face.radius, "roller", or a flat face with a crown',
     ),
     MissingKind(
-        "a yoke (constant-breadth or constant-diameter) follower", "follower",
+        "a follower that holds the cam on both sides without [cam.yoke] or [cam.conjugate]",
+        "follower",
         ("yoke", "scotch_yoke", "constant_breadth", "constant_width", "constant_diameter",
          "positive_drive", "positive_return", "double_roller", "twin_roller", "two_rollers"),
-        _PLATE,
+        'cam.closure = "yoke" or "conjugate"',
         keys=("yoke", "second_roller"),
     ),
     MissingKind(

@@ -6,7 +6,7 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
-SPRINGLESS = ("gravity", "groove", "conjugate")
+SPRINGLESS = ("gravity", "groove", "conjugate", "yoke")
 """Closures that need no spring."""
 _NONE = Source("none: cam or weight hold the follower", confirmed=True)
 _NO_RATE, _NO_PRELOAD = 1e-6, 1e-9  # N/m, N

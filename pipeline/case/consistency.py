@@ -242,7 +242,7 @@ def _start(case: Case) -> Iterator[Rule]:
 
 
 _LEAST_WEIGHT = 1e-6  # m/s2, above the round-off of a stem that lies level
-_TRACKS = ("groove", "conjugate")
+_TRACKS = ("groove", "conjugate", "yoke")
 """Closures with a second track, each with a table of its own in [cam]."""
 
 
@@ -268,6 +268,10 @@ def _closure(case: Case) -> None:
         raise InputError(f"cam.{cam.closure}", "missing", f"given with {stated_as}")
     if cam.conjugate is not None:
         _conjugate(case, cam.conjugate)
+    elif cam.yoke is not None:
+        if case.follower.kind != "flat":
+            limit = f'"flat" with {stated_as}, which is done for a stem alone'
+            raise InputError("follower.kind", case.follower.kind, limit)
     elif case.follower.kind != "roller":
         limit = f'"roller" with {stated_as}, which is done for a stem alone'
         raise InputError("follower.kind", case.follower.kind, limit)
@@ -277,6 +281,8 @@ def _closure(case: Case) -> None:
     for key, stated in (("cam.counter_hole", cam.counter_hole), ("valve_train", case.valve_train)):
         if stated is not None:
             raise InputError(key, "a table", f"left out with {stated_as}")
+    if case.roller_given is None:
+        return
     pin = case.roller.pin
     if cam.groove is not None and pin is not None and not pin.overhung:
         limit = f'"overhung" with {stated_as}: a cheek on both sides cannot enter it'

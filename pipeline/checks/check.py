@@ -292,7 +292,7 @@ class Measured(NamedTuple):
         return measure(cam) / limit if self.worst == "greatest" else 1.0 + limit - measure(cam)
 
 
-ClosedBy = Literal["", "force", "form", "plate", "groove", "conjugate"]
+ClosedBy = Literal["", "force", "form", "plate", "groove", "conjugate", "yoke"]
 
 
 @dataclass(frozen=True)
@@ -320,7 +320,8 @@ class Declaration:
     needs : str                kind of follower, see `Kind`; "": any
     closed_by : str            what keeps the follower on the cam: "force", of a spring or weight,
                                or "form", of a second track;
-                               "plate": any cam of plates; "groove", "conjugate": that closure;
+                               "plate": any cam of plates; "groove", "conjugate", "yoke": that
+                               closure;
                                "": any
     part : str                 part of the scope that it judges; "": cam or follower
     if_limited : bool          it is made only where the case sets its limit

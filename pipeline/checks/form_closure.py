@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.geometry.second_track import relative_radius
@@ -213,6 +213,46 @@ def second_disc_gap(cam: LoadedCam) -> Array:
     return np.asarray(spacing - 0.5 * (numbers["cam.width"] + numbers["roller.width"]) - beside)
 
 
+def _breadths(solution: Solution) -> Array:
+    """Breadth of the cam between parallel faces at equal cam angles (n,), m."""
+    pitch = solution.contour.pitch
+    theta = uniform_turn(2 * (pitch.lift.search_count // 2))
+    height = pitch.height(theta)
+    return np.asarray(height + np.roll(height, theta.size // 2))
+
+
+@check(
+    title="Change of the breadth of the cam over the clearance of the yoke",
+    unit="-",
+    source=Source("faces that close in on the cam are blocked", confirmed=True),
+    formula="(B - b + T)/c <= 1; B, b: greatest and least breadth of the cam between parallel faces"
+    " over the turn, T: cam.profile_tolerance, c: cam.yoke.clearance",
+    symbols={
+        **dict.fromkeys("Bb", f"{STATED} [mm]"),
+        "T": "cam.profile_tolerance",
+        "c": "cam.yoke.clearance",
+    },
+    reason="Only a cam of constant breadth keeps its clearance between two faces.",
+    method="breadth of the nominal cam at equal angles, and the width of the profile tolerance",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    closed_by="yoke",
+    load_cases=NONE,
+    values=("cam.profile_tolerance", "cam.yoke.clearance"),
+    levers=(levers.one("cam.yoke.clearance"),),
+    page="Cam",
+)
+def yoke_breadth(solution: Solution) -> Demand | None:
+    """Change of the breadth with the profile tolerance over the clearance."""
+    cam = solution.machine.cam
+    if cam.yoke is None:
+        return None
+    breadth = _breadths(solution)
+    most, least = float(breadth.max()), float(breadth.min())
+    change = (most - least + cam.profile_tolerance) / cam.yoke.clearance
+    return Demand(change, 1.0, stated={"B": most, "b": least})
+
+
 def _squeezed(cycle: Cycle, narrower: float) -> tuple[Squeezed, Array, Array] | None:
     """Preload over a turn with an interference larger by a length, m, and the forces (2, n) of both
     tracks along the travel of the first roller; None without an interference.
@@ -350,9 +390,7 @@ def preload_pressure(solution: Solution) -> Demand | None:
             walls = np.full(loads.theta.size, wall)
             there = Carried.at(cycle.contour.pitch, machine.system, loads.theta, walls)
             normal = force / (there.slide.lever * np.cos(there.pressure_angle))
-            radius = relative_radius(
-                cycle.contour.require_roller(), loads.second, loads.theta, walls
-            )
+            radius = relative_radius(cycle.contour, loads.second, loads.theta, walls)
             load = normal / machine.contact_width
             every.append(peak_pressure_square(load, 1.0 / radius, machine.contact_modulus))
         return np.sqrt(np.maximum(*every))
@@ -411,7 +449,7 @@ _FLIGHT = (
     "flight of the rigid mass under inertia, weight, external and spring force through the"
     " clearance, without rebound"
 )
-_CLEARANCES = "cam.groove.clearance", "cam.conjugate.clearance"
+_CLEARANCES = tuple(f"cam.{each}.clearance" for each in ("groove", "conjugate", "yoke"))
 _CLEARANCE = (*(levers.one(each, -1) for each in _CLEARANCES), *levers.GENTLER)
 
 
@@ -420,7 +458,6 @@ _CLEARANCE = (*(levers.one(each, -1) for each in _CLEARANCES), *levers.GENTLER)
     title="Maximum landing speed on the walls",
     method=_FLIGHT,
     lift_can_help=True,
-    needs="roller",
     closed_by="form",
     if_limited=True,
     formula="v <= limits.landing_speed; v: greatest speed of the roller against the wall at the end"
@@ -448,7 +485,6 @@ def landing_speed(solution: Solution) -> Demand:
     method=f"{_FLIGHT}; stopped on the stiffness of the follower, pressure under the greatest"
     " force",
     lift_can_help=True,
-    needs="roller",
     closed_by="form",
     formula="p <= p_E / S; p: sqrt(N E*/(pi b R)) on the wall of the landing, or of the conforming"
     " contact where it is concave, N: F + sqrt(F^2 + k m"

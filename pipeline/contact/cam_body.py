@@ -8,7 +8,12 @@ from types import MappingProxyType
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
 from camwright.geometry.errors import InputError
-from camwright.geometry.second_track import ConjugateArm, OppositeRoller, SecondRoller
+from camwright.geometry.second_track import (
+    ConjugateArm,
+    OppositeFace,
+    OppositeRoller,
+    SecondFollower,
+)
 from camwright.pipeline.base.material import MadeOf
 from camwright.pipeline.base.quantities import Angle, In, Known, Length, Part, TableSource, Used
 from camwright.pipeline.base.source import NO_SOURCE
@@ -129,7 +134,7 @@ class BalanceHole(Part):
     """least wall between the hole and contour, bore or keyway"""
 
 
-Closure = Literal["spring", "gravity", "groove", "conjugate"]
+Closure = Literal["spring", "gravity", "groove", "conjugate", "yoke"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,7 +188,7 @@ class CamConjugate(Part):
     1"""
 
     @property
-    def roller(self) -> SecondRoller:
+    def roller(self) -> SecondFollower:
         """Second roller on its stem or arm.
 
         Raises
@@ -199,6 +204,19 @@ class CamConjugate(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
+class CamYoke(Part):
+    """Second face of the follower, parallel to the first on the other side of the cam."""
+
+    table: ClassVar[str] = "cam.yoke"
+    source: TableSource = NO_SOURCE
+
+    clearance: Annotated[
+        float, In("mm", above=0, at_most=1), Known("drawing, tolerance chain", "0.05 mm")
+    ]
+    """distance of the faces less the greatest breadth of the cam"""
+
+
+@dataclass(frozen=True, kw_only=True)
 class CamBody(Part):
     """The cam disc."""
 
@@ -209,15 +227,18 @@ class CamBody(Part):
         "waviness_height": "of the process at the wavelength, within the profile tolerance",
         "groove": "another closure",
         "conjugate": "another closure",
+        "yoke": "another closure",
     }
 
     closure: Annotated[Closure, Known("own choice", "groove")] = "spring"
     """what keeps the follower on the cam: the force of a spring, the weight of the follower, the
-    outer wall of a groove, or the second disc of a conjugate pair"""
+    outer wall of a groove, the second disc of a conjugate pair, or the faces of a yoke"""
     groove: Annotated[CamGroove | None, Used("contour, cycle, checks of the groove")] = None
     """groove of a roller, with `closure` groove"""
     conjugate: Annotated[CamConjugate | None, Used("contour, cycle, checks of both discs")] = None
     """second disc and its roller, with `closure` conjugate"""
+    yoke: Annotated[CamYoke | None, Used("cycle, checks of both faces")] = None
+    """second face on the other side of the cam, with `closure` yoke"""
     prime_radius: Annotated[Length, Known("drawing, or own choice", "60 mm")]
     """base circle radius plus roller radius; of a flat face the base circle radius"""
     offset: Annotated[float, In("mm", above=-10_000, below=10_000), Known("drawing")] = 0.0
@@ -266,7 +287,7 @@ class CamBody(Part):
     @property
     def pulls(self) -> bool:
         """Whether the cam pulls the follower as well, so that no force need close the contact."""
-        return self.closure in ("groove", "conjugate")
+        return self.closure in ("groove", "conjugate", "yoke")
 
     @property
     def closed_by(self) -> tuple[str, ...]:
@@ -275,14 +296,16 @@ class CamBody(Part):
         return (self.closure, force) if self.groove is not None else (self.closure, force, "plate")
 
     @property
-    def second(self) -> SecondRoller | None:
-        """Second roller, on a disc of its own; None without one."""
+    def second(self) -> SecondFollower | None:
+        """Second roller, on a disc of its own, or face; None without one."""
+        if self.yoke is not None:
+            return OppositeFace()
         return None if self.conjugate is None else self.conjugate.roller
 
     @property
     def clearance(self) -> float:
         """Clearance of the follower between both tracks, square to them, m; 0 of one track."""
-        stated = self.groove or self.conjugate
+        stated = self.groove or self.conjugate or self.yoke
         return 0.0 if stated is None else stated.clearance or 0.0
 
     @property

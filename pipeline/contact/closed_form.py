@@ -71,6 +71,8 @@ def in_full(
     line_load : array (n,)         N/m
     relative_radius : array (n,)   m
     """
+    if not pair.contour.rolls:  # a face touches convex parts alone
+        return np.zeros(theta.shape, dtype=bool), None
     radius = np.full(theta.shape, pair.contour.require_roller().follower_radius)
     if pair.second is not None and pair.wall is not None:
         radius[pair.wall(theta) < 0] = pair.second.radius

@@ -12,7 +12,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import ContactError
-from camwright.geometry.second_track import SecondRoller
+from camwright.geometry.second_track import SecondFollower
 from camwright.meshes.body_mesh import BodyMesh, cam_mesh, rim_mesh
 from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base.units import shown
@@ -41,7 +41,7 @@ class ContactPair:
     pulling: ContactPair | None = None
     wall: Callable[[Array], Array] | None = None
     """of a cam that pulls: cam angles (...) -> 1 where it pushes, -1 where it pulls"""
-    second: SecondRoller | None = None
+    second: SecondFollower | None = None
     """by which it pulls on a disc of its own, in a preview alone; None of a groove"""
 
     @property

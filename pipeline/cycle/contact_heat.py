@@ -35,7 +35,12 @@ def flash_history(
     """
     if machine.face.friction is None:
         return None
-    through = machine.cam_speed * np.asarray(path.slide(theta).along_face)
+    along = np.asarray(path.slide(theta).along_face)
+    if pair.second is not None and pair.wall is not None:
+        track = pair.second.track(path)
+        second = track.contour.pitch.slide(theta + track.turn).along_face
+        along = np.where(pair.wall(theta) < 0.0, second, along)
+    through = machine.cam_speed * along
     heat = sliding.power / pair.width
     half_width = np.where(heat > 0, contact.half_width, 1.0)
     return flash_rise(machine, heat, sliding.speed, through, half_width)

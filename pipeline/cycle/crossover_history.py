@@ -9,7 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.contour import Contour
-from camwright.geometry.second_track import SecondRoller, discs_of, relative_radius
+from camwright.geometry.second_track import SecondFollower, discs_of, relative_radius
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.conforming_line import concave_line
@@ -80,11 +80,12 @@ def _impact(
     second = machine.cam.second
     there = Carried.at(contour.pitch, machine.system, at, wall)
     force = float((axial / (there.slide.lever * np.cos(there.pressure_angle)))[0])
-    radius = relative_radius(contour.require_roller(), second, at, wall)
+    radius = relative_radius(contour, second, at, wall)
     load = np.array([force / machine.contact_width])
     pressure = np.array([np.nan])
     if np.isfinite(force) and radius[0] > 0.0:
         _, pressure = hertz.line_contact(load, radius, machine.contact_modulus)
+    if contour.rolls and not np.isnan(pressure[0]):
         carrying = (
             machine.roller.radius if second is None or flight.wall == INNER else second.radius
         )
@@ -98,7 +99,7 @@ def _impact(
 
 
 def _slip(
-    contour: Contour, second: SecondRoller | None, flights: Sequence[Landing], number: int
+    contour: Contour, second: SecondFollower | None, flights: Sequence[Landing], number: int
 ) -> float:
     """Slip of the roller on the track on which it lands, m: sliding speed over cam speed.
 
@@ -107,10 +108,12 @@ def _slip(
 
     Parameters
     ----------
-    second : SecondRoller or None     None: both tracks are the walls of a groove
+    second : SecondFollower or None     None: both tracks are the walls of a groove
     flights, number : sequence, int   landings over the turn, in their order, and which of them
     """
     flight = flights[number]
+    if not contour.rolls:  # a face slides as ever
+        return 0.0
     if second is None:
         return 2.0 * float(contour.pitch.speed_and_curvature(np.array([flight.landing]))[0][0])
     count = len(flights)

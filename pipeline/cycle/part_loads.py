@@ -315,7 +315,7 @@ def _ring(
     if ring is None:
         return None, None, None
     force, wall = loads.normal_force, loads.wall
-    radius = relative_radius(contour.require_roller(), loads.second, loads.theta, wall)
+    radius = relative_radius(contour, loads.second, loads.theta, wall)
     bending = ring.bending
     return (
         bending.stress_amplitude * force,

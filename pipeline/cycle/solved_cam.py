@@ -12,11 +12,10 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.contour import Contour
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
-from camwright.geometry.second_track import CarriedMotion
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, on_wall, roller_of
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, on_wall
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.follower.follower_forces import Loads
@@ -127,8 +126,9 @@ class ForcesCam(ContourCam):
         if loads.second is None:
             return on_wall(unloaded, self.wall) if self.pulls else unloaded
         track = loads.second.track(self.contour.pitch)
-        second, touch = track.motion(loads.theta), track.touch(loads.theta)
-        return CarriedMotion.of(roller_of(unloaded), second, self.wall < 0.0, touch)
+        friction = self.numbers.get("follower.face.friction")
+        pulls, rubs = self.wall < 0.0, 0.0 if friction is None else friction
+        return track.carried(unloaded, loads.theta, pulls, rubs)
 
     @property
     def reach(self) -> Value:

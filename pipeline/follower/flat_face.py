@@ -246,8 +246,11 @@ class FollowerFace(Part):
         self, contour: Contour, contact: ContactHistory, loads: Loads, speed: float
     ) -> SurfaceMotion:
         """Sliding of the face; see `FollowerKind`."""
-        motion = face_motion(contour.pitch, speed, loads.theta)
-        force = loads.normal_force
+        motion, force = face_motion(contour.pitch, speed, loads.theta), loads.normal_force
+        if loads.second is not None:
+            track = loads.second.track(contour.pitch)
+            second = face_motion(track.contour.pitch, speed, loads.theta + track.turn)
+            motion = motion.where(loads.wall < 0.0, second)
         return SurfaceMotion(
             motion.entrainment,
             traction_share=(force > 0).astype(float),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.follower_path import FollowerPath
@@ -30,6 +30,12 @@ class SlidingFace:
 
     def __post_init__(self) -> None:
         freeze(self, place=self.place, sliding=self.sliding, entrainment=self.entrainment)
+
+    def where(self, pulls: NDArray[np.bool_], second: SlidingFace) -> SlidingFace:
+        """Motion of the face that carries: of the second one where that pulls (n,)."""
+        names = self.__dataclass_fields__
+        pairs = {name: (getattr(second, name), getattr(self, name)) for name in names}
+        return SlidingFace(**{name: np.where(pulls, *pair) for name, pair in pairs.items()})
 
 
 def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> SlidingFace:

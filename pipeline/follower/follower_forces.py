@@ -13,7 +13,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze, 
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath, Slide
-from camwright.geometry.second_track import SecondRoller, SecondTrack, Touch, touch_of
+from camwright.geometry.second_track import SecondFollower, SecondTrack, Touch, touch_of
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
 from camwright.pipeline.follower.disc_preload import DiscPreload, Squeezed
 from camwright.pipeline.follower.pivot_forces import ArmPivot, PivotBalance, Pressed, Pull
@@ -115,7 +115,7 @@ class FollowerSystem:
     pivot : ArmPivot                of an arm; None: of none, or of one without friction and weight
     held : bool                     the cam pulls the follower, too, as by the walls of a groove
     output : RockerOutput           that a rocker moves, its mass at zero lift part of `mass`; None
-    second : SecondRoller           by which it pulls on a track of its own; None: the same roller
+    second : SecondFollower           by which it pulls on a track of its own; None: the same roller
                                     does, if any
     preload : DiscPreload           of both tracks on an arm; None: they have a clearance
 
@@ -139,7 +139,7 @@ class FollowerSystem:
     pivot: ArmPivot | None = None
     held: bool = False
     output: RockerOutput | None = None
-    second: SecondRoller | None = None
+    second: SecondFollower | None = None
     preload: DiscPreload | None = None
 
     def __post_init__(self) -> None:
@@ -252,7 +252,7 @@ class Carried(NamedTuple):
         reach: Array | float = 0.0
         if second is not None:
             pulls = wall < 0.0
-            touch = _either(pulls, second.touch(theta), touch)
+            touch = _either(pulls, second.touch(theta, system.face_friction), touch)
             reach = np.asarray(second.reach * pulls)
         push = Push(touch.slide.side, touch.push_arm, system.guide_spacing)
         return cls(touch.slide, push, touch.pressure_angle, reach, touch.turned)
@@ -328,7 +328,7 @@ class Loads(Displayed):
     idle_force: Array = field(default_factory=lambda: readonly(0.0))
     pressed_along: Array = field(default_factory=lambda: readonly(0.0))
     held: bool = False
-    second: SecondRoller | None = None
+    second: SecondFollower | None = None
 
     def __post_init__(self) -> None:
         arrays = (name for name in self.__dataclass_fields__ if name not in ("held", "second"))

@@ -36,6 +36,7 @@ from camwright.pipeline.follower.stem_beam import Stem
 RESIDUAL = 1e-10  # of the axial equilibrium, over the axial force
 _ROUNDS_MAX = 100  # bisection alone converges in 40 from the bracket F to F/JAM_FLOOR
 _RESIDUAL_SHARE = 0.01  # of `RESIDUAL`, at which a position has converged
+_HELD_ROUND_OFF = 1e-9  # N, of a follower that is held without a spring: at rest it bears no more
 _CLIMB = 40  # rounds without bisection at positions that have no upper bound yet
 
 # Values of a fixed-point map at positions, numbered by the second argument.
@@ -164,7 +165,8 @@ def guided_strokes(
     high = np.where(outward, force / JAM_FLOOR, free)
     on_points = np.concatenate([each.axial_force for each in points]) * wall
     low, start = np.where(outward, free, 0.0), np.where(outward, free, on_points)
-    _, rounds = balanced(mapping, low, high, start)
+    held = np.repeat([s.system.held for s in strokes], sizes)
+    _, rounds = balanced(mapping, low, high, start, np.where(held, _HELD_ROUND_OFF, 0.0))
     a, b = bores.last_factors
     ends = np.cumsum([0, *sizes])
     spans = [slice(*span) for span in pairwise(ends)]
@@ -221,7 +223,9 @@ def _joined(ways: Sequence[Push]) -> Push:
     return Push(side, arm, ways[0].spacing)
 
 
-def balanced(mapping: FixedPointMap, low: Array, high: Array, start: Array) -> tuple[Array, int]:
+def balanced(
+    mapping: FixedPointMap, low: Array, high: Array, start: Array, round_off: Array | float = 0.0
+) -> tuple[Array, int]:
     """Fixed points x = f(x) of continuous functions, each in a bracket.
 
     With f(low) >= low and f(high) <= high: secant steps within the bracket. Where a step does not
@@ -233,6 +237,7 @@ def balanced(mapping: FixedPointMap, low: Array, high: Array, start: Array) -> t
     mapping : function  f of values (k,) and their positions (k,) in the arrays
     low, high : array (n,)
     start : array (n,)
+    round_off : array (n,)   difference |x - f(x)| that counts as none
 
     Returns
     -------
@@ -245,6 +250,7 @@ def balanced(mapping: FixedPointMap, low: Array, high: Array, start: Array) -> t
         If 100 rounds do not converge.
     """
     x, low, high = np.clip(start, low, high), low.copy(), high.copy()
+    least = np.broadcast_to(round_off, x.shape)
     before, missed = np.full_like(x, np.nan), np.full_like(x, np.inf)
     bounded = np.zeros(x.shape, dtype=bool)
     at = np.flatnonzero(high > 0.0)
@@ -257,7 +263,7 @@ def balanced(mapping: FixedPointMap, low: Array, high: Array, start: Array) -> t
         share = (
             _RESIDUAL_SHARE if rounds < _CLIMB else 10.0 * _RESIDUAL_SHARE
         )  # the guides have round-off as well
-        open_ = np.abs(miss) > share * RESIDUAL * value
+        open_ = np.abs(miss) > np.maximum(share * RESIDUAL * value, least[at])
         low[at] = np.where(miss < 0.0, now, low[at])
         high[at] = np.where(miss > 0.0, now, high[at])
         bounded[at] |= miss > 0.0
@@ -338,6 +344,8 @@ def _residual(
     )
     rubs = np.sign(loads.lift_slope) * (rubs + loads.pivot_friction)
     miss = loads.axial_force - rubs - loads.lock * loads.axial_force - free
+    if system.held:
+        miss = np.where(np.abs(miss) > 10.0 * _HELD_ROUND_OFF, miss, 0.0)
     bounded = loads.share <= JAM_FLOOR
     push = np.where(bounded, 0.0, loads.axial_force * loads.wall)
     return np.divide(np.abs(miss), push, out=np.zeros_like(miss), where=push > 0.0)

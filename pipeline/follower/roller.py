@@ -290,7 +290,7 @@ class Roller(Part):
             every = np.ones(theta.size, dtype=bool)
             return [_Turning(motion, self.radius, every, loads.normal_force)]
         track, first = loads.second.track(pitch), roller_motion(pitch, self.radius, speed, theta)
-        disc, there = track.contour, theta + track.turn
+        disc, there = track.contour.require_roller(), theta + track.turn
         second = roller_motion(disc.pitch, disc.roller_radius, speed, there)
         carried, idle = loads.normal_force, loads.idle_force + 0.0 * loads.normal_force
         return [

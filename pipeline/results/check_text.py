@@ -58,6 +58,7 @@ _CLOSED = {
     "plate": "; not in a groove",
     "groove": "; in a groove only",
     "conjugate": "; of a conjugate pair only",
+    "yoke": "; in a yoke only",
 }
 """Words by what keeps the follower on the cam, see `Declaration.closed_by`."""
 

@@ -151,6 +151,17 @@ def pair_case() -> Case:
 
 
 @cache
+def yoke_case() -> Case:
+    """The case with a flat face, and a second one in place of the spring."""
+    tables = tomllib.loads(CASE_FILE.read_text())
+    del tables["spring"], tables["roller"]
+    yoke = {"clearance": "0.05 mm", "source": "yoke"}
+    tables["cam"] |= {"closure": "yoke", "yoke": yoke}
+    tables["follower"] |= {"kind": "flat", "face": FACE, "stem_length": "300 mm"}
+    return case_of(tables)
+
+
+@cache
 def preloaded_case() -> Case:
     """The same case with two discs, whose rollers are pressed on two arms without friction."""
     tables = tomllib.loads(CASE_FILE.read_text())
@@ -515,6 +526,15 @@ def in_groove() -> Solution:
 def on_two_discs() -> Solution:
     """A preview of the pair of discs likewise."""
     solved = solving.solution(pair_case(), contour(), Tier.PREVIEW, torques={}, positions=POSITIONS)
+    return replace(solved, machines=solved.machines[:1], cycles=solved.cycles[:1])
+
+
+@cache
+def in_yoke() -> Solution:
+    """A preview of the yoke likewise."""
+    whole = yoke_case()
+    shape = whole.contour(contour().pitch.lift)
+    solved = solving.solution(whole, shape, Tier.PREVIEW, torques={}, positions=POSITIONS)
     return replace(solved, machines=solved.machines[:1], cycles=solved.cycles[:1])
 
 

@@ -74,6 +74,13 @@ def weak(**values) -> Solution:
     return made.changed_solution(base, case=made.with_card(base.case, card))
 
 
+def yoked(**values) -> Solution:
+    """The yoke with other values of its table."""
+    base = made.in_yoke()
+    cam = replace(base.case.cam, yoke=replace(base.case.cam.yoke, **values))
+    return made.changed_solution(base, case=made.changed(base.case, cam=cam))
+
+
 def weak_pair(**values) -> Solution:
     base = made.preloaded()
     card = replace(base.case.materials["steel"], **values)
@@ -246,6 +253,15 @@ by_limit(
     pressed(0.0)[0],
     "share of the axial force of two equal springs, less 4 um of 20 um",
     base=made.preloaded,
+)
+tried(
+    "yoke_breadth",
+    lambda share: yoked(clearance=4e-6 / share),
+    None,
+    lambda: yoked(clearance=np.nan),
+    4.0 / 50.0,
+    "an eccentric has one breadth: 4 um of profile tolerance over 50 um",
+    made.in_yoke,
 )
 tried(
     "preload_pressure",

@@ -57,7 +57,9 @@ def test_a_check_has_formula_limit_source_load_cases_and_what_it_rests_on(capsys
 
 def test_a_table_lists_its_keys_and_tables(capsys):
     text = explained(capsys, "cam")
-    assert "  tables      groove, conjugate, keyway, key, fit, end, crown, counter_hole" in text
+    assert (
+        "  tables      groove, conjugate, yoke, keyway, key, fit, end, crown, counter_hole" in text
+    )
     assert "  bore_radius        half of the bore diameter" in text
 
 

@@ -404,7 +404,7 @@ def test_the_case_passes_by_check():
             '[spring]\nrate = "1 kN/m"\npreload = "5 N"\n\n[cam]',
             "cam.groove = a table, must be left out, or",
         ),
-        ('closure = "groove"', 'closure = "yoke"', "cam.closure = yoke, must be"),
+        ('closure = "groove"', 'closure = "magnet"', "cam.closure = magnet, must be"),
         ("depth = \"18 mm\"", "depth = \"17 mm\"", "cam.groove.depth = 17 mm, must be >="),
         ("depth = \"18 mm\"", "depth = \"28 mm\"", "cam.groove.depth = 28 mm, must be < "),
         ('corner_radius = "0.4 mm"', 'corner_radius = "0.6 mm"', "cam.groove.corner_radius = 0.6"),
