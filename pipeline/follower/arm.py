@@ -20,6 +20,8 @@ from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.camshaft_loads import Notch, Surface
 from camwright.pipeline.follower.spring_link import SpringLink
 
+_REACHED = 0.95  # of the greatest radius of the reference point that is left for a swing
+
 
 @dataclass(frozen=True, kw_only=True)
 class FollowerArm(Part):
@@ -142,6 +144,17 @@ class FollowerArm(Part):
         offset: of a flat face, see `Arm.start_angle`; None: a roller or curved face
         """
         return float(self.linkage.start_angle(prime_radius, offset))
+
+    def reach(self, offset: float | None = None) -> tuple[float, float]:
+        """Prime radii, m, between which the arm may swing: apart from the least and the greatest
+        that it reaches by a twentieth of them.
+
+        offset: of a flat face, which the arm holds below the line square to it, as of `start`
+        """
+        distance, length = self.centre_distance, self.length
+        if offset is not None:
+            return 0.0, _REACHED * distance - offset
+        return abs(distance - length) / _REACHED, _REACHED * (distance + length)
 
     def roller_contour(self, lift: Lift, prime_radius: float, roller_radius: float) -> Contour:
         """Cam contour under the roller of the arm.

@@ -200,8 +200,8 @@ def _ripple_over_ceilings(problem: Problem) -> Problem | None:
 
 def _candidates(problem: Problem, conflict: list[str]) -> list[_Candidate]:
     """Single changes that may make a problem feasible: a looser bound of a limit in conflict, a
-    softer spring, a lower preload, a greater prime radius; of the last three those that are not
-    variables already.
+    softer spring, a lower preload, a prime radius as great as an arm reaches; of the last three
+    those that are not variables already.
 
     Parameters
     ----------
@@ -219,15 +219,26 @@ def _candidates(problem: Problem, conflict: list[str]) -> list[_Candidate]:
         for name, bound in bounds_of(problem.ratings).items()
         if name in conflict and bound.relaxed is not None
     ]
-    for name, what, unit, direction in (
-        ("rate", "spring rate", "N/mm", -1),
-        ("preload", "preload", "N", -1),
-        ("prime_radius", "prime radius", "mm", 1),
+    for name, what, unit, direction, most in (
+        ("rate", "spring rate", "N/mm", -1, FACTOR_MAX),
+        ("preload", "preload", "N", -1, FACTOR_MAX),
+        ("prime_radius", "prime radius", "mm", 1, _greatest_growth(problem)),
     ):
         if name not in problem.freed:
             value = in_unit(getattr(problem.variables, name), unit)
-            candidates.append(_Candidate(what, value, unit, _with_variable(name), direction))
+            change = _with_variable(name)
+            candidates.append(_Candidate(what, value, unit, change, direction, most))
     return candidates
+
+
+def _greatest_growth(problem: Problem) -> float:
+    """Greatest factor on the prime radius: of an arm within its reach."""
+    case = problem.ratings.numbers.case
+    arm = None if case is None else case.follower.arm
+    if case is None or arm is None:
+        return FACTOR_MAX
+    _, most = arm.reach(case.facing.offset)
+    return min(FACTOR_MAX, most / problem.variables.prime_radius)
 
 
 def _with_ratings(relaxed: bounds.Change) -> Change:

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from swung_face import face_text
 
 from camwright.geometry.arm_path import ArmPath
 from camwright.geometry.arrays import rotation
@@ -15,14 +16,18 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.added_tables import NOTHING, added_text
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.case_values import replaced
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.template import first_case
 from camwright.pipeline.case.value_sources import values_in
+from camwright.pipeline.checks.check import FACTOR_MAX
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import drawn_angles, lift_columns
 from camwright.pipeline.results.verdict_summary import missing_keys
 from camwright.pipeline.results.workshop_files import dimensions_record, notes_of
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.screening.screened_checks import SCREENED
+from camwright.pipeline.smoothing.infeasibility import _candidates
+from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.reports.drawing.arrangement import (
     DrawnArm,
     DrawnMechanism,
@@ -375,3 +380,20 @@ def test_a_torque_is_balanced_by_an_arm():
     assert ripple.demand > 0.4
     used = [each.utilisation for each in judged if each.lift_can_help and each.utilisation]
     assert max(used) > 0.9
+
+
+@pytest.mark.parametrize("kind", ["roller", "flat"])
+def test_a_relaxed_prime_radius_is_within_the_reach_of_the_arm(kind):
+    """The greatest that a conflict tries leaves the arm a swing; that of a stem is not bounded."""
+    whole = text("cylinder") if kind == "roller" else face_text("flat", "cylinder")
+    case = parse_case(whole.replace('prime_radius = "60 mm"', 'prime_radius = "70 mm"'))
+    arm, offset = case.follower.arm, case.facing.offset
+    factors = []
+    for each in (case, parse_case(text("cylinder", STEM))):
+        problem = problem_of(each, engine_torques(each))
+        factors += [one.factor_max for one in _candidates(problem, []) if one.what[:5] == "prime"]
+    assert factors[1] == FACTOR_MAX
+    greatest = factors[0] * case.cam.prime_radius
+    line = np.pi if offset is None else 0.5 * np.pi
+    assert np.radians(15.0) < line - arm.start(greatest, offset) < np.radians(40.0)
+    assert greatest == pytest.approx(arm.reach(offset)[1])

@@ -27,7 +27,6 @@ from camwright.pipeline.follower.spring import HelicalSpring
 AS_GIVEN = "as given"
 WIDEST_PRIME = 1.5  # upper end of a search over the prime radius of the case
 _WALL_MARGIN = 1.002  # on the least prime radius, for the wall at the contour
-_WITHIN_REACH = 0.95  # of the greatest prime radius that an arm reaches, or the least over it
 _END_MOST = 0.05  # of the roller's width
 _HALVINGS = 40  # of a travel
 _FORK = 2e-3  # m between roller and fork if the case has no pin
@@ -308,8 +307,8 @@ def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None
     low = least_prime_radius(case, radius)
     high = max(WIDEST_PRIME * case.cam.prime_radius, 1.2 * low)
     if (arm := case.follower.arm) is not None:
-        high = min(high, _WITHIN_REACH * (arm.centre_distance + arm.length))
-        low = max(low, abs(arm.centre_distance - arm.length) / _WITHIN_REACH)
+        least, most = arm.reach(case.facing.offset)
+        low, high = max(low, least), min(high, most)
     if "prime_radius" in smoothing.free and smoothing.prime_radius_range is not None:
         least, most = smoothing.prime_radius_range
         low = max(low, least)
