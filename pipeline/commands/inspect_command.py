@@ -27,6 +27,9 @@ def inspect(
         str | None,
         Words("Width of the tolerance zone, um; default: of the inspection sheet.", "WIDTH"),
     ] = None,
+    wall: Annotated[
+        str | None, Words("Measured wall of a groove: inner or outer; default: inner.", "WALL")
+    ] = None,
     keep_phase: Annotated[bool, Words("Keep the measured angle to the keyway in the run.")] = False,
     jobs: JobsOption = None,
     out: Annotated[
@@ -44,6 +47,7 @@ def inspect(
     from camwright.pipeline.base import units
     from camwright.pipeline.results.drawn_cam import drawn_cam
     from camwright.pipeline.results.folder_exchange import amended, settle_recorded
+    from camwright.pipeline.results.workshop_files import measured_wall
     from camwright.pipeline.studies import cam_inspection
     from camwright.reports.comparisons.inspection_pictures import draw
 
@@ -52,13 +56,20 @@ def inspect(
         raise InputError("--tolerance", tolerance, "> 0 um")
     settle_recorded(folder)
     case, contour = drawn_cam(folder)
-    points = cam_inspection.read_measured(measured, contour)
+    surface = measured_wall(case, contour, wall)
+    points = cam_inspection.read_measured(measured, surface or contour)
     band = case.workshop_order.tolerance if width is None else width
     target = folder / cam_inspection.FOLDER if out is None else out
     writing = amended(folder) if out is None else nullcontext(folder)
     with progress_shown() as progress, writing as place:
         part = cam_inspection.inspect_part(
-            case, contour, points, keep_phase=keep_phase, jobs=jobs, progress=progress
+            case,
+            contour,
+            points,
+            wall=surface,
+            keep_phase=keep_phase,
+            jobs=jobs,
+            progress=progress,
         )
         progress.stage("pictures")
         files = place / target.relative_to(folder) if out is None else out

@@ -16,7 +16,7 @@ from camwright.geometry.cad_drawing import GrooveCut, Outline, write_dxf
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import radius_at
 from camwright.geometry.cutter_path import cutter_path
-from camwright.geometry.errors import CamError, ResultError
+from camwright.geometry.errors import CamError, InputError, ResultError
 from camwright.geometry.form_closure import Side, groove_wall
 from camwright.meshes.step_solid import write_step
 from camwright.meshes.step_text import PartTitle, stamped
@@ -105,6 +105,24 @@ def made_walls(case: Case, contour: Contour) -> dict[str, Contour]:
         return {"": contour}
     track, half = contour.require_roller(), groove_of(case.cam, contour).half_width
     return {end: groove_wall(track, side, half) for end, side in _WALLS.items()}
+
+
+def measured_wall(case: Case, contour: Contour, wall: str | None) -> Contour | None:
+    """Wall of a groove by its side, the inner one where None; None of a cam without a groove.
+
+    Raises
+    ------
+    InputError
+        If the cam has no such wall.
+    """
+    walls = made_walls(case, contour)
+    sides = {side: walls[end] for end, side in _WALLS.items()} if len(walls) > 1 else {}
+    if wall is None:
+        return sides.get("inner")
+    chosen = next((each for side, each in sides.items() if side == wall), None)
+    if chosen is None:
+        raise InputError("--wall", wall, " or ".join(sides) or "left out: the cam has no groove")
+    return chosen
 
 
 def groove_record(case: Case, contour: Contour) -> dict[str, Json] | None:

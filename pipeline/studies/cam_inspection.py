@@ -87,6 +87,7 @@ def inspect_part(
     contour: Contour,
     measured: Array,
     *,
+    wall: Contour | None = None,
     keep_phase: bool = False,
     jobs: int | None = None,
     progress: Progress = SILENT,
@@ -98,6 +99,8 @@ def inspect_part(
     case : Case               of the cam
     contour : Contour         nominal
     measured : array (2, n)   surface points, m
+    wall : Contour            measured wall of a groove, the other one is parallel to it; None: the
+                              contour was measured
     keep_phase : bool         measured angles are relative to the keyway
     jobs : int                processes of the certificate; None: number of cores, at most 4
     progress : Progress       told each stage
@@ -108,8 +111,11 @@ def inspect_part(
         If the measured points are not of this cam.
     """
     progress.stage("fit")
-    fit = inspected(contour, measured)
-    real = real_contour(contour, fit, keep_phase=keep_phase)
+    surface = contour if wall is None else wall
+    fit = inspected(surface, measured)
+    real = real_contour(surface, fit, keep_phase=keep_phase)
+    if wall is not None:
+        real = replace(contour, pitch=real.pitch)
     trial = solve(case, real, jobs=jobs, progress=progress)
     return RealPart(fit, real, replace(trial, why="measured contour"))
 

@@ -9,14 +9,16 @@ import ezdxf
 import numpy as np
 import pytest
 
-from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.arrays import rotation, uniform_turn
+from camwright.geometry.errors import InputError
 from camwright.geometry.form_closure import groove_wall
+from camwright.geometry.measured_contour import inspected, real_contour
 from camwright.meshes.gmsh_mesher import session
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import undrilled
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.results.workshop_files import write_workshop
+from camwright.pipeline.results.workshop_files import measured_wall, write_workshop
 from camwright.pipeline.run import run_case
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of
 from camwright.reports.report_data import read_material
@@ -103,6 +105,30 @@ def test_dimensions_of_the_groove(workshop):
     at_zero = 1e3 * float(contour.pitch.radius_base)
     assert record["radii_mm"]["0"] == pytest.approx(at_zero - 23.51, abs=1e-3)
     assert groove["outer_radii_mm"]["0"] == pytest.approx(at_zero + 23.51, abs=1e-3)
+
+
+@pytest.mark.parametrize("side", ["inner", "outer"])
+def test_a_measured_wall_is_fitted_to_its_own_nominal(side):
+    """A wave of 3 um, its size and its phase; the roller on it runs on the wave of its lift."""
+    case, contour = feeder()
+    wall, theta = measured_wall(case, contour, side), uniform_turn(720)
+    wave = 5e-6 + 3e-6 * np.cos(4.0 * theta)
+    points = rotation(0.01) @ (wall.points(theta) + wave * wall.normal(theta))
+    fit = inspected(wall, points)
+    # two equal strokes a turn: the phase is that of half a turn
+    assert (fit.phase % np.pi, fit.size) == pytest.approx((0.01, 5e-6), abs=1e-6)
+    assert fit.wave(4) == pytest.approx(3e-6, rel=0.2)
+    real = real_contour(wall, fit)
+    outwards = 1.0 if side == "inner" else -1.0
+    height = real.pitch.height(theta) - contour.pitch.height(theta)
+    along = outwards * fit.form(theta) / np.cos(contour.pitch.pressure_angle(theta))
+    assert height == pytest.approx(along, abs=5e-8)
+
+
+def test_only_a_groove_has_walls_to_measure():
+    case, contour = feeder()
+    with pytest.raises(InputError, match="--wall = floor, must be inner or outer"):
+        measured_wall(case, contour, "floor")
 
 
 @pytest.fixture(scope="module")
