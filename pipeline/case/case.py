@@ -376,14 +376,16 @@ class Case(Displayed, Section):
             raise InputError("cam.closure", self.cam.closure, f'"spring" for {use}')
 
     def require_one_disc(self, use: str) -> None:
-        """Refuse a conjugate pair for a use, in words, that is made for one disc.
+        """Refuse a conjugate pair and a yoke for a use, in words, that is made for one contact.
 
         Raises
         ------
         InputError
         """
         if self.cam.second is not None:
-            raise InputError("cam.closure", self.cam.closure, f'"spring" or "groove" for {use}')
+            raise InputError(
+                "cam.closure", self.cam.closure, f'"spring", "gravity" or "groove" for {use}'
+            )
 
     @property
     def base_circle(self) -> float:
