@@ -52,6 +52,7 @@ _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
 _MOMENT_LIMIT_ROUND_OFF = 1e-9  # of the moment at which the contact tips over
 _CONTACTS_AT_ONCE = 1000
 """Contacts evaluated together; the interpolation of more takes a sparse matrix."""
+_NEXT_TO_NONE = 1.0  # N: a line of some millimetres of steel has 10 MPa
 _LIGHTEST_SHARE = 1e-3  # of the greatest force: a thirtieth of its pressure
 
 CORNER_ERROR, BOUNDED_ERROR = 0.05, 0.02
@@ -198,9 +199,12 @@ class TurnOfLine(NamedTuple):
 
     @property
     def rows(self) -> NDArray[np.intp]:
-        """Angles with contact."""
+        """Angles with contact; of a cam that pulls without those of a force that is next to none,
+        which it has at every crossover and at a slow speed all over the turn.
+        """
         radius = self.contact.relative_radius
-        return np.flatnonzero(np.isfinite(radius) & (radius > 0) & (self.force > NO_FORCE))
+        least = _NEXT_TO_NONE if self.machine.cam.pulls else NO_FORCE
+        return np.flatnonzero(np.isfinite(radius) & (radius > 0) & (self.force > least))
 
     @property
     def tilt(self) -> LineTilt:
