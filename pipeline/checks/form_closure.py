@@ -531,13 +531,15 @@ def landing_pressure(solution: Solution) -> Demand | None:
 @check(
     CROSSOVER_SLIP,
     title="Maximum slip of the roller at a crossover",
-    method="the roller keeps its spin in flight and lands where it is to turn the other way",
+    method="the roller keeps its spin in flight: in a groove it lands where it is to turn the other"
+    " way, on a disc of two with the spin at which it left this disc",
     lift_can_help=True,
     needs="roller",
     closed_by="form",
     if_limited=True,
-    formula="2 w v <= limits.crossover_slip; w: cam speed, v: speed along the pitch curve by the"
-    " cam angle, at the landing on the other wall",
+    formula="2 w v <= limits.crossover_slip; w: cam speed, v: at the landing, in a groove the speed"
+    " along the pitch curve by the cam angle, on a disc of two half of the roller radius times the"
+    " change of the spin over the cam speed since the roller left this disc",
     symbols={"w": f"{STATED} [rad/s]", "v": f"{STATED} [mm]"},
     reason="It wears and heats roller and walls at the same places in each turn.",
     values=(*given.LOADS, *_CLEARANCES),
