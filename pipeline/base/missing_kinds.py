@@ -92,7 +92,8 @@ MISSING_KINDS = (
     ),
     MissingKind(
         "a desmodromic (positively driven) cam", "cam",
-        ("desmodromic", "desmo", "positive_motion", "positive_drive", "positive"), _PLATE,
+        ("desmodromic", "desmo", "positive_motion", "positive_drive", "positive"),
+        'cam.closure = "groove", "conjugate" or "yoke"',
         keys=("desmodromic", "desmo"),
     ),
     MissingKind(

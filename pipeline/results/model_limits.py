@@ -114,6 +114,12 @@ MODEL_LIMITS = (
         " by an arm."
     ),
     ModelLimit(
+        "A cam that holds its follower on both sides carries it by one side at a time, unless two"
+        " arms are preloaded. Lift and contours are those without clearance, which no tolerance"
+        " corner changes; a landing has neither rebound nor heat, and the preload no torque. The"
+        " wear of clearance is that of one side, and both rollers load the life of one bearing."
+    ),
+    ModelLimit(
         "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference"
         " between Hertz theory and finite elements."
     ),
