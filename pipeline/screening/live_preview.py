@@ -522,6 +522,7 @@ def _fitted(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | No
     lift : array (N,)          of the run, m
     checks : sequence of str   ids of the checks to be followed
     """
+    case.require_force_closure("a live preview")
     near = _in_range(case, lift)
     if not near.factors:
         return None

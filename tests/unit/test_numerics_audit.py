@@ -318,7 +318,8 @@ def test_a_contour_other_than_that_of_the_loads_fails_the_torque_balance():
     lift = plain.contour.pitch.lift
     for values in (lift(lift.theta + np.radians(0.1)), 1.01 * lift.values):
         path = replace(plain.contour.pitch, lift=Lift(lift.theta, values))
-        other = replace(plain.cycles[0], contour=replace(plain.contour, pitch=path))
+        cam, cycle = replace(plain.contour, pitch=path), plain.cycles[0]
+        other = replace(cycle, contour=cam, pair=replace(cycle.pair, contour=cam))
         assert contact_torque(replace(plain, cycles=(other,))).status == "fail"
 
 

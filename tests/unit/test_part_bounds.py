@@ -21,7 +21,7 @@ from camwright.pipeline.case.lift_section import CamLiftPoint
 from camwright.pipeline.case.section import section_of
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.contact.axial_shape import AxialCrown
-from camwright.pipeline.contact.cam_body import BalanceHole, CamGroove
+from camwright.pipeline.contact.cam_body import BalanceHole, CamConjugate, CamGroove, CamYoke
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.engine.cylinder import CylinderEngine, ExhaustLiftPoint
 from camwright.pipeline.engine.engine_torque import TorqueTable
@@ -37,7 +37,12 @@ from camwright.pipeline.follower.flat_face import FollowerFace
 from camwright.pipeline.follower.pivot import NeedleBearing, Pivot
 from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.follower.spring_kinds import GasSpring, PivotSpring, TorsionSpring
+from camwright.pipeline.follower.spring_kinds import (
+    ExtensionSpring,
+    GasSpring,
+    PivotSpring,
+    TorsionSpring,
+)
 from camwright.pipeline.follower.spring_link import (
     RockerSpring,
     SpringBehindRocker,
@@ -109,6 +114,16 @@ def every_part() -> dict[type[Part], Part]:
         Pivot(needle_bearing=needles),
         BalanceHole(),
         CamGroove(clearance=2e-5, depth=0.012, outer_radius=0.09),
+        CamConjugate(roller_radius=0.015, distance=0.12, clearance=2e-5, spacing=0.02),
+        CamYoke(clearance=5e-5),
+        ExtensionSpring(
+            force=300.0,
+            initial_tension=60.0,
+            wire_diameter=4e-3,
+            mean_diameter=28e-3,
+            coils=20.0,
+            shear_modulus=79.5e9,
+        ),
         Counterweight(unbalance=1e-4, angle=0.0, position=0.0),
         ShaftSection(
             name="groove", position=0.0, diameter=0.016, notch_bending=2.0, notch_torsion=1.5

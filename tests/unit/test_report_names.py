@@ -99,19 +99,29 @@ def swings() -> Trial:
 
 
 @pytest.fixture(scope="module")
+def grooved() -> Trial:
+    case = read_case(CASES / "motions" / "feeder-groove.toml")
+    return previewed(case, case.contour(cam_lift(case, {})))
+
+
+@pytest.fixture(scope="module")
 def speed(rolls: Trial) -> tuple[dict[str, Any], Any]:
     return run_records.crank_speed_record(rolls, None)
 
 
 @pytest.fixture(scope="module")
 def columns(
-    rolls: Trial, slides: Trial, swings: Trial, speed: tuple[dict[str, Any], Any]
+    rolls: Trial,
+    slides: Trial,
+    swings: Trial,
+    grooved: Trial,
+    speed: tuple[dict[str, Any], Any],
 ) -> set[str]:
     """Headers of all columns of a run, with the error bar of a measured torque."""
     torque = engine_torques(rolls.case)["idle"]
     barred = replace(torque, error_bar=torque.total)
     tables = [*run_records.torque_columns(barred), *speed[1]]
-    for trial in (rolls, slides, swings):
+    for trial in (rolls, slides, swings, grooved):
         tables += [c for columns in run_records.column_table(trial).values() for c in columns]
     return {column.header for column in tables}
 

@@ -29,8 +29,6 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.workshop_files import notes_of
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.screening.screened_checks import SCREENED
-from camwright.pipeline.search.sizes.open_case import ROLLER, parse_open_case
-from camwright.pipeline.search.sizes.shapes import shapes_of
 from camwright.reports.drawing.arrangement import (
     DrawnArm,
     DrawnMechanism,
@@ -424,11 +422,3 @@ def test_every_measure_is_differentiated_by_a_complex_step(kind):
         tried.add(one.id)
     assert {"undercut", "contact_pressure", "face_width", "face_pv", "self_locking",
             "contact_force_margin"} <= tried  # fmt: skip
-
-
-def test_sizes_are_refused_by_the_face_of_the_arm():
-    """And not by the roller that it does not have."""
-    opened = parse_open_case(face_text("flat"))
-    assert ROLLER not in opened.gaps
-    with pytest.raises(InputError, match=r"follower\.face = a table, must be left out"):
-        shapes_of(opened, 0.0)
