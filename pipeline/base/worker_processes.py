@@ -15,7 +15,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from importlib import import_module
@@ -165,7 +165,8 @@ def _stop_sending(workers_pool: ProcessPoolExecutor) -> None:
     """
     queue = getattr(workers_pool, "_call_queue", None)
     if queue is not None and sys.version_info < (3, 11, 5):
-        queue._reader.close()
+        with suppress(OSError):  # the thread that writes has closed it meanwhile
+            queue._reader.close()
 
 
 class PendingCall(Protocol):
