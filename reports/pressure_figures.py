@@ -80,16 +80,7 @@ def read_guides(path: Path, load_case: str) -> tuple[BushPressure, BushPressure]
     ResultError
         If the file cannot be read or lacks the load case.
     """
-    entry = read_npz(path)
-    try:
-        cases, angle = entry["load_case"], entry["cam_angle_deg"]
-        guides = {side: {n: entry[f"guide_{side}_{n}"] for n in _FIELDS} for side in "AB"}
-    except KeyError as error:
-        raise ResultError(f"{path}: {error}") from None
-    rows = cases == load_case
-    if not rows.any():
-        raise ResultError(f"{path}: load case {load_case} is missing")
-    a, b = (_bush(f"guide {side}", one, rows, angle, cases) for side, one in guides.items())
+    a, b = _read(path, load_case, {"guide A": "guide_A_", "guide B": "guide_B_"})
     return a, b
 
 
@@ -106,17 +97,31 @@ def read_pivot(path: Path, load_case: str) -> BushPressure:
     ResultError
         If the file cannot be read or lacks the load case.
     """
+    (bush,) = _read(path, load_case, {"pivot bush": ""})
+    return bush
+
+
+def _read(path: Path, load_case: str, prefixes: Mapping[str, str]) -> list[BushPressure]:
+    """Pressure in bushes by their names; see `read_guides`.
+
+    Parameters
+    ----------
+    prefixes : mapping   name -> what the names of its fields in the file begin with
+    """
     entry = read_npz(path)
+    if "position_mm" in entry:  # of a pivot: one place for line load and slices
+        entry = {"slice_position_mm": entry["position_mm"], **entry}
     try:
         cases, angle = entry["load_case"], entry["cam_angle_deg"]
-        entry = {"slice_position_mm": entry["position_mm"], **entry}
-        one = {name: entry[name] for name in _FIELDS}
+        bushes = {
+            name: {n: entry[prefix + n] for n in _FIELDS} for name, prefix in prefixes.items()
+        }
     except KeyError as error:
         raise ResultError(f"{path}: {error}") from None
     rows = cases == load_case
     if not rows.any():
         raise ResultError(f"{path}: load case {load_case} is missing")
-    return _bush("pivot bush", one, rows, angle, cases)
+    return [_bush(name, fields, rows, angle, cases) for name, fields in bushes.items()]
 
 
 def _bush(

@@ -6,7 +6,7 @@ leakage, self-heating; of a torsion spring: bending stress.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -65,6 +65,7 @@ from camwright.pipeline.follower.spring_kinds import (
     CHARGED_AT,
     ExtensionSpring,
     GasSpring,
+    SpringPart,
     TorsionWire,
 )
 from camwright.pipeline.follower.wound_wire import ZIMMERLI, SpringWork
@@ -892,6 +893,36 @@ def _of_torsion(demand: Demand, solution: Solution) -> Demand:
 _WOUND = ("torsion", "torsion_pivot")
 
 
+def _shaped_check(
+    name: str, measure: Measure, allowed: Callable[[Numbers], Allowed],
+    remark: Callable[[Demand, Solution], Demand], *, part: SpringPart, title: str, source: Source,
+    method: str, formula: str, reason: str, tables: Sequence[str],
+) -> Declaration:  # fmt: skip
+    """Check of a stress, at maximum lift, of a spring that is no compression spring; tables: those
+    of a case with its `wire_diameter`, the first lever.
+    """
+    return check(
+        id=name,
+        title=title,
+        unit="MPa",
+        source=source,
+        method=method,
+        lift_can_help=True,
+        tier=Tier.SCREENING,
+        moved_by_tolerance=False,
+        part=part,
+        formula=formula,
+        reason=reason,
+        load_cases=NONE,
+        values=given.SPRING,
+        levers=(
+            *(levers.one(f"{table}.wire_diameter", most=2.0) for table in tables),
+            *levers.GENTLER,
+        ),
+        page="Spring",
+    ).measured("top", allowed=allowed, remark=remark, deviation=1e-4, kept=Kept())(measure)
+
+
 def _torsion_check(
     name: str, measure: Measure, key: str, share: float, *, title: str, source: Source, method: str,
     formula: str, reason: str,
@@ -908,26 +939,11 @@ def _torsion_check(
         missing = tuple(each for each in needed if numbers.get(each) is None)
         return Allowed(None if value is None else share * value, missing)
 
-    return check(
-        id=name,
-        title=title,
-        unit="MPa",
-        source=source,
-        method=method,
-        lift_can_help=True,
-        tier=Tier.SCREENING,
-        moved_by_tolerance=False,
-        part="torsion_spring",
-        formula=formula,
-        reason=reason,
-        load_cases=NONE,
-        values=given.SPRING,
-        levers=(
-            *(levers.one(f"spring.{each}.wire_diameter", most=2.0) for each in _WOUND),
-            *levers.GENTLER,
-        ),
-        page="Spring",
-    ).measured("top", allowed=allowed, remark=_of_torsion, deviation=1e-4, kept=Kept())(measure)
+    return _shaped_check(
+        name, measure, allowed, _of_torsion, part="torsion_spring", title=title, source=source,
+        method=method, formula=formula, reason=reason,
+        tables=[f"spring.{each}" for each in _WOUND],
+    )  # fmt: skip
 
 
 torsion_stress = _torsion_check(
@@ -998,23 +1014,11 @@ def _extension_check(
         missing = tuple(each for each in keys if numbers.get(each) is None)
         return Allowed(None if strength is None else share * strength, missing)
 
-    return check(
-        id=name,
-        title=title,
-        unit="MPa",
-        source=source,
-        method="at maximum lift, preload and rate high; without surge",
-        lift_can_help=True,
-        tier=Tier.SCREENING,
-        moved_by_tolerance=False,
-        part="extension_spring",
-        formula=formula,
-        reason=_LOOSE,
-        load_cases=NONE,
-        values=given.SPRING,
-        levers=(levers.one(f"{_HOOKED}.wire_diameter", most=2.0), *levers.GENTLER),
-        page="Spring",
-    ).measured("top", allowed=allowed, remark=_of_extension, deviation=1e-4, kept=Kept())(measure)
+    return _shaped_check(
+        name, measure, allowed, _of_extension, part="extension_spring", title=title, source=source,
+        method="at maximum lift, preload and rate high; without surge", formula=formula,
+        reason=_LOOSE, tables=[_HOOKED],
+    )  # fmt: skip
 
 
 extension_stress = _extension_check(

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from held_cams import assert_as_closed_by_a_strong_spring
 from scipy.integrate import solve_ivp
 
 from camwright.geometry.arrays import uniform_turn
@@ -22,7 +23,6 @@ from camwright.pipeline.cycle.crank_speed import mechanism_torque
 from camwright.pipeline.cycle.crossover_history import impacts
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
-from camwright.pipeline.follower.friction_coupling import guided_loads
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.run import run_case
 from camwright.pipeline.screening.design_screening import screen_designs
@@ -67,18 +67,7 @@ def running(name):
 
 # --- forces -----------------------------------------------------------------------------------
 def test_a_strong_spring_makes_the_pair_a_spring_closed_cam():
-    """Forces, guides and torque to 1e-9: the first disc alone carries."""
-    cycle, machine, _ = running("stem")
-    sprung = replace(machine.spring, preload=900.0, rate=20e3)
-    closed = replace(machine.system, spring=sprung, held=False, second=None)
-    args = (machine.stem, machine.guides, machine.cam_speed, uniform_turn(90))
-    path = cycle.contour.pitch
-    plate = guided_loads(path, closed, *args)
-    pair = guided_loads(path, replace(closed, held=True, second=machine.cam.second), *args)
-    assert not plate.loads.separated.any()
-    for name in ("axial_force", "normal_force", "cam_torque", "friction_force_a", "reaction_a"):
-        plain, held = (getattr(each.loads, name) for each in (plate, pair))
-        assert held == pytest.approx(plain, rel=1e-9, abs=1e-9), name
+    assert_as_closed_by_a_strong_spring(*running("stem")[:2])
 
 
 def test_a_strong_spring_makes_the_arm_spring_closed():

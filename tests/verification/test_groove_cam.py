@@ -11,6 +11,7 @@ from types import MappingProxyType
 
 import numpy as np
 import pytest
+from held_cams import assert_as_closed_by_a_strong_spring
 from scipy.integrate import quad, solve_ivp
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
@@ -28,7 +29,6 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.crossover_history import impacts
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
-from camwright.pipeline.follower.friction_coupling import guided_loads
 from camwright.pipeline.hand_check.hand_sheet import SheetRun
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.run import run_case
@@ -53,18 +53,7 @@ def demand(name):
 
 # --- forces -----------------------------------------------------------------------------------
 def test_a_strong_spring_makes_the_groove_a_spring_closed_cam():
-    """Forces, guides and torque to 1e-9: bit for bit but for the flag of the closure."""
-    cycle, machine = running()
-    sprung = replace(machine.spring, preload=900.0, rate=20e3)
-    closed = replace(machine.system, spring=sprung, held=False)
-    args = (machine.stem, machine.guides, machine.cam_speed, uniform_turn(90))
-    path = cycle.contour.pitch
-    plate = guided_loads(path, closed, *args)
-    groove = guided_loads(path, replace(closed, held=True), *args)
-    assert not plate.loads.separated.any()
-    for name in ("axial_force", "normal_force", "cam_torque", "friction_force_a", "reaction_a"):
-        plain, held = (getattr(each.loads, name) for each in (plate, groove))
-        assert held == pytest.approx(plain, rel=1e-9, abs=1e-9), name
+    assert_as_closed_by_a_strong_spring(*running())
 
 
 @pytest.mark.parametrize("speed", [10.0, 40.0])

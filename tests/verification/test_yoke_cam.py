@@ -3,12 +3,12 @@
 The case is tests/data/yoke_pump.toml: a cam of constant breadth, three strokes a turn.
 """
 
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from held_cams import assert_as_closed_by_a_strong_spring
 from scipy.integrate import solve_ivp
 
 from camwright.geometry.arrays import uniform_turn
@@ -19,7 +19,6 @@ from camwright.geometry.second_track import OppositeFace
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
-from camwright.pipeline.follower.friction_coupling import guided_loads
 from camwright.pipeline.preview import preview_case
 
 FILE = Path(__file__).parents[1] / "data" / "yoke_pump.toml"
@@ -98,18 +97,7 @@ def test_forces_by_the_equilibrium_of_the_stem(shifted, speed):
 
 
 def test_a_strong_spring_makes_the_yoke_a_spring_closed_cam():
-    """Forces, guides and torque to 1e-9: the first face alone carries."""
-    cycle, machine = running()
-    sprung = replace(machine.spring, preload=900.0, rate=20e3)
-    closed = replace(machine.system, spring=sprung, held=False, second=None)
-    args = (machine.stem, machine.guides, machine.cam_speed, uniform_turn(90))
-    path = cycle.contour.pitch
-    plate = guided_loads(path, closed, *args)
-    yoke = guided_loads(path, replace(closed, held=True, second=machine.cam.second), *args)
-    assert not plate.loads.separated.any()
-    for name in ("axial_force", "normal_force", "cam_torque", "friction_force_a", "reaction_a"):
-        plain, held = (getattr(each.loads, name) for each in (plate, yoke))
-        assert held == pytest.approx(plain, rel=1e-9, abs=1e-9), name
+    assert_as_closed_by_a_strong_spring(*running())
 
 
 @pytest.mark.parametrize("shifted", [False, True])
