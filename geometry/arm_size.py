@@ -268,7 +268,8 @@ class ArmFaceCam(PlaneCam):
         level = float(np.arcsin(np.clip(self.plane / offset, -1.0, 1.0)))
         ends = level + max(-low, 0.0) + _SWING_MARGIN, 0.5 * np.pi - high - _SWING_MARGIN
         arm = self._arm(offset)
-        return tuple(float(arm.face_radius(each, self.plane)) for each in ends)  # type: ignore[return-value]
+        least, greatest = (float(arm.face_radius(each, self.plane)) for each in ends)
+        return least, greatest
 
     def least_base_radius(
         self,

@@ -64,18 +64,18 @@ class BushByElements:
     def pressed(self, force: float, couple: float) -> PressedPin:
         """Pin under a force, N, in the middle of the bush and a couple, N m, by an active set."""
         cosine, place = np.cos(self.nodes[:, 0]), self.nodes[:, 1]
-        moved = np.stack([cosine, place * cosine], axis=1)
+        rigid_motion = np.stack([cosine, place * cosine], axis=1)
         active = cosine > 0.97
         for _ in range(200):
             on = np.flatnonzero(active)
             matrix = np.zeros((on.size + 2, on.size + 2))
             matrix[:-2, :-2] = self.compliance[np.ix_(on, on)]
-            matrix[:-2, -2:], matrix[-2:, :-2] = -moved[on], moved[on].T
+            matrix[:-2, -2:], matrix[-2:, :-2] = -rigid_motion[on], rigid_motion[on].T
             load = np.r_[np.full(on.size, -self.gap), 0.5 * force, 0.5 * couple]
             *pushed, shift, tilt = np.linalg.solve(matrix, load)
             forces = np.zeros(active.size)
             forces[on] = pushed
-            gap = self.gap - moved @ [shift, tilt] + self.compliance @ forces
+            gap = self.gap - rigid_motion @ [shift, tilt] + self.compliance @ forces
             kept = np.where(active, forces >= 0.0, gap < -1e-12 * self.gap)
             if (kept == active).all():
                 size = (self.angle.size, self.place.size)

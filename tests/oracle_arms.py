@@ -221,8 +221,8 @@ class OracleArm:
         pulled, spring = self._spring(cam, cam.psi, rate, preload)
         angle = ca.SX.sym("angle")
         there = self._point(self.mass_distance, angle + self.mass_angle)
-        moved = ca.substitute(_along(there, angle, cam.rates)[1], angle, cam.psi)
-        total = pulled - self.mass * speed**2 * moved
+        acceleration = ca.substitute(_along(there, angle, cam.rates)[1], angle, cam.psi)
+        total = pulled - self.mass * speed**2 * acceleration
         inertia = mass * speed**2 * cam.lift_d2
         unrubbed = spring + inertia + scenario.viscous_damping * speed * cam.slope
         moment, circle = self.length * unrubbed, self.mu * p.friction_factor * self.pin

@@ -397,8 +397,8 @@ def test_a_roller_lands_with_the_spin_that_it_left_with():
         # the disc was left at the flight before this one
         for theta in (one.flight.landing, before.take_off):
             step = 1e-5
-            moved = pitch.points(theta + turn + step) - pitch.points(theta + turn - step)
-            paces.append(np.hypot(*moved) / (2.0 * step) / radius)
+            chord = pitch.points(theta + turn + step) - pitch.points(theta + turn - step)
+            paces.append(np.hypot(*chord) / (2.0 * step) / radius)
         slip = machine.cam_speed * radius * abs(paces[0] - paces[1])
         assert one.slip == pytest.approx(slip, rel=1e-5, abs=1e-9)
 

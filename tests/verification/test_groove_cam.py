@@ -94,16 +94,16 @@ def test_without_clearance_and_compliance_the_wall_is_the_sign_of_the_force():
     """A clearance of a nanometre: the walls are changed where the rigid force changes its sign."""
     cycle, machine = running()
     narrow = replace(machine.cam.groove, clearance=1e-9)
-    found = impacts(replace(machine, cam=replace(machine.cam, groove=narrow)), cycle.contour)
+    landings = impacts(replace(machine, cam=replace(machine.cam, groove=narrow)), cycle.contour)
     theta = uniform_turn(14400)
     force = follower_loads(cycle.contour.pitch, machine.system, machine.cam_speed, theta)
     wall = np.sign(force.axial_force)
-    for one in found:
+    for one in landings:
         flight = one.flight
         assert flight.landing == pytest.approx(flight.take_off, abs=np.radians(0.5))
         beyond = np.interp(flight.landing + np.radians(0.5), theta, wall, period=FULL_TURN)
         assert beyond == flight.wall
-    assert len(found) == 4
+    assert len(landings) == 4
 
 
 # --- contact ----------------------------------------------------------------------------------
@@ -200,14 +200,14 @@ def soft_roller():
 
 def test_a_soft_roller_conforms_and_the_check_says_so():
     """The note has conforming pressure, error bar and Hertz; landings by the same contact."""
-    found = preview_case(soft_roller(), corners=False)
-    note = next(each for each in found.checks if each.id == "contact_pressure").note
+    soft = preview_case(soft_roller(), corners=False)
+    note = next(each for each in soft.checks if each.id == "contact_pressure").note
     assert re.search(
         r"where the cam is concave up to [\d.]+ MPa \+- [\d.]+ %, conforming contact over"
         r" [\d.]+ deg at [\d.]+ deg in over-speed; Hertz [\d.]+ MPa", note
     )  # fmt: skip
-    cycle = max(found.cycles, key=lambda each: each.cam_speed)
-    headers = [[column.header for column in each.columns()] for each in found.cycles]
+    cycle = max(soft.cycles, key=lambda each: each.cam_speed)
+    headers = [[column.header for column in each.columns()] for each in soft.cycles]
     assert "p0_conforming_MPa" in headers[0] and headers == [headers[0]] * len(headers)
     bodies, roller = (cycle.pair.follower.material, cycle.pair.cam), cycle.machine.roller.radius
     solved = 0
