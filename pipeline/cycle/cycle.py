@@ -349,11 +349,18 @@ class Cycle(Tabled):
 
     @property
     def _wall_column(self) -> dict[Column, Cells]:
-        """Wall of a groove that carries at each angle; nothing of a cam that only pushes."""
-        if not self.loads.held:
+        """Track that carries at each angle, and of preloaded discs the force on the other one;
+        nothing of a cam that only pushes.
+        """
+        loads, machine = self.loads, self.machine
+        if not loads.held:
             return {}
-        words = "Wall of the groove that carries: 1 the inner, -1 the outer"
-        return {Column("wall", "", words): self.loads.wall}
+        words = "Track that carries: 1 the inner wall or first track, -1 the outer or second"
+        columns: dict[Column, Cells] = {Column("wall", "", words): loads.wall}
+        if machine.disc_preload is not None:
+            words = "Normal force on the preloaded disc that bears less"
+            columns[Column("idle_force", "N", words)] = loads.idle_force
+        return columns
 
     @property
     def _conforming_columns(self) -> dict[Column, Cells]:

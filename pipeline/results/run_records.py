@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -140,29 +141,44 @@ def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
     """Columns of ``3_contour.csv`` over the cam angle: pitch curve, contour, its outward normal,
     pressure angle, radii of curvature.
     """
-    theta = drawn_angles(case)
-    pitch, normal = contour.pitch.points(theta), contour.normal(theta)
-    surface = contour.points(theta)
-    columns = {
-        CAM_ANGLE: theta,
-        Column("pitch_x", "mm", "Pitch curve in the cam frame"): pitch[0],
-        Column("pitch_y", "mm", "Pitch curve in the cam frame"): pitch[1],
-        Column("contour_x", "mm", "Contour in the cam frame"): surface[0],
-        Column("contour_y", "mm", "Contour in the cam frame"): surface[1],
-        Column("normal_x", "", "Outward normal of the contour"): normal[0],
-        Column("normal_y", "", "Outward normal of the contour"): normal[1],
-        PRESSURE_ANGLE: contour.pitch.pressure_angle(theta),
-        PITCH_RADIUS: contour.pitch.radius_of_curvature(theta),
-        CONTOUR_RADIUS: contour.radius_of_curvature(theta),
-    }
+    theta, second = drawn_angles(case), case.cam.second
+    columns = {CAM_ANGLE: theta, **_track_columns(contour, theta, "", "contour")}
+    if second is not None:
+        track = second.track(contour.pitch)
+        name = "contour of the second disc" if second.own_disc else "contour at the second face"
+        columns |= _track_columns(track.contour, theta + track.turn, "second_", name)
     if case.cam.groove is not None:  # the contour is its inner wall
-        track = contour.require_roller()
-        outer = groove_wall(track, "outer", track.roller_radius).points(theta)
+        inner = contour.require_roller()
+        outer = groove_wall(inner, "outer", inner.roller_radius).points(theta)
         columns |= {
             Column(f"outer_{axis}", "mm", "Outer wall of the groove in the cam frame"): values
             for axis, values in zip("xy", outer, strict=True)
         }
     return columns
+
+
+def _track_columns(contour: Contour, theta: Array, prefix: str, name: str) -> dict[Column, Array]:
+    """Columns of one track at its own cam angles (n,), rad; `name`: of its surface in words."""
+    lengths = {"pitch": contour.pitch.points(theta), "contour": contour.points(theta)}
+    where = " of the second track" if prefix else ""
+    words = {"pitch": f"Pitch curve{where}", "contour": name.capitalize()}
+    columns = {
+        Column(f"{prefix}{curve}_{axis}", "mm", f"{words[curve]} in the cam frame"): values
+        for curve, points in lengths.items()
+        for axis, values in zip("xy", points, strict=True)
+    }
+    columns |= {
+        Column(f"{prefix}normal_{axis}", "", f"Outward normal of the {name}"): values
+        for axis, values in zip("xy", contour.normal(theta), strict=True)
+    }
+    return columns | {
+        replace(each, name=f"{prefix}{each.name}", meaning=f"{each.meaning}{where}"): values
+        for each, values in (
+            (PRESSURE_ANGLE, contour.pitch.pressure_angle(theta)),
+            (PITCH_RADIUS, contour.pitch.radius_of_curvature(theta)),
+            (CONTOUR_RADIUS, contour.radius_of_curvature(theta)),
+        )
+    }
 
 
 def cycle_columns(cycles: tuple[Cycle, ...]) -> dict[Column, Cells]:

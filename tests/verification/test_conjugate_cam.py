@@ -446,13 +446,13 @@ def test_the_cases_pass_by_check(file):
 
 
 def test_what_is_not_done_is_refused(tmp_path):
-    """Finite elements, run folders and screening, in one line each."""
+    """Finite elements and screening, in one line each."""
     case = read_case(STEM)
     refusal = r'cam\.closure = conjugate, must be "spring", "gravity" or "groove" for '
     with pytest.raises(InputError, match=refusal + "the contact by finite elements"):
         solve(case, trial("stem").contour, tier=Tier.CYCLE, torques={}, corners=False)
-    with pytest.raises(InputError, match=refusal + "a run folder"):
-        run_case(case, tmp_path / "run", depth=Tier.PREVIEW)
+    with pytest.raises(InputError, match=refusal + "the contact by finite elements"):
+        run_case(case, tmp_path / "run", depth=Tier.CYCLE)
     with pytest.raises(InputError, match='must be "spring" for a screening'):
         screen_designs(case, {"cam.prime_radius": np.array([0.06, 0.07])})
 
