@@ -1,4 +1,4 @@
-"""Checks of an arm's assembly: arm and hub beside cam, camshaft, gear, bearings."""
+"""Checks of an arm's assembly: arm, hub and spring beside cam, camshaft, gear, bearings."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ from camwright.pipeline.cycle.arm_bodies import (
     ARM_WIDTH,
     FORK,
     HUB,
+    SPRING,
     SwungBody,
     swung_bodies,
     with_swing,
@@ -38,7 +39,7 @@ from camwright.pipeline.cycle.solution import Solution
 
 _OUTER_OF_BEARING = 3.1
 """Outer diameter of ball bearings of the series 02 and 03 over their bore from 12 mm, at most."""
-_WORDS = {"arm": "arm", HUB: "hub", FORK: "fork"}
+_WORDS = {"arm": "arm", HUB: "hub", FORK: "fork", SPRING: "spring"}
 
 
 class _Disc(NamedTuple):
@@ -91,8 +92,8 @@ def _discs(tip: Value, numbers: Numbers) -> dict[str, _Disc]:
 
 
 def _pairs(tip: Value, numbers: Numbers) -> Iterator[tuple[str, _Pair]]:
-    """Gaps of arm, fork and hub to each part about the camshaft, with the names of both; those of
-    arm and fork to the cam are judged apart.
+    """Gaps of arm, fork, hub and spring to each part about the camshaft, with the names of both;
+    but for the hub those to the cam are judged apart.
     """
     bodies = swung_bodies(numbers)
     for name, disc in _discs(tip, numbers).items():
@@ -108,8 +109,8 @@ def _pair(body: SwungBody, disc: _Disc) -> _Pair:
 
 
 def _least(tip: Value, numbers: Numbers) -> Value:
-    """Least gap, m, of arm, fork and hub to the parts about the camshaft; tip : maximum radius of
-    the cam, m. NaN where a width that is not stated decides.
+    """Least gap, m, of arm, fork, hub and spring to the parts about the camshaft; tip : maximum
+    radius of the cam, m. NaN where a width that is not stated decides.
     """
     limit = numbers.limit(ASSEMBLY_GAP)
     gaps = (each.gap(limit) for _, each in _pairs(tip, numbers))
@@ -154,17 +155,18 @@ _LEVERS = (
 arm_gap = check(
     ASSEMBLY_GAP,
     id="arm_gap",
-    title="Gap between arm or hub and camshaft, bearings, gear or cam tip",
+    title="Gap between arm, hub or spring and camshaft, bearings, gear or cam tip",
     tier=Tier.SCREENING,
     formula="max(d - h - r, a) >= g; of the nearest pair: d: least distance over the swing of the"
-    " centre line of arm or cheeks, or of the pivot, from the axis of camshaft, bearing, gear or"
-    " pinion, and of the pivot from that of the cam, h: half of follower.arm.depth, of the height"
-    " of the cheeks or of follower.arm.hub, r: radius of the other, max|P| of the cam, a:"
-    " axial gap of the two, that in the plane for the camshaft, g: limits.assembly_gap",
+    " centre line of arm, cheeks or spring, or of the pivot, from the axis of camshaft, bearing,"
+    " gear or pinion, and of the pivot from that of the cam, h: half of follower.arm.depth, of the"
+    " height of the cheeks, of follower.arm.hub or of the diameter of a spring that links the arm,"
+    " r: radius of the other, max|P| of the cam, a: axial gap of the two, that in the plane for the"
+    " camshaft, g: limits.assembly_gap",
     symbols=dict.fromkeys("dhra", f"{STATED} [mm]"),
-    reason="An arm or hub within camshaft, bearing, gear or cam cannot be assembled.",
-    method="straight arm and cheeks with round ends over the swing from discs about the camshaft,"
-    " bearings at most 3.1 times as large as their bore, or faces along the camshaft",
+    reason="An arm, hub or spring within camshaft, bearing, gear or cam cannot be assembled.",
+    method="straight arm, cheeks and spring with round ends over the swing from discs about the"
+    " camshaft, bearings at most 3.1 times as large as their bore, or faces along the camshaft",
     lift_can_help=True,
     moved_by_tolerance=False,
     needs="arm",
@@ -184,15 +186,17 @@ arm_gap = check(
 
 @check(
     ASSEMBLY_GAP,
-    title="Gap between arm and cam over the turn",
-    formula="max(d - h, a) >= g; of arm or cheeks, the nearer: d: least distance of their centre"
-    " line, from the pivot to the bridge of the fork or the roller centre, from the contour over"
-    " the turn, h: half of follower.arm.depth or of the height of the cheeks, a: axial gap from the"
-    " cam, of the inner faces of the cheeks, g: limits.assembly_gap",
+    title="Gap between arm or its spring and cam over the turn",
+    formula="max(d - h, a) >= g; of arm, cheeks or spring, the nearest: d: least distance of their"
+    " centre line, from the pivot to the bridge of the fork or the roller centre, or between the"
+    " ends of the spring, from the contour over the turn, h: half of follower.arm.depth, of the"
+    " height of the cheeks or of the diameter of the spring, a: axial gap from the cam, of the"
+    " inner faces of the cheeks, g: limits.assembly_gap",
     symbols=dict.fromkeys("dha", f"{STATED} [mm]"),
-    reason="A lobe of the cam that strikes the arm, between roller and pivot, stops it.",
-    method="straight arm and cheeks with round ends from the contour, refined over contour and"
-    " turn; not of a face, whose arm is above it",
+    reason="A lobe of the cam that strikes the arm, between roller and pivot, or its spring is"
+    " stopped.",
+    method="straight arm, cheeks and spring with round ends from the contour, refined over contour"
+    " and turn; not the arm of a face, which is above it",
     lift_can_help=True,
     moved_by_tolerance=False,
     needs="arm",
@@ -202,23 +206,25 @@ arm_gap = check(
     page="Follower",
 )
 def arm_cam_gap(solution: Solution) -> Demand | None:
-    """Least gap between arm or fork and cam over the turn, m, with the cam angle of the nearest
-    point; None of a face on an arm.
+    """Least gap between arm, fork or spring and cam over the turn, m, with the cam angle of the
+    nearest point; None of a face on an arm without such a spring.
     """
     numbers, limit = solution.numbers, solution.machine.limits[ASSEMBLY_GAP]
-    if solution.machine.follower.slides:
-        return None
     bodies, half = swung_bodies(numbers), 0.5 * numbers["cam.width"]
-    if "arm" not in bodies:
+    if solution.machine.follower.slides:
+        bodies = {name: body for name, body in bodies.items() if name == SPRING}
+        if not bodies:
+            return None
+    elif "arm" not in bodies:
         return Demand(None, limit, missing=(ARM_DEPTH,))
     pairs, angles = dict[str, _Pair](), dict[str, float]()
     if solution.machine.follower.parts.get("pin") is None:
         bodies.pop(FORK, None)  # what it lacks is told by the check of its data
-    for name in ("arm", FORK):
+    for name in ("arm", FORK, SPRING):
         if name in bodies:
             body = bodies[name]
             nearest = body.bar.from_contour(solution.contour)
-            beside = body.beyond((0.0, half)) if name == "arm" else cheek_to_cam(numbers)
+            beside = cheek_to_cam(numbers) if name == FORK else body.beyond((0.0, half))
             pairs[name] = _Pair(nearest.value - body.half, (body.half, 0.0), beside)
             angles[name] = float(np.mod(nearest.theta, FULL_TURN))
     gaps = {name: one(pair.gap(limit)) for name, pair in pairs.items()}

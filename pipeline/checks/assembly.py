@@ -23,7 +23,7 @@ from camwright.pipeline.checks.cam_shape import contour_radius, lift
 from camwright.pipeline.checks.camshaft_strength import camshaft_of, gear_of
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.arm_bodies import swung_bodies, with_swing
+from camwright.pipeline.cycle.arm_bodies import SPRING, swung_bodies, with_swing
 from camwright.pipeline.cycle.cam_balance import balance
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.machine_envelope import (
@@ -412,7 +412,7 @@ machine_shaft_gap = check(
     tier=Tier.SCREENING,
     formula="min(a - max|P|, b) - r >= g; a: centre distance, gear and pinion radius, P: contour,"
     " b: distance of the machine shaft, at camshaft.mesh_angle, from the follower at its lowest, of"
-    " an arm from arm, hub, fork and roller over the swing, r:"
+    " an arm from arm, hub, fork, roller and linked spring over the swing, r:"
     " half of camshaft.gear.machine_shaft_diameter, else at most the pinion radius, g:"
     " limits.assembly_gap; none where the diameter is 0, as the shaft ends at its pinion",
     symbols={
@@ -463,9 +463,13 @@ def beside_counterweight(body: CounterweightBody, numbers: Numbers) -> Gaps:
         at = bearing - shaft.cam_position
         gaps[f"bearing {number}"] = body.beyond(at - half, at + half)
     deep = numbers["follower.half_depth"] + aside(numbers)
-    for each in swung_bodies(numbers).values():
+    swung = swung_bodies(numbers)
+    spring = swung.pop(SPRING, None)
+    for each in swung.values():
         deep = np.fmax(deep, each.beside[0] + each.beside[1])
-    gaps[_lowest_part(numbers)] = body.under(deep, lowest_follower(numbers))
+    gaps[_lowest_part(numbers)] = body.under(deep, lowest_follower(numbers, swung))
+    if spring is not None:
+        gaps["spring"] = body.under(sum(spring.beside), spring.from_disc(0.0, 0.0, 0.0))
     if shaft.gear is None or not case.scope.covers("gear"):
         return gaps
     gear, half = _gear(numbers)
@@ -492,16 +496,18 @@ def _balancing(solution: Solution) -> tuple[Counterweight, float, CounterweightB
     if weight is None:
         return None
     product = weight.set_against(balance(solution.machine.cam, solution.contour).as_made)[0]
-    return weight, product, counterweight_body(weight, product, solution.numbers)
+    numbers = solution.numbers | with_swing(solution.cams.values())
+    return weight, product, counterweight_body(weight, product, numbers)
 
 
 @check(
     ASSEMBLY_GAP,
     title="Gap between the counterweight and bearings, gear, {follower} or machine shaft",
     formula="min(b, f, c, m) >= g; b: axial gap of the counterweight from the nearer bearing, f:"
-    " distance from the follower at its lowest, c: axial gap from gear and pinion, m: distance from"
-    " the machine shaft; of the stated radius and width, else of a half ring that has the unbalance"
-    " and passes below the follower by 2 g, g: limits.assembly_gap",
+    " distance from the follower at its lowest, and from a spring that links its arm, c: axial gap"
+    " from gear and pinion, m: distance from the machine shaft; of the stated radius and width,"
+    " else of a half ring that has the unbalance and passes below the follower by 2 g, g:"
+    " limits.assembly_gap",
     symbols=dict.fromkeys("bfcm", f"{STATED} [mm]"),
     reason="A counterweight that strikes bearing, gear or follower does not turn; one that has no"
     " room leaves the unbalance.",
@@ -525,8 +531,9 @@ def counterweight_gap(solution: Solution) -> Demand | None:
     if bodies is None:
         return None
     weight, _, body = bodies
-    gaps = beside_counterweight(body, solution.numbers)
-    room = one(counterweight_room(body, weight, solution.numbers))
+    numbers = solution.numbers | with_swing(solution.cams.values())
+    gaps = beside_counterweight(body, numbers)
+    room = one(counterweight_room(body, weight, numbers))
     sizes = tuple(shown(one(each), "mm", 3) for each in (body.radius, body.width))
     taken = weight.radius is None or weight.width is None
     words = f"half ring of {sizes[0]} outer radius, {sizes[1]} wide" if taken else ""
@@ -541,7 +548,7 @@ def counterweight_gap(solution: Solution) -> Demand | None:
     apart = {name: one(gap) for name, gap in gaps.items()}
     stated = {
         "b": min(gap for name, gap in apart.items() if name.startswith("bearing")),
-        "f": apart[_lowest_part(solution.numbers)],
+        "f": min(apart[_lowest_part(numbers)], apart.get("spring", np.inf)),
         "c": apart.get("gear", np.inf),
         "m": apart.get("machine shaft", np.inf),
     }

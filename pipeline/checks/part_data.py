@@ -11,6 +11,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.case.scope_section import PART_WORDS, PartName
 from camwright.pipeline.checks.check import NONE, STATED, Declaration, Demand, Kind, Page, check
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.spring_kinds import TABLES_OF_PARTS
 
@@ -83,7 +84,9 @@ def _spring(case: Case) -> Tables:
 
 def _shaped_spring(case: Case) -> Tables:
     shape = None if case.spring.shape is None else case.spring.shape.own
-    return {"spring": case.spring, **({} if shape is None else {shape.table: shape})}
+    described = {"spring": case.spring, **({} if shape is None else {shape.table: shape})}
+    has_body = Numbers({}, case).get("spring.link.body") is not None
+    return described | ({} if has_body else {"spring.link": case.spring.link})
 
 
 def _guides(case: Case) -> Tables:

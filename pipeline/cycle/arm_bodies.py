@@ -1,4 +1,4 @@
-"""Bodies of an oscillating follower: arm, hub of its pivot, fork and roller, as swung bars."""
+"""Bodies of an oscillating follower, as swung bars: arm, hub of its pivot, fork, roller, spring."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 
 from camwright.geometry.arm_path import Arm
 from camwright.geometry.arrays import Value
-from camwright.geometry.swung_bar import SwungBar
+from camwright.geometry.swung_bar import SwungBar, SwungLink
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 
-HUB, FORK = "hub", "fork"
+HUB, FORK, SPRING = "hub", "fork", "spring"
 _LIFT = "arm.lift"
 ARM_DEPTH, ARM_WIDTH = "follower.arm.depth", "follower.arm.width"
 
@@ -25,7 +25,7 @@ class SwungBody(NamedTuple):
     half of the width, m; NaN: not stated.
     """
 
-    bar: SwungBar
+    bar: SwungBar | SwungLink
     half: Value
     beside: tuple[Value, Value]
 
@@ -51,7 +51,8 @@ def swung_bodies(numbers: Numbers) -> dict[str, SwungBody]:
     From zero to the maximum lift, where that is among the numbers (`with_swing`). The arm ends at
     the bridge of a fork that is described, else at its reference point, about which roller and
     cheeks are, or a disc of the radius of a curved face. The block of a flat one is within as far
-    on both sides of the line of the arm.
+    on both sides of the line of the arm. A spring between arm and fixed point is as thick as
+    stated, or as its coils.
     """
     case = numbers.known_case
     stated, keys = case.follower.arm, ("centre_distance", "length")
@@ -87,4 +88,12 @@ def swung_bodies(numbers: Numbers) -> dict[str, SwungBody]:
         bodies["arm"] = SwungBody(bar._replace(outer=end), 0.5 * depth, beside)
         diameter = depth if hub is None else hub
         bodies[HUB] = SwungBody(bar._replace(outer=0.0), 0.5 * diameter, beside)
+    body = numbers.get("spring.link.body")
+    if body is not None:
+        radius, fixed, angle, out, beside_cam = (
+            numbers[f"spring.link.{key}"]
+            for key in ("arm_radius", "fixed_radius", "arm_angle", "fixed_angle", "plane_offset")
+        )
+        axis = SwungLink(arm, bar.low, bar.high, radius, angle, fixed, start + out)
+        bodies[SPRING] = SwungBody(axis, 0.5 * body, (beside_cam, 0.5 * body))
     return bodies

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import reduce
 from math import sqrt
 
@@ -15,7 +16,7 @@ from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import machine
-from camwright.pipeline.cycle.arm_bodies import swung_bodies
+from camwright.pipeline.cycle.arm_bodies import SwungBody, swung_bodies
 from camwright.pipeline.cycle.loaded_cam import wire_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import Counterweight
@@ -57,11 +58,12 @@ def guide_outer(side: str, numbers: Numbers) -> Value:
     return np.nan if bore is None or wall is None else bore + 2.0 * wall
 
 
-def lowest_follower(numbers: Numbers) -> Value:
-    """Least distance of the follower, with its fork or arm, from the axis of the cam, m."""
+def lowest_follower(numbers: Numbers, swung: Mapping[str, SwungBody]) -> Value:
+    """Least distance of the follower, with its fork or what swings with an arm, from the axis of
+    the cam, m.
+    """
     lowest: Value = numbers["cam.prime_radius"] - numbers["follower.round"]
-    swung = (each.from_disc(0.0, 0.0, 0.0) for each in swung_bodies(numbers).values())
-    return reduce(np.minimum, swung, lowest)
+    return reduce(np.minimum, (each.from_disc(0.0, 0.0, 0.0) for each in swung.values()), lowest)
 
 
 def density_of_counterweight(case: Case) -> float:
@@ -89,7 +91,7 @@ def counterweight_body(
         raise InputError("camshaft", "missing", "described for its counterweight")
     radius: Value | None = weight.radius
     if radius is None:
-        radius = lowest_follower(numbers) - 2.0 * numbers.limit(ASSEMBLY_GAP)
+        radius = lowest_follower(numbers, swung_bodies(numbers)) - 2.0 * numbers.limit(ASSEMBLY_GAP)
     return CounterweightBody.of(
         weight.position - case.camshaft.cam_position,
         numbers["cam.width"],

@@ -407,6 +407,20 @@ def _slip_torque(numbers: Numbers) -> Value | None:
     return slip_torque(pressure, radius, width, float(numbers["cam.fit.friction"]))
 
 
+def _link_body(numbers: Numbers) -> Value | None:
+    """Outer diameter of a spring between arm and fixed point, m, as stated, else of its coils; None
+    where it is not known, and without such a spring.
+    """
+    stated = numbers.get("spring.link.diameter")
+    if stated is not None or numbers.get("spring.link.arm_radius") is None:
+        return stated
+    for table in ("spring.design", "spring.extension"):
+        mean, wire = (numbers.get(f"{table}.{key}_diameter") for key in ("mean", "wire"))
+        if mean is not None and wire is not None:
+            return mean + wire
+    return None
+
+
 DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
     "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
@@ -428,6 +442,7 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "follower.size": _size,
     "cam.waviness": _waviness,
     "roller.rotor_inertia": _rotor_inertia,
+    "spring.link.body": _link_body,
     "roller.bearing.pitch_diameter": _ball_circle,
     "roller.bearing.cleanliness_load": _cleanliness_load,
 }

@@ -60,6 +60,13 @@ class SpringLink(Part):
     """force of a coil spring per travel of its ends"""
     preload: Annotated[Preload | None, Known("spring drawing", "242 N")] = None
     """force of a coil spring at zero lift"""
+    diameter: Annotated[Length | None, Known("spring drawing, or data sheet", "28 mm")] = None
+    """greatest diameter of the spring's body; of coils that are described theirs"""
+    plane_offset: Annotated[float, In("mm", at_least=0, at_most=1000), Known("drawing", "0 mm")] = (
+        0.0
+    )
+    """distance of the spring's axis from the middle of the cam along the cam axis, for the gaps
+    alone: the arm is not judged under its moment"""
     source: TableSource = NO_SOURCE
     length: float = np.nan
 

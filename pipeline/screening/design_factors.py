@@ -50,7 +50,8 @@ ARRAYS: tuple[str, ...] = (
     *(f"follower.pivot.needle_bearing.{name}" for name in (
         "length", "diameter", "friction", "friction_min", "friction_max", "C", "C0")),
     *(f"spring.link.{name}" for name in (
-        "arm_radius", "arm_angle", "fixed_radius", "fixed_angle", "rate", "preload")),
+        "arm_radius", "arm_angle", "fixed_radius", "fixed_angle", "rate", "preload", "diameter",
+        "plane_offset")),
     "guides.spacing",
     "guides.a.friction", "guides.a.friction_min", "guides.a.friction_max",
     "guides.b.friction", "guides.b.friction_min", "guides.b.friction_max",

@@ -34,6 +34,7 @@ from camwright.pipeline.checks.check import Bounded, Declaration, Measured
 from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.contact.flash_temperature import bulk_rise
+from camwright.pipeline.cycle.arm_bodies import with_swing
 from camwright.pipeline.cycle.machine_envelope import counterweight_body
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import Counterweight
@@ -262,7 +263,7 @@ def _counterweights(designs: Designs) -> tuple[Counterweight, Array, Counterweig
     if weight is None or designs.machine.cam.counter_hole is not None:
         return None
     product = np.asarray(weight.against(*designs.unbalance)[0])
-    body = counterweight_body(weight, product, designs.numbers)
+    body = counterweight_body(weight, product, designs.numbers | with_swing(designs.cams))
     return weight, product, body
 
 
@@ -277,7 +278,8 @@ def _counterweight_gap(designs: Designs) -> Judged | None:
     if counterweights is None:
         return None
     weight, _, body = counterweights
-    gap = assembly.counterweight_room(body, weight, designs.numbers)
+    numbers = designs.numbers | with_swing(designs.cams)
+    gap = assembly.counterweight_room(body, weight, numbers)
     limit = designs.numbers.limit(ASSEMBLY_GAP)
     return _of_each(gap, designs), _of_each(limit, designs)
 

@@ -58,6 +58,9 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     ("unit/test_arm_assembly.py", "test_gaps_of_an_arm_by_polygons_over_the_turn"): (
         "arm_gap", "arm_cam_gap",
     ),
+    ("unit/test_arm_assembly.py", "test_gaps_of_a_linked_spring_by_polygons_over_the_turn"): (
+        "arm_gap", "arm_cam_gap",
+    ),
     (_ASSEMBLY, "test_gaps_along_the_camshaft_by_counting_free_micrometres"): (
         "bearing_gap", "gear_gap", "fork_gap",
     ),

@@ -135,6 +135,90 @@ def test_gaps_of_an_arm_by_polygons_over_the_turn(
     )
 
 
+def linked(fixed: str, radius: str, thick: float, plane_offset: str) -> Case:
+    """Arm in a plane of its own with a spring on a link: one that pulls behind it, or pushes."""
+    text = first_case("swing", "arm").text
+    before, after = text[: text.index("[spring]")], text[text.index("[cam]") :]
+    action = "pull" if fixed.startswith("-") else "push"
+    link = f"""
+[spring]
+travel_max = "16 mm"
+
+[spring.link]
+rate = "100 kN/m"
+preload = "1000 N"
+arm_radius = "80 mm"
+arm_angle = "4 deg"
+fixed_radius = "{radius}"
+fixed_angle = "{fixed}"
+action = "{action}"
+diameter = "{thick} mm"
+plane_offset = "{plane_offset}"
+
+"""
+    case = parse_case(before + link + after)
+    return with_values(case, SIZES | {"follower.arm.plane_offset": "150 mm"})
+
+
+@pytest.mark.parametrize(("fixed", "radius", "thick", "plane_offset", "to_bearing"), [
+    ("-60 deg", "60 mm", 12.0, 0.0, False), ("-90 deg", "60 mm", 12.0, 18.0, True),
+    ("60 deg", "140 mm", 40.0, 0.0, True),
+])  # fmt: skip
+def test_gaps_of_a_linked_spring_by_polygons_over_the_turn(
+    fixed: str, radius: str, thick: float, plane_offset: float, to_bearing: bool
+) -> None:
+    """arm_cam_gap, and arm_gap where bearing 1 is nearest, within 1 um.
+
+    Both ends are drawn from the pitch curve, turned back as above.
+    """
+    of = solved(linked(fixed, radius, thick, f"{plane_offset} mm"))
+    pivot, out = np.array([0.110, 0.0]), np.radians(float(fixed.split()[0]))
+    contour, lowest = of.contour.polygon(7200), of.contour.lift.lowest.theta
+
+    def arm(theta: float) -> Array:
+        """Unit vector from the pivot along the arm."""
+        line = turned(of.contour.pitch.points(np.array([theta])), -theta)[:, 0] - pivot
+        return np.asarray(line / np.hypot(*line))
+
+    rest, away_from_rest = arm(lowest), arm(lowest + np.pi)
+    outwards = np.sign(rest[0] * away_from_rest[1] - rest[1] * away_from_rest[0])
+    held = pivot + 1e-3 * float(radius.split()[0]) * turned(rest, outwards * out)
+    cam, centre = list[float](), list[float]()
+    worst, half = judged("arm_cam_gap", of), 0.5e-3 * thick
+    near = (worst.cam_angle or 0.0) + np.linspace(-0.02, 0.02, 21)
+    for theta in [*uniform_turn(180), *near]:
+        end = pivot + 0.080 * turned(arm(float(theta)), outwards * np.radians(4.0))
+        cam.append(away(turned(contour, -theta), held, end) - half)
+        centre.append(away(np.zeros(2), held, end) - half)
+    assert worst.note == "spring to cam"
+    assert worst.demand == pytest.approx(min(cam), abs=1e-6)
+    about = judged("arm_gap", of)
+    assert (about.note == "spring to bearing 1") == to_bearing
+    if to_bearing:  # 93 mm in diameter, 16 mm wide, 35 mm from the cam
+        beside = 1e-3 * (35.0 - plane_offset - 8.0) - half
+        assert about.demand == pytest.approx(max(min(centre) - 46.5e-3, beside), abs=1e-6)
+
+
+def test_a_gas_spring_on_an_arm_lacks_its_diameter_for_its_gaps() -> None:
+    """Coils that are described have theirs; the body of a gas spring is asked for."""
+    link = {"arm_radius": "80 mm", "fixed_radius": "140 mm", "fixed_angle": "60 deg"}
+    gas = {"pressure": "60 bar", "area": "150 mm^2", "volume": "9 cm^3"}
+    text = first_case("swing", "arm").text
+    table = "\n".join(f'{key} = "{value}"' for key, value in link.items())
+    own = "\n".join(f'{key} = "{value}"' for key, value in gas.items())
+    before, after = text[: text.index("[spring]")], text[text.index("[cam]") :]
+    spring = f'[spring]\nkind = "gas"\n[spring.link]\n{table}\n[spring.gas]\n{own}\n'
+    bare = parse_case(before + spring + after)
+    for case, lacks in (
+        (bare, True),
+        (with_values(bare, {"spring.link.diameter": "28 mm"}), False),
+    ):
+        of = solution(case, case.contour(given_lift(case)), Tier.PREVIEW, torques={}, positions=36)
+        check = BY_ID["data_gas_spring"](of)
+        assert check is not None
+        assert ("spring.link.diameter" in check.missing) == lacks
+
+
 def test_bearings_of_an_unknown_bore_leave_the_gap_unknown() -> None:
     """Wide cheeks reach over the bearings; on a shaft without a diameter their size is unknown."""
     narrow, wide = (
