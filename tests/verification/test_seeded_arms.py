@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import sys
-import time
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,17 +11,13 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
+from seeded_checks import checked, faults
 from swung_face import face_text
 
-from camwright.geometry.errors import CamError
 from camwright.geometry.motion_laws import LAWS
-from camwright.pipeline.case.case_writer import tables_text
 from camwright.pipeline.case.template import first_case
-from camwright.pipeline.cli import run_line
 
 COUNT, QUICK, SEED = 60, 4, 44
-SECONDS = 10.0
-"""Most CPU time of one check; the wall time depends on who else computes."""
 MOVING = sorted(name for name in LAWS if name != "dwell")
 
 
@@ -86,43 +79,21 @@ def drawn(k: int) -> dict[str, Any]:
     return tables
 
 
-def checked(k: int, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, float]:
-    """Exit code, words and CPU time of the check of one arm."""
-    file = folder / f"arm{k}.toml"
-    file.write_text(tables_text(drawn(k)), encoding="utf-8")
-    begun = time.process_time()
-    try:
-        code, words = run_line(["check", str(file)]), ""
-    except CamError as error:
-        code, words = 2, str(error)
-    spent = time.process_time() - begun
-    shown = capsys.readouterr()
-    return code, words + shown.out, spent
-
-
-def faults(k: int, code: int, words: str, spent: float) -> Iterator[str]:
-    """What is wrong with the answer for one arm."""
-    if code == 2:
-        refused = words.strip()
-        if "\n" in refused or " = " not in refused or "must be" not in refused:
-            yield f"arm {k}: not one clear line: {refused!r}"
-    elif not re.search(r"screen: (PASS|FAIL|OPEN|INCOMPLETE)", words):
-        yield f"arm {k}: no verdict, exit code {code}: {words[-300:]!r}"
-    if re.search(r"\bnan\b", words, re.IGNORECASE):
-        yield f"arm {k}: shows NaN"
-    if spent > SECONDS:
-        yield f"arm {k}: {spent:.1f} s"
+def judged(k: int, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[list[str], int, str]:
+    """Faults, exit code and words of the check of one arm."""
+    code, words, spent = checked(f"arm{k}", drawn(k), folder, capsys)
+    return list(faults(f"arm {k}", code, words, spent)), code, words
 
 
 def test_a_few_seeded_arms_are_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arms = np.random.default_rng(SEED).choice(COUNT, QUICK, replace=False).tolist()
-    assert [word for k in arms for word in faults(k, *checked(k, tmp_path, capsys))] == []
+    assert [word for k in arms for word in judged(k, tmp_path, capsys)[0]] == []
 
 
 @pytest.mark.slow
 def test_sixty_seeded_arms_are_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Two of three at least are judged: what is refused says why."""
-    answers = {k: checked(k, tmp_path, capsys) for k in range(COUNT)}
-    assert [word for k, answer in answers.items() for word in faults(k, *answer)] == []
-    refused = [k for k, (code, _, _) in answers.items() if code == 2]
-    assert len(refused) <= COUNT // 3, [answers[k][1] for k in refused]
+    answers = [judged(k, tmp_path, capsys) for k in range(COUNT)]
+    assert [word for wrong, _, _ in answers for word in wrong] == []
+    refused = [words for _, code, words in answers if code == 2]
+    assert len(refused) <= COUNT // 3, refused
