@@ -33,6 +33,7 @@ In the order of the calculation:
 | `swung_bar`         | distances of an arm over its swing          | psi, rad; m                  |
 | `form_closure`      | walls of a groove                           | x, y, m                      |
 | `second_track`      | second roller or face of a cam that pulls   | x, y, m; l1/l2, -            |
+| `track_deviation`   | clearance of two tracks under deviations    | m                            |
 | `measured_contour`  | measured contour against the nominal one    | phase, rad; deviation, m     |
 | `cutter_path`       | path of a milling cutter or grinding wheel  | x, y, m                      |
 | `cutouts`           | bore, keyway and counter-hole               | m                            |

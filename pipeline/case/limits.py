@@ -223,6 +223,12 @@ LANDING_SPEED = OpenLimit(  # of a roller in a groove
     Source("bound of the case, noise and wear of the walls", confirmed=True),
     found="requirement of the machine", example="50 mm/s",
 )  # fmt: skip
+WORN_CLEARANCE = OpenLimit(
+    "worn_clearance", "clearance between the tracks of a worn cam that pulls",
+    In("mm", above=0, at_most=10),
+    Source("bound of the case, play and noise of the machine", confirmed=True),
+    found="requirement of the machine", example="0.05 mm",
+)  # fmt: skip
 CROSSOVER_SLIP = OpenLimit(
     "crossover_slip", "slip of the roller at a crossover", In("m/s", above=0, at_most=1e3),
     Source("bound of the case, wear of the walls", confirmed=True),

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
+from camwright.geometry.follower_path import FollowerPath
+from camwright.geometry.track_deviation import EXACT, TrackDeviation
+from camwright.pipeline.base import units
 from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.base.material import Material
@@ -85,7 +89,9 @@ CREEP = 1e-3
 
 @dataclass(frozen=True)
 class Corner:
-    """Tolerance corner: factors on nominal values; phase, rad of crank; profile error, m."""
+    """Tolerance corner: factors on nominal values; phase, rad of crank; profile error, m; what
+    moves the clearance of two tracks, see `TrackDeviation`.
+    """
 
     name: str
     friction_a: float = 1.0
@@ -96,6 +102,19 @@ class Corner:
     inertia: float = 1.0
     phase: float = 0.0
     profile: float = 0.0
+    tracks: float = 0.0
+    rollers: float = 0.0
+    apart: float = 0.0
+    centre: float = 0.0
+    turn: float = 0.0
+    wear_depth: float = 0.0
+
+    @property
+    def deviation(self) -> TrackDeviation:
+        """Deviations of a follower between two tracks."""
+        return TrackDeviation(
+            **{each.name: getattr(self, each.name) for each in fields(TrackDeviation)}
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,6 +151,7 @@ class Machine(Displayed):
     arm : FollowerArm          that carries the follower; None: the stem in its guides does, which
                                an arm has without mass, friction and clearance
     pivot : Pivot              of the arm, whose friction is then that of `friction`; None: left out
+    deviation : TrackDeviation of a follower between two tracks
     """
 
     load_case: str
@@ -167,6 +187,7 @@ class Machine(Displayed):
     arm: FollowerArm | None = None
     pivot: Pivot | None = None
     output: RockerOutput | None = None
+    deviation: TrackDeviation = EXACT
 
     @property
     def crank_speed(self) -> float:
@@ -466,7 +487,23 @@ class Machine(Displayed):
             return None
         if not self.axial_stiffness < np.inf:
             raise InputError("follower.stiffness", "missing", "given with an interference")
-        return DiscPreload(pair.interference, 1.0 / self.axial_stiffness)
+        return DiscPreload(pair.interference, 1.0 / self.axial_stiffness, self.deviation)
+
+    def clearance_on(self, path: FollowerPath, theta: Array) -> Array:
+        """Clearance of the follower between both tracks at cam angles (n,), rad, square to the
+        second, m; `path` : of the first roller or face.
+
+        Raises
+        ------
+        InputError
+            If the tracks close in on the follower.
+        """
+        opened = self.deviation.opened(path, self.cam.second, theta)
+        clearance = np.asarray(self.cam.clearance + opened)
+        if not float(clearance.min()) >= 0.0:
+            shown = units.shown(float(clearance.min()), "mm")
+            raise InputError(f"cam.{self.cam.closure}.clearance", shown, ">= 0 mm at every angle")
+        return clearance
 
     @property
     def mass_without_spring(self) -> float:
@@ -488,6 +525,7 @@ class Machine(Displayed):
             friction=self.friction.scaled(corner.friction_a, corner.friction_b),
             pivot=self.pivot and self.pivot.with_mass(corner.mass),
             crankshaft=shaft and replace(shaft, inertia=shaft.inertia * corner.inertia),
+            deviation=corner.deviation,
         )
 
 

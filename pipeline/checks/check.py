@@ -293,6 +293,8 @@ class Measured(NamedTuple):
 
 
 ClosedBy = Literal["", "force", "form", "plate", "groove", "conjugate", "yoke"]
+HELD = ("form", "groove", "conjugate", "yoke")
+"""Of them those of a cam that pulls its follower."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.geometry.second_track import relative_radius
@@ -25,6 +25,7 @@ from camwright.pipeline.case.limits import (
     LANDING_SPEED,
     SECOND_CONTACT_DEPTH,
     UNDERCUT_FACTOR,
+    WORN_CLEARANCE,
 )
 from camwright.pipeline.checks import contact_strength
 from camwright.pipeline.checks import value_groups as given
@@ -300,7 +301,6 @@ def _of_turns(
     method="axial force shared by the compliances of both rollers with their arms, the interference"
     " less by the width of the profile tolerance",
     lift_can_help=True,
-    moved_by_tolerance=False,
     needs="roller",
     closed_by="conjugate",
     values=(*given.LOADS, "cam.conjugate.interference", "cam.profile_tolerance"),
@@ -365,7 +365,6 @@ def _preload_words(solution: Solution) -> str:
     method="pressure of Hertz on both discs, the interference greater by the width of the profile"
     " tolerance",
     lift_can_help=True,
-    moved_by_tolerance=False,
     needs="roller",
     closed_by="conjugate",
     values=(
@@ -445,11 +444,44 @@ def _worst_impact(solution: Solution, measure: Callable[[WallImpact], float]) ->
     return every[first_greatest([each.value for each in every])] if every else None
 
 
+_CLEARANCES = tuple(f"cam.{each}.clearance" for each in ("groove", "conjugate", "yoke"))
+
+
+@check(
+    WORN_CLEARANCE,
+    title="Greatest clearance of the worn tracks",
+    method="greatest clearance over the turn, square to the second track or outer wall, of first"
+    " order in the deviations of radii, places and angles",
+    closed_by="form",
+    if_limited=True,
+    load_cases=NONE,
+    formula="c + o <= limits.worn_clearance; c: clearance as stated, o: by which the wear of both"
+    " tracks opens it, w (1 + (l_2/l_1) cos(alpha_2)/cos(alpha_1)), in a groove 2 w, w: wear of a"
+    " track with its roller, l_2/l_1: of the arms, 1 of a stem, alpha_1, alpha_2: pressure angles",
+    symbols={"c": f"{STATED} [mm]", "o": f"{STATED} [mm]"},
+    reason="The follower no longer goes where the cam is to guide it.",
+    values=_CLEARANCES,
+    levers=tuple(levers.one(each, -1) for each in _CLEARANCES),
+    page="Cam",
+)
+def worn_clearance(solution: Solution) -> Demand | None:
+    """Greatest clearance after wear, m; None with an interference."""
+    machine, path = solution.machine, solution.contour.pitch
+    stated = machine.cam.clearance
+    if not stated > 0.0:
+        return None
+    worn = machine.deviation.worn(machine.cam.wear_depth)
+    opened = worn.opened(path, machine.cam.second, uniform_turn(path.lift.search_count))
+    k = first_greatest(opened)
+    at = Extreme(stated + float(opened[k]), "", FULL_TURN * k / opened.size)
+    limit = machine.limits[WORN_CLEARANCE]
+    return Demand(at.value, limit, at, stated={"c": stated, "o": float(opened[k])})
+
+
 _FLIGHT = (
     "flight of the rigid mass under inertia, weight, external and spring force through the"
     " clearance, without rebound"
 )
-_CLEARANCES = tuple(f"cam.{each}.clearance" for each in ("groove", "conjugate", "yoke"))
 _CLEARANCE = (*(levers.one(each, -1) for each in _CLEARANCES), *levers.GENTLER)
 
 

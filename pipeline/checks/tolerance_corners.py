@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -19,10 +19,11 @@ from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.lift import Lift
-from camwright.pipeline.base.units import in_unit
+from camwright.geometry.track_deviation import EXACT
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Corner, Machine, friction_range
-from camwright.pipeline.checks.check import Check, Declaration, Demand
+from camwright.pipeline.checks.check import HELD, Check, Declaration, Demand
 from camwright.pipeline.checks.lost_loads import checks_on_sound_loads
 from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, checks_of
 from camwright.pipeline.contact.tiers import Tier
@@ -177,7 +178,8 @@ def corners_record(case: Case, tried: Sequence[Outcome]) -> CornersDocument:
 
 def _corner_record(one: Outcome) -> CornerRecord:
     corner = one.corner
-    return {
+    varied = {name: value for name, value in asdict(corner.deviation).items() if value}
+    record: CornerRecord = {
         "name": corner.name,
         "friction_a": corner.friction_a,
         "friction_b": corner.friction_b,
@@ -191,6 +193,9 @@ def _corner_record(one: Outcome) -> CornerRecord:
         "refused": one.refused,
         "lost": one.lost,
     }
+    if varied:
+        record["deviation"] = varied
+    return record
 
 
 def _plain(demands: Mapping[str, float]) -> dict[str, float | None]:
@@ -225,6 +230,7 @@ def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
         "crank inertia": {"inertia": around(inertia)},
         "phase": {"phase": (-tolerances.phase, tolerances.phase)},
         "line profile": {"profile": (-0.5 * profile, 0.5 * profile)},
+        **{name: {key: (low, high)} for name, (key, low, high) in case.cam.deviations.items()},
     }
     return {
         label: bounds
@@ -303,6 +309,7 @@ def _outcomes(
     """
     solved: list[tuple[Corner, Solution | CamError]] = []
     first: dict[Corner, Solution] = {}  # of each set of loads
+    preloaded = case.cam.pulls and not case.cam.clearance > 0.0
     for tried, turns_there in turns_at:
         try:
             there = _solution(case, tried, turns_there)
@@ -310,7 +317,7 @@ def _outcomes(
             solved.append((tried.corner, error))
         else:
             solved.append((tried.corner, there))
-            first.setdefault(_of_loads(tried.corner), there)
+            first.setdefault(_of_loads(tried.corner, preloaded=preloaded), there)
     if declarations is TOLERANCED:
         # no check reads that of a turn whose loads end
         every = (cycle for each in first.values() for cycle in each.cycles)
@@ -319,13 +326,16 @@ def _outcomes(
             solve_lengths(cycles)
     for corner, each in solved:
         if isinstance(each, Solution):
-            each.adopt(first[_of_loads(corner)])
+            each.adopt(first[_of_loads(corner, preloaded=preloaded)])
         yield _outcome(corner, each, declarations)
 
 
-def _of_loads(corner: Corner) -> Corner:
-    """The corner without what changes the crank alone, not the loads of the cam."""
-    return replace(corner, name="", inertia=1.0, phase=0.0)
+def _of_loads(corner: Corner, *, preloaded: bool) -> Corner:
+    """The corner without what changes the crank alone, not the loads of the cam, nor the clearance
+    of tracks that are not preloaded.
+    """
+    exact = {} if preloaded else asdict(EXACT)
+    return replace(corner, name="", inertia=1.0, phase=0.0, **exact)
 
 
 def _outcome(
@@ -375,6 +385,18 @@ def _phased(each: Turn, corner: Corner) -> Turn:
     return replace(each, torque_before=late, torque_after=late - each.loads.cam_torque / ratio)
 
 
+def _with_range(one: Check, tried: Sequence[Outcome]) -> Check:
+    """Check of a cam that pulls with the range of its demand over the corners in its note."""
+    demands = [each.demands[one.id] for each in tried if one.id in each.demands]
+    here = tried[0].demands.get(one.id)
+    if one.declaration.closed_by not in HELD or not (here and one.demand):
+        return one
+    ends = (one.demand / here * end for end in (min(demands), max(demands)))
+    low, high = (shown(end, one.unit) for end in ends)
+    words = "" if low == high else f"{low} to {high} at the corners"
+    return replace(one, note="; ".join(filter(None, (one.note, words))))
+
+
 def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
     """Check with the corner that governs it, and the demand there; NaN where a solved corner has no
     value.
@@ -383,6 +405,7 @@ def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
     the corner where the nominal one lacks a load case. Where a load case has no loads at a corner,
     the demand of the others can only fail the check; see `lost_loads`.
     """
+    one = _with_range(one, tried)
     nominal = tried[0]
     nominal_demand, here = one.demand, nominal.demands.get(one.id)
     if nominal_demand is None or here is None:

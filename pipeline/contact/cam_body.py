@@ -135,6 +135,8 @@ class BalanceHole(Part):
 
 
 Closure = Literal["spring", "gravity", "groove", "conjugate", "yoke"]
+FitTolerance = Annotated[float, In("mm", at_least=0, at_most=1)]
+_AS_DRAWN = "none: as drawn"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,6 +144,9 @@ class CamGroove(Part):
     """Groove in the face of a disc, in which the roller runs between two walls."""
 
     table: ClassVar[str] = "cam.groove"
+    defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("roller_tolerance", "wear_depth"), _AS_DRAWN
+    )
     source: TableSource = NO_SOURCE
 
     clearance: Annotated[
@@ -156,6 +161,12 @@ class CamGroove(Part):
     """fillet between the walls and the floor of the groove"""
     outer_radius: Annotated[Length, Known("drawing", "100 mm")]
     """radius of the disc around the groove"""
+    roller_tolerance: Annotated[FitTolerance | None, Known("drawing of the roller", "0.005 mm")] = (
+        None
+    )
+    """tolerance of the roller radius, either way"""
+    wear_depth: Annotated[FitTolerance | None, Known("own choice, or measured", "0.01 mm")] = None
+    """depth that each wall loses with the roller until it is replaced"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,6 +174,16 @@ class CamConjugate(Part):
     """Second disc on the same shaft, and its roller on the same stem or arm, which pull it back."""
 
     table: ClassVar[str] = "cam.conjugate"
+    defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        (
+            "roller_tolerance",
+            "place_tolerance",
+            "centre_tolerance",
+            "turn_tolerance",
+            "wear_depth",
+        ),
+        _AS_DRAWN,
+    )
     source: TableSource = NO_SOURCE
 
     roller_radius: Annotated[Length, Known("drawing", "15 mm")]
@@ -186,6 +207,21 @@ class CamConjugate(Part):
     spacing: Annotated[Length, Known("drawing", "20 mm")]
     """of the second disc from the first along the shaft, between their middles, away from bearing
     1"""
+    roller_tolerance: Annotated[
+        FitTolerance | None, Known("drawing of the rollers", "0.005 mm")
+    ] = None
+    """tolerance of the radius of each roller, either way"""
+    place_tolerance: Annotated[FitTolerance | None, Known("drawing", "0.005 mm")] = None
+    """tolerance of the place of the second roller along its travel, either way: of `distance`, or
+    of the angle between the arms"""
+    centre_tolerance: Annotated[FitTolerance | None, Known("drawing", "0.005 mm")] = None
+    """of an arm: tolerance of the distance of its pivot from the cam axis, either way"""
+    turn_tolerance: Annotated[
+        float | None, In("deg", at_least=0, at_most=5), Known("drawing", "0.02 deg")
+    ] = None
+    """tolerance of the angle of the second disc against the first, either way"""
+    wear_depth: Annotated[FitTolerance | None, Known("own choice, or measured", "0.01 mm")] = None
+    """depth that each disc loses with its roller until they are replaced"""
 
     @property
     def roller(self) -> SecondFollower:
@@ -208,12 +244,19 @@ class CamYoke(Part):
     """Second face of the follower, parallel to the first on the other side of the cam."""
 
     table: ClassVar[str] = "cam.yoke"
+    defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("place_tolerance", "wear_depth"), _AS_DRAWN
+    )
     source: TableSource = NO_SOURCE
 
     clearance: Annotated[
         float, In("mm", above=0, at_most=1), Known("drawing, tolerance chain", "0.05 mm")
     ]
     """distance of the faces less the greatest breadth of the cam"""
+    place_tolerance: Annotated[FitTolerance | None, Known("drawing", "0.01 mm")] = None
+    """tolerance of the distance of the faces, either way"""
+    wear_depth: Annotated[FitTolerance | None, Known("own choice, or measured", "0.01 mm")] = None
+    """depth that the cam loses with each face until they are replaced"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -307,6 +350,33 @@ class CamBody(Part):
         """Clearance of the follower between both tracks, square to them, m; 0 of one track."""
         stated = self.groove or self.conjugate or self.yoke
         return 0.0 if stated is None else stated.clearance or 0.0
+
+    @property
+    def deviations(self) -> Mapping[str, tuple[str, float, float]]:
+        """Least and greatest of each field of `TrackDeviation` by what varies it, SI.
+
+        Of an interference the tolerance of the contours is left out: its checks have it.
+        """
+        stated = self.groove or self.conjugate or self.yoke
+        half = 0.5 * self.profile_tolerance if self.clearance > 0.0 else 0.0
+        named = {
+            "roller radius": ("rollers", "roller_tolerance"),
+            "second track": ("apart", "place_tolerance"),
+            "centre distance": ("centre", "centre_tolerance"),
+            "phase of the discs": ("turn", "turn_tolerance"),
+        }
+        either = {
+            label: (field, getattr(stated, key, None) or 0.0)
+            for label, (field, key) in named.items()
+        } | {"both contours": ("tracks", half)}
+        ranges = {label: (field, -most, most) for label, (field, most) in either.items()}
+        return ranges | {"wear of the tracks": ("wear_depth", 0.0, self.wear_depth)}
+
+    @property
+    def wear_depth(self) -> float:
+        """Depth that each of two tracks loses with its roller, m."""
+        stated = self.groove or self.conjugate or self.yoke
+        return 0.0 if stated is None else stated.wear_depth or 0.0
 
     @property
     def held_radius(self) -> float:

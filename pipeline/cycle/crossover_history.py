@@ -52,7 +52,7 @@ def impacts(machine: Machine, contour: Contour) -> tuple[WallImpact, ...]:
     along = pulled.slide.lever * np.cos(pulled.pressure_angle)
     found = landings(
         loads.required_force,
-        machine.cam.clearance / along,
+        machine.clearance_on(pitch, theta) / along,
         machine.mass,
         machine.cam_speed,
         stiffness=machine.spring.rate,

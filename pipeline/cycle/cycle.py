@@ -104,8 +104,12 @@ class Cycle(Tabled):
         return cycle
 
     def adopt(self, other: Cycle) -> None:
-        """Take over results computed by another cycle of the same loads and contact."""
-        self.results.update(other.results)
+        """Take over results computed by another cycle of the same loads and contact; its landings
+        where the clearance is the same.
+        """
+        same = self.machine.deviation == other.machine.deviation
+        results = other.results.items()
+        self.results.update({k: each for k, each in results if same or k != "impacts"})
 
     @property
     def facts(self) -> Mapping[str, object]:

@@ -8,7 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
 from camwright.geometry.second_track import SecondTrack
+from camwright.geometry.track_deviation import EXACT, TrackDeviation
+from camwright.pipeline.base import units
 
 
 class Squeezed(NamedTuple):
@@ -50,18 +53,29 @@ class DiscPreload:
     interference : float   square to the second disc, m, > 0
     compliance : float     of each roller with its arm, from disc to follower mass, along the travel
                            of that roller, m/N, > 0
+    deviation : TrackDeviation   that opens or closes the interference
     """
 
     interference: float
     compliance: float
+    deviation: TrackDeviation = EXACT
 
     def at(self, track: SecondTrack, theta: Array) -> Squeezed:
         """Preload at cam angles (n,), rad, reduced to the first roller.
 
         The interference i opens i/(l_2/l_1 cos alpha_2) along the travel of the first roller; the
         compliance of the second is (l_1/l_2)^2 of its own there.
+
+        Raises
+        ------
+        InputError
+            If deviations leave no interference.
         """
         touch = track.touch(theta)
-        closed = self.interference / (touch.slide.lever * np.cos(touch.pressure_angle))
+        left = self.interference - self.deviation.on(track, theta)
+        if not float(np.min(left)) > 0.0:
+            shown = units.shown(float(np.min(left)), "mm")
+            raise InputError("cam.conjugate.interference", shown, "> 0 mm at every angle")
+        closed = left / (touch.slide.lever * np.cos(touch.pressure_angle))
         first, second = self.compliance, self.compliance * track.leverage**2
         return Squeezed(closed / (first + second), second / (first + second))

@@ -1,6 +1,6 @@
 """Form of ``corners.json``."""
 
-from typing import Annotated
+from typing import Annotated, NotRequired
 
 from typing_extensions import TypedDict
 
@@ -35,6 +35,8 @@ class CornerRecord(TypedDict):
     """Reason why the corner cannot be solved; empty where it is solved."""
     lost: str
     """Loads that are lost there, in words; empty without any."""
+    deviation: NotRequired[dict[str, float]]
+    """Deviations of tracks and rollers of a cam that pulls by their names, m; turn: rad."""
 
 
 @form()

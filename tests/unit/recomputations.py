@@ -7,6 +7,7 @@ names the check. Rows of missing data have no demand; `test_part_data` tries the
 _ASSEMBLY = "unit/test_assembly.py"
 _CONTACT = "verification/test_contact_audit.py"
 _GROOVE = "verification/test_groove_cam.py"
+_WORN = "verification/test_held_tolerances.py"
 _YOKE = "verification/test_yoke_cam.py"
 _PAIR = "verification/test_conjugate_cam.py"
 _GUIDES = "verification/test_guides_audit.py"
@@ -35,6 +36,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_GROOVE, "test_landings_by_an_adaptive_integrator"): (
         "landing_speed", "landing_pressure", "crossover_slip",
     ),
+    (_WORN, "test_worn_clearance_is_judged_where_it_is_greatest"): ("worn_clearance",),
     (_YOKE, "test_the_breadth_by_the_points_of_the_cam"): ("yoke_breadth",),
     (_PAIR, "test_both_discs_are_judged"): ("second_disc_gap",),
     (_PAIR, "test_the_preload_is_judged_on_both_discs"): ("preload_least", "preload_pressure"),

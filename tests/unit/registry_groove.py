@@ -40,6 +40,13 @@ def with_limits(**values) -> Solution:
     return made.changed_solution(base, case=made.changed(base.case, limits=limits))
 
 
+def worn(depth: float) -> Solution:
+    """The groove with walls worn by a depth, m, and a limit of their clearance."""
+    base = changed(wear_depth=depth)
+    limits = made.changed(base.case.limits, worn_clearance=1.0)
+    return made.changed_solution(base, case=made.changed(base.case, limits=limits))
+
+
 def flown() -> Solution:
     """With limits of what a case leaves open."""
     return with_limits(landing_speed=1.0, crossover_slip=100.0)
@@ -271,6 +278,14 @@ tried(
     pressed(4e-6)[1],
     "Hertz (1882) of both discs, the springs pressed by 24 um",
     made.preloaded,
+)
+by_limit(
+    "worn_clearance",
+    "worn_clearance",
+    lambda: worn(np.nan),
+    1e3 * (CLEARANCE + 2.0 * 10e-6),
+    "20 um, and 10 um off either wall",
+    base=lambda: worn(10e-6),
 )
 by_limit(
     "landing_speed",

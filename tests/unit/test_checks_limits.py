@@ -150,7 +150,8 @@ def test_the_source_of_every_limit_is_looked_up_and_no_other():
         on_arm(),
         made.in_groove(),
     ):
-        stated = {"landing_speed": 1.0, "crossover_slip": 5.0} if solution.case.cam.pulls else {}
+        open_ones = {"landing_speed": 1.0, "crossover_slip": 5.0, "worn_clearance": 1.0}
+        stated = open_ones if solution.case.cam.pulls else {}
         limits = made.changed(solution.case.limits, sources=sources, **stated)
         case = made.changed(solution.case, limits=limits)
         all_checks(made.changed_solution(solution, case=case))

@@ -1,0 +1,188 @@
+"""Clearance of two tracks under deviations, by points of the contours; landings and preload there.
+
+The cases are tests/data/conjugate_arm.toml and conjugate_feeder.toml; what moves them is in
+geometry/track_deviation.py.
+"""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.track_deviation import TrackDeviation
+from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.machine import Corner, machines
+from camwright.pipeline.checks.tolerance_corners import corners_of, outcomes
+from camwright.pipeline.cycle.crossover_history import impacts
+from camwright.pipeline.follower.follower_forces import follower_loads
+from camwright.pipeline.preview import preview_case
+
+ROOT = Path(__file__).parents[2]
+GROOVE = ROOT / "cases" / "motions" / "feeder-groove.toml"
+DATA = ROOT / "tests" / "data"
+FINE = uniform_turn(20_000)
+STEP = 2e-5  # m or rad
+SHARED = "tracks", "rollers", "apart", "turn", "wear_depth"
+"""Deviations of a stem as of an arm."""
+
+
+@cache
+def pair(name):
+    """Case, contour and track of the second disc of a file of tests/data."""
+    case = read_case(DATA / f"{name}.toml")
+    contour = case.contour(given_lift(case))
+    return case, contour, case.cam.second.track(contour.pitch)
+
+
+def axes(theta):
+    along = np.array([np.cos(theta), np.sin(theta)])
+    return along, np.array([-along[1], along[0]])
+
+
+def on_arms(name, theta, angle, deviation):
+    """Centres of both rollers of the arms at an arm angle."""
+    case, contour, _ = pair(name)
+    arm, second, (u, v) = contour.pitch.arm, case.cam.second, axes(theta)
+    far, other = arm.centre_distance + deviation.centre, second.angle - angle
+    other = other + deviation.apart / second.length
+    first = u * (far - arm.length * np.cos(angle)) + v * arm.sense * arm.length * np.sin(angle)
+    back = u * (far - second.length * np.cos(other))
+    return first, back - v * arm.sense * second.length * np.sin(other)
+
+
+def on_stem(name, theta, height, deviation):
+    """Centres of both rollers of the stem at a height of the first."""
+    case, contour, _ = pair(name)
+    u, v = axes(theta)
+    beside = v * contour.pitch.offset
+    distance = case.cam.second.distance + deviation.apart
+    return u * height + beside, u * (height - distance) + beside
+
+
+def nearest(point, curve):
+    """Distance of a point from a closed curve by a parabola through the three nearest points."""
+    square = ((curve - point[:, None]) ** 2).sum(axis=0)
+    k = int(square.argmin())
+    before, here, after = square[[k - 1, k, (k + 1) % square.size]]
+    return np.sqrt(here - (before - after) ** 2 / (8.0 * (before - 2.0 * here + after)))
+
+
+def gap(name, theta, deviation):
+    """Clearance of the second roller while the first touches, m, but for that of the drawing."""
+    case, contour, track = pair(name)
+    place = on_stem if case.follower.arm is None else on_arms
+    path = contour.pitch
+    at = path.height(theta) if place is on_stem else path.start + path.lift(theta) / path.arm.length
+    filled = deviation.rollers + deviation.tracks - deviation.wear_depth
+    first, second = contour.points(FINE), track.contour.points(FINE)
+    turned = np.array([axes(-deviation.turn)[0], axes(-deviation.turn)[1]]).T @ second
+
+    def inside(where):
+        return nearest(place(name, theta, where, deviation)[0], first) - case.roller.radius - filled
+
+    where = brentq(inside, at - 0.01, at + 0.01, xtol=1e-13)
+    other = place(name, theta, where, deviation)[1]
+    return nearest(other, turned) - case.cam.second.radius - filled
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [("conjugate_arm", "centre")]
+    + [(name, kind) for name in ("conjugate_arm", "conjugate_feeder") for kind in SHARED],
+)
+def test_clearance_by_points_of_both_discs(name, kind):
+    """Of first order: 20 um leave 1e-3 of the change, 20 urad 1e-8 m per rad of the turn."""
+    case, contour, _ = pair(name)
+    deviation = TrackDeviation(**{kind: STEP})
+    for theta in (0.3, 0.9, 2.0):
+        moved = gap(name, theta, deviation) - gap(name, theta, TrackDeviation())
+        opened = deviation.opened(contour.pitch, case.cam.second, np.array([theta]))
+        assert opened[0] == pytest.approx(moved, rel=1e-3, abs=1e-8 * STEP)
+
+
+def test_worn_clearance_is_judged_where_it_is_greatest():
+    text = (DATA / "conjugate_arm.toml").read_text(encoding="utf-8")
+    text = text.replace('spacing = "40 mm"', 'spacing = "40 mm"\nwear_depth = "20 um"')
+    case = parse_case(text.replace("[limits]", '[limits]\nworn_clearance = "0.1 mm"'))
+    trial = preview_case(case, corners=False)
+    check = next(each for each in trial.checks if each.id == "worn_clearance")
+    worn = TrackDeviation(wear_depth=20e-6)
+    opened = [gap("conjugate_arm", theta, worn) for theta in np.linspace(0.0, 6.2, 32)]
+    drawn = [gap("conjugate_arm", theta, TrackDeviation()) for theta in np.linspace(0.0, 6.2, 32)]
+    most = case.cam.clearance + np.subtract(opened, drawn).max()
+    assert check.demand == pytest.approx(most, rel=2e-3)  # 32 angles, first order
+    assert check.status == "pass"
+
+
+def groove():
+    case = read_case(GROOVE)
+    return case, case.contour(given_lift(case)), machines(case)[0]
+
+
+@pytest.mark.parametrize(
+    ("corner", "clearance"),
+    [({"tracks": -4e-6}, 28e-6), ({"rollers": 3e-6}, 14e-6), ({"wear_depth": 10e-6}, 40e-6)],
+)
+def test_landings_in_a_wider_groove(corner, clearance):
+    """Those of a groove whose drawing has that clearance: the same equations, to round-off."""
+    _, contour, machine = groove()
+    there = impacts(machine.at_corner(Corner("x", **corner)), contour)
+    wide = replace(machine.cam, groove=replace(machine.cam.groove, clearance=clearance))
+    drawn = impacts(replace(machine, cam=wide), contour)
+    assert len(there) == len(drawn) > 3
+    for one, other in zip(there, drawn, strict=True):
+        assert one.flight.speed == pytest.approx(other.flight.speed, rel=1e-9)
+        assert one.pressure == pytest.approx(other.pressure, rel=1e-9)
+
+
+def test_a_groove_that_closes_in_is_refused():
+    _, contour, machine = groove()
+    with pytest.raises(InputError, match=r"cam\.groove\.clearance = -0\.004 mm"):
+        impacts(machine.at_corner(Corner("x", rollers=12e-6)), contour)
+
+
+def with_tolerances():
+    """The preloaded arm with tolerances, and a wear of the discs, of 2 um."""
+    text = (DATA / "preloaded_arm.toml").read_text(encoding="utf-8")
+    stated = ("roller_tolerance", "place_tolerance", "centre_tolerance", "wear_depth")
+    rows = "".join(f'{key} = "2 um"\n' for key in stated) + 'turn_tolerance = "0.01 deg"\n'
+    return parse_case(text.replace('spacing = "40 mm"', f'spacing = "40 mm"\n{rows}'))
+
+
+def test_preload_opens_and_closes_with_the_corners():
+    case = with_tolerances()
+    contour = case.contour(given_lift(case))
+    names = {each.name for each in corners_of(case)}
+    varied = {f"{each} {end}" for each in ("roller radius", "second track", "centre distance",
+              "phase of the discs", "wear of the tracks") for end in ("low", "high")}  # fmt: skip
+    assert varied <= names
+    corners = [Corner("nominal"), Corner("more", rollers=2e-6), Corner("less", wear_depth=2e-6)]
+    tried = {each.corner.name: each for each in outcomes(case, machines(case), contour, corners)}
+    least = {name: each.demands["preload_least"] for name, each in tried.items()}
+    most = {name: each.demands["preload_pressure"] for name, each in tried.items()}
+    assert least["less"] < least["nominal"] < least["more"]
+    assert most["less"] < most["nominal"] < most["more"]
+    machine = machines(case)[0]
+    theta = uniform_turn(90)
+    track = case.cam.second.track(contour.pitch)
+    plain, worn = (
+        machine.at_corner(each).system.preload.at(track, theta).preload for each in corners[::2]
+    )
+    opened = TrackDeviation(wear_depth=2e-6).on(track, theta)
+    assert worn / plain == pytest.approx(1.0 - opened / 20e-6, rel=1e-12)
+    loads = follower_loads(contour.pitch, machine.system, machine.cam_speed, theta)
+    assert (loads.idle_force > 0.0).all()
+
+
+def test_a_corner_without_preload_is_refused():
+    case = with_tolerances()
+    contour = case.contour(given_lift(case))
+    gone = Corner("gone", wear_depth=12e-6)
+    (tried,) = outcomes(case, machines(case), contour, [gone])
+    assert "cam.conjugate.interference" in tried.refused
