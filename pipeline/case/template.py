@@ -1,7 +1,8 @@
 """First case of each kind, complete and commented, as written by `camwright new`.
 
 The kinds differ at the source: a cylinder model, a measurement on the engine of that model, the
-torque of another machine, or a lift. The mechanism is the same, but for the arm of the kind `arm`.
+torque of another machine, or a lift. The mechanism is the same, but for the arm of the kind `arm`
+and the groove of `groove`.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from camwright.pipeline.torque.torque import Torque
 Kind = Literal[
     "cylinder", "table", "pressure", "speed", "voltage",
     "torque", "harmonics", "compressor", "pump", "press",
-    "lift", "eccentric", "arm",
+    "lift", "eccentric", "arm", "groove",
 ]  # fmt: skip
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
@@ -74,16 +75,18 @@ def _text(name: str, kind: Kind) -> str:
     """Text of the first case of a kind: source of the torque or lift, machine, follower,
     requirements.
     """
-    balances = kind not in ("lift", "eccentric", "arm")
-    carried = _ARM if kind == "arm" else _STEM
+    balances = kind not in ("lift", "eccentric", "arm", "groove")
+    closed = "groove" if kind == "groove" else "spring"
+    drive = "slow" if closed == "groove" else "shaft" if kind in _MACHINES else "crank"
     parts = (
-        *(_HEAD, _SOURCES[kind], _MACHINE, carried, _SURROUNDINGS),
-        *(_BALANCE if balances else "", _REQUIREMENTS),
+        *(_HEAD, _SOURCES[kind], _MECHANISM, _SPRING if closed == "spring" else "", _CAM),
+        *(_GROOVE if closed == "groove" else "", _SHAFT, _ARM if kind == "arm" else _STEM),
+        *(_SURROUNDINGS, _BALANCE if balances else "", _REQUIREMENTS),
     )
     return filled(
         "\n".join(part for part in parts if part), name=name, data=_data_name(name, kind),
         power="230 W" if kind in _WITHOUT_MEAN else None, reduction=0.4 if balances else None,
-        **_SHAFTS["shaft" if kind in _MACHINES else "crank"],
+        **_SHAFTS[drive], **_CLOSURES[closed],
     )  # fmt: skip
 
 
@@ -134,8 +137,31 @@ _SHAFTS: dict[str, dict[str, Filling]] = {
         "gear_ratio": 1.0, "turns": "shaft turns per cam turn; 2.0: two lobes", "shaft": "shaft",
         "speed": "750 rpm", "overspeed": "825 rpm", "pinion_teeth": 40, "jerk_weight": 2.0,
     },
+    "slow": {
+        "gear_ratio": 1.0, "turns": "shaft turns per cam turn", "shaft": "shaft",
+        "speed": "300 rpm", "overspeed": "330 rpm", "pinion_teeth": 40, "jerk_weight": None,
+    },
 }  # fmt: skip
 """Drive of the cam, name and speeds of the shaft, teeth of the pinion, jerk weight."""
+_CLOSURES: dict[str, dict[str, Filling]] = {
+    "spring": {
+        "held_by": None, "prime_radius": "60 mm", "at": "smallest radius of the roller's CENTRE",
+        "width": "15.5 mm", "wide": "within the flat of the roller at its axial offset",
+        "counterweight": {"residual": "20 g mm", "position": "35 mm"},
+        "mounting": None, "span": "23 mm", "spanned": "between the middles of the cheeks",
+        "cheek_width": "5 mm", "cheek_height": "22 mm",
+        "tool": "25 mm", "landing": None, "slip": None, "room": "90 mm",
+    },
+    "groove": {
+        "held_by": "groove", "prime_radius": "68 mm", "at": "to the middle of the groove",
+        "width": "28 mm", "wide": "18 mm of groove on a web of 10 mm",
+        "counterweight": None,
+        "mounting": "overhung", "span": "14 mm", "spanned": "middle of the roller to the cheek's",
+        "cheek_width": "10 mm", "cheek_height": "30 mm",
+        "tool": None, "landing": "50 mm/s", "slip": "7 m/s", "room": "125 mm",
+    },
+}  # fmt: skip
+"""Cam, pin and limits by what keeps the follower on the cam."""
 
 
 def _torque_text(torque: Torque) -> str:
@@ -296,6 +322,22 @@ segment = [
     { law = "dwell", angle = "60 deg" },
 ]
 """,
+    "groove": """\
+# --- The lift: rises, dwells and returns that fill the turn. Two equal strokes balance the disc.
+# Other laws: cycloidal, polynomial_345, polynomial_4567 and more.
+[lift]
+kind = "segments"
+segment = [
+    { law = "modified_sine", angle = "70 deg", stroke = "10 mm" },
+    { law = "dwell", angle = "20 deg" },
+    { law = "modified_sine", angle = "70 deg", stroke = "-10 mm" },
+    { law = "dwell", angle = "20 deg" },
+    { law = "modified_sine", angle = "70 deg", stroke = "10 mm" },
+    { law = "dwell", angle = "20 deg" },
+    { law = "modified_sine", angle = "70 deg", stroke = "-10 mm" },
+    { law = "dwell", angle = "20 deg" },
+]
+""",
     "eccentric": """\
 # --- The lift: of a circular disc
 [lift]
@@ -304,11 +346,13 @@ eccentricity = "5 mm"                # half of the lift
 """,
 }
 
-_MACHINE = """\
+_MECHANISM = """\
 # --- The mechanism: parts by their cards where there are any, else as drawn
 [mechanism]
 gear_ratio = @gear_ratio@ # @turns@
+"""
 
+_SPRING = """\
 [spring]
 rate = "100 kN/m"
 preload = "1000 N"                   # at the smallest cam radius
@@ -323,10 +367,13 @@ free_length = "86 mm"
 treatment = "peened"
 temperature = "60 degC"
 relaxation = 0.005                   # share of the force lost: ask the maker
+"""
 
+_CAM = """\
 [cam]
-prime_radius = "60 mm"               # smallest radius of the roller's CENTRE
-width = "15.5 mm"                    # within the flat of the roller at its axial offset
+closure = @held_by@ # the follower is pushed and pulled; no spring
+prime_radius = @prime_radius@ # @at@
+width = @width@ # @wide@
 end = { kind = "sharp" }
 bore_radius = "15 mm"
 material = "case_hardened"
@@ -335,7 +382,17 @@ profile_tolerance = "8 um"           # ground
 keyway = { width = "8 mm", depth = "3.3 mm", root_radius = "0.25 mm" }  # DIN 6885-1: 0.16 to 0.25
 fit = { least_interference = "15 um", greatest_interference = "22 um" }  # negative: clearance
 key = { length = "15 mm", chamfer = "0.4 mm", form = "B", material = "c45" }
+"""
 
+_GROOVE = """\
+[cam.groove]
+clearance = "0.02 mm"                # width of the groove less the diameter of the roller
+depth = "18 mm"
+corner_radius = "0.4 mm"             # of the end mill; less than the chamfer of the roller
+outer_radius = "115 mm"              # of the disc around the groove
+"""
+
+_SHAFT = """\
 [camshaft]
 bearing_spacing = "70 mm"
 cam_position = "35 mm"               # from the first bearing; overhung places may be negative
@@ -346,7 +403,7 @@ material = "c45"
 bearing_rating = "19.5 kN"           # of two 6206
 bearing_static_rating = "11.2 kN"
 bearing_width = "16 mm"
-counterweight = { residual = "20 g mm", position = "35 mm" }  # balanced on a bench
+counterweight = @counterweight@ # balanced on a bench
 
 [camshaft.gear]
 teeth = 40
@@ -379,12 +436,13 @@ contamination = "normal_cleanliness"
 
 [roller.pin]
 diameter = "17 mm"
-span = "23 mm"                       # between the middles of the cheeks
+mounting = @mounting@ # a cheek on the other side would be in the groove
+span = @span@ # @spanned@
 material = "case_hardened"
 
 [roller.fork]
-cheek_width = "5 mm"
-cheek_height = "22 mm"
+cheek_width = @cheek_width@
+cheek_height = @cheek_height@
 cheek_length = "26 mm"
 bridge_length = "4 mm"
 material = "c45"
@@ -392,7 +450,7 @@ material = "c45"
 
 _STEM = """\
 [follower]
-mass = "1.1 kg"                      # all that moves, with a third of the spring
+mass = "1.1 kg"                      # all that moves, with a third of a spring
 stem_diameter = "20 mm"
 stem_length = "220 mm"
 stem_material = "c45"
@@ -488,8 +546,10 @@ torque_reduction = @reduction@ # least reduction of the torque ripple
 roller_life = "1000 h"
 shaft_bearing_life = "1000 h"
 target_life = "1000 h"               # for wear and fatigue
-tool_radius = "25 mm"                # grinding wheel or cutter
-cam_radius = "90 mm"                 # room for the cam
+tool_radius = @tool@ # grinding wheel or cutter
+landing_speed = @landing@ # in the clearance: noise and wear
+crossover_slip = @slip@ # of the roller, which is to turn the other way
+cam_radius = @room@ # room for the cam
 
 [tolerances]
 source = "the profile is ground; the rest: defaults"

@@ -22,7 +22,7 @@ def new(
         Words(
             "Source of the cam: an engine as a cylinder model, or measured as torque, cylinder "
             "pressure, tooth times or pick-up voltage; another machine by its torque; a lift; an "
-            "eccentric; a lift on an arm.",
+            "eccentric; a lift on an arm, or in a groove.",
             "KIND",
             choices=KINDS,
         ),

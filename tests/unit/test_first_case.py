@@ -53,7 +53,7 @@ def test_the_cam_of_the_cylinder_model(balancing):
     assert next(each for each in trial.checks if each.id == "torque_reduction").must_have
 
 
-@pytest.mark.parametrize("kind", ["lift", "eccentric", "arm"])
+@pytest.mark.parametrize("kind", ["lift", "eccentric", "arm", "groove"])
 def test_a_cam_without_engine(tmp_path, kind):
     case = written(tmp_path, kind)
     assert not case.scope.not_covered
@@ -84,8 +84,8 @@ def test_a_cam_of_another_machine(tmp_path, kind):
 
 
 def test_the_machine_is_the_same_in_each_kind(tmp_path):
-    """But for the teeth of the pinion, which are those of the ratio, and for an arm."""
-    cases = [written(tmp_path, kind) for kind in KINDS if kind != "arm"]
+    """But for the teeth of the pinion, which are those of the ratio, an arm and a groove."""
+    cases = [written(tmp_path, kind) for kind in KINDS if kind not in ("arm", "groove")]
     for case in cases:
         gear = case.camshaft.gear
         assert gear.teeth == case.mechanism.gear_ratio * gear.pinion_teeth
