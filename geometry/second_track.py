@@ -38,6 +38,14 @@ class SecondFollower(ABC):
     def of(self, first: FollowerPath) -> SecondTrack:
         """Track under it, from the path of the first roller or face."""
 
+    def linkage(self, first: Arm) -> Arm:
+        """Arm to this roller, from that to the first; of a stem there is none."""
+        return first
+
+    @abstractmethod
+    def seen_from(self, first: Contour) -> SecondFollower:
+        """The first roller or face as that fixed to this one, from its contour."""
+
     def track(self, first: FollowerPath) -> SecondTrack:
         """`of`, computed once for a path."""
         return _kept(self, first)
@@ -82,6 +90,9 @@ class OppositeRoller(SecondFollower):
         contour = RollerContour(self.path(first), self.radius)
         return SecondTrack(first, contour, _HALF_TURN, 1.0, self.distance)
 
+    def seen_from(self, first: Contour) -> OppositeRoller:
+        return replace(self, radius=first.require_roller().roller_radius)
+
 
 @dataclass(frozen=True)
 class ConjugateArm(SecondFollower):
@@ -119,14 +130,22 @@ class ConjugateArm(SecondFollower):
             raise InputError("cam.conjugate.arm_angle", f"{np.degrees(self.angle):.5g} deg", limit)
         ratio = self.length / first.arm.length
         values = np.maximum(ratio * (top - lift.values), 0.0)
-        arm = Arm(first.arm.centre_distance, self.length, -first.arm.sense)
-        return ArmPath(replace(lift, values=values), arm, float(start))
+        return ArmPath(replace(lift, values=values), self.linkage(first.arm), float(start))
+
+    def linkage(self, first: Arm) -> Arm:
+        return Arm(first.centre_distance, self.length, -first.sense)
 
     def of(self, first: FollowerPath) -> SecondTrack:
         if not isinstance(first, ArmPath):
             raise InputError("cam.conjugate.arm_length", "stated", "left out without an arm")
         contour = ArmContour(self.path(first), self.radius)
         return SecondTrack(first, contour, 0.0, float(first.arm.length / self.length), 0.0)
+
+    def seen_from(self, first: Contour) -> ConjugateArm:
+        if not isinstance(first.pitch, ArmPath):
+            raise InputError("cam.conjugate.arm_length", "stated", "left out without an arm")
+        radius = first.require_roller().roller_radius
+        return ConjugateArm(float(first.pitch.arm.length), self.angle, radius)
 
 
 @dataclass(frozen=True)
@@ -146,6 +165,9 @@ class OppositeFace(SecondFollower):
         contour = FlatFaceContour(replace(first, offset=-first.offset))
         breadth = 2.0 * first.base_radius + first.lift.highest.value
         return SecondTrack(first, contour, _HALF_TURN, 1.0, breadth)
+
+    def seen_from(self, first: Contour) -> OppositeFace:  # noqa: ARG002
+        return self
 
 
 class Touch(NamedTuple):

@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from scipy.interpolate import BSpline
 
 _STEP_ERROR = 1e-8  # m; a smaller one only enlarges the file
-_EDGES_MOST = 8
-"""Edges at each rim of the contour's face: with one, OpenCASCADE errs by 1e-3 in the volume."""
+_EDGES_MOST = 24
+"""Edges at each rim of the contour's face: OpenCASCADE errs by 1e-3 in the volume with one, up to
+3e-5 with 8, 3e-7 with these."""
 
 _UP, _DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 _REMARKS = (

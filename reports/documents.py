@@ -56,7 +56,10 @@ _TEMPERATURES = (
     (("roller", "bearing"), "roller bearing"),
 )
 DRAWING = "workshop/drawing.pdf"
-DIMENSIONS = "workshop/dimensions.json"
+_OTHERS = ("_outer", "_second")
+"""Endings of the files of the second track: wall or disc."""
+DIMENSIONS = {"": "workshop/dimensions.json", "_second": "workshop/dimensions_second.json"}
+"""Dimensions of each disc, by the ending of its files."""
 _MM = 1e3
 
 
@@ -242,7 +245,16 @@ def _first(verdict: Verdict) -> Iterator[tuple[str, str]]:
 
 @dataclass(frozen=True, eq=False)
 class ShopDrawing:
-    """Contents of the shop drawing.
+    """Contents of the shop drawing: a sheet for each disc."""
+
+    short_title: str
+    sheets: Sequence[DrawingSheet]
+    results: str
+
+
+@dataclass(frozen=True, eq=False)
+class DrawingSheet:
+    """Sheet of the shop drawing of one disc.
 
     radii : sequence   polar angle, deg, and radius, mm, as text
     swing : sequence   of an arm: cam angle, deg, radius, mm, and arm angle, deg, as text
@@ -250,7 +262,6 @@ class ShopDrawing:
     block, facts       names and values of the title block; "" is a field to fill by hand
     """
 
-    short_title: str
     drawing: Drawing
     radii: Sequence[tuple[str, str]]
     extremes: Sequence[tuple[str, str]]
@@ -259,7 +270,6 @@ class ShopDrawing:
     notes: Sequence[str]
     block: Sequence[tuple[str, str]]
     facts: Sequence[tuple[str, str]]
-    results: str
 
 
 def write_drawing(material: ReportMaterial) -> list[Path]:
@@ -284,35 +294,44 @@ def drawing_content(material: ReportMaterial) -> ShopDrawing | None:
     ResultError
         If the dimensions of the run are not as `workshop_files` writes them.
     """
-    file = material.run.path / DIMENSIONS
-    if not file.is_file():
+    sheets = []
+    for end, name in DIMENSIONS.items():
+        file = material.run.path / name
+        if not file.is_file():
+            continue
+        record = read_json(file)
+        try:
+            sheets.append(_sheet(material, record, end))
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise ResultError(f"{file}: {type(error).__name__}: {error}") from None
+    if not sheets:
         return None
-    record = read_json(file)
-    try:
-        return _content(material, record)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise ResultError(f"{file}: {type(error).__name__}: {error}") from None
+    title = shortened(str(material.case.get("title") or material.case["name"]), 100)
+    results = results_sha256(material.run.summary["files"])
+    return ShopDrawing(f"Drawing of the cam, {title}", sheets, results)
 
 
-def _content(material: ReportMaterial, record: Record) -> ShopDrawing:
-    """Contents of the shop drawing from the record of its dimensions, file `DIMENSIONS`: views,
-    lists, notes, facts.
+def _sheet(material: ReportMaterial, record: Record, end: str) -> DrawingSheet:
+    """Sheet of a disc from the record of its dimensions, file `DIMENSIONS`: views, lists, notes,
+    facts; end: of the files of the disc.
     """
-    part, case = _part(material, record), material.case
+    part, case = _part(material, record, end), material.case
     title = str(case.get("title") or case["name"])
+    pair = (material.run.path / DIMENSIONS["_second"]).is_file()
+    disc = f", disc {2 if end else 1} of 2" if pair else ""
     roughness, thickness = record["roughness_rq_um"], record["thickness_mm"]
     profile, hole = record["profile_tolerance_mm"], record["counter_hole"]
     facts = [
-        ("Title", shortened(title, 70)), ("Case", shortened(str(case["name"]), 40)),
-        ("Thickness", quantity(thickness, "mm")), ("Card", shortened(record["material"], 70)),
+        ("Title", shortened(title, 110)), ("Case", shortened(str(case["name"]), 40) + disc),
+        ("Thickness", quantity(thickness, "mm")), ("Card", shortened(record["material"], 110)),
         ("Hardness", shortened(record["hardness"], 60)),
         ("Roughness", "" if roughness is None else f"Rq {quantity(roughness, 'µm')}"),
         ("Scale", scale_words(part.scale)), ("General tolerances", ""),
     ]  # fmt: skip
     keyed = " Datum B: middle plane of the keyway; it sets angle zero." if part.keyway else ""
     notes = [
-        "Contour: workshop/contour.dxf, layer cut, arcs within "
-        f"{quantity(record['arc_error_um'], 'µm')}; points in contour.csv.",
+        f"Contour: workshop/contour{end}.dxf, layer cut, arcs within "
+        f"{quantity(record['arc_error_um'], 'µm')}; points in contour{end}.csv.",
         f"Profile of a line, ISO 1101: zone {quantity(profile, 'mm')} wide, half of it to each "
         "side of the nominal contour.",
         f"Datum A: axis of the bore.{keyed}",
@@ -325,9 +344,9 @@ def _content(material: ReportMaterial, record: Record) -> ShopDrawing:
             f"at x {quantity(hole['x_mm'], 'mm')}, y {quantity(hole['y_mm'], 'mm')}."
         )
     extremes = [
-        (f"{end}, at {number(record[name]['polar_angle_deg'])}°",
+        (f"{which}, at {number(round(record[name]['polar_angle_deg'], 2) % 360.0)}°",
          f"{record[name]['radius_mm']:.4f}")
-        for end, name in (("greatest", "radius_max"), ("least", "radius_min"))
+        for which, name in (("greatest", "radius_max"), ("least", "radius_min"))
     ]  # fmt: skip
     radii = [(f"{degrees}°", f"{radius:.4f}") for degrees, radius in record["radii_mm"].items()]
     if (groove := record.get("groove")) is not None:
@@ -336,14 +355,17 @@ def _content(material: ReportMaterial, record: Record) -> ShopDrawing:
         outer = groove["outer_radii_mm"]
         radii = [(f"{at} in", inner) for (at, inner) in radii]
         radii += [(f"{degrees}° out", f"{radius:.4f}") for degrees, radius in outer.items()]
+    notes += [
+        f"{each[0].upper()}{each[1:].replace(' deg', '°')}."
+        for each in record.get("second_track", ())
+    ]
     notes.append(_mating(record["tracks"]))
     swing = _swing(record.get("arm"))
     if swing:
         notes += _pivot(record["arm"]), *(f"Follower: {each}." for each in record["arm"]["notes"])
-    return ShopDrawing(
-        f"Drawing of the cam, {shortened(title, 100)}", views(part), radii, extremes,
-        swing, list(_drops(record["tracks"])), notes, title_block(case), facts,
-        results_sha256(material.run.summary["files"]),
+    return DrawingSheet(
+        views(part), radii, extremes, swing, list(_drops(record["tracks"])), notes,
+        title_block(case), facts,
     )  # fmt: skip
 
 
@@ -368,8 +390,9 @@ def _pivot(arm: Record) -> str:
     )
 
 
-def _part(material: ReportMaterial, record: Record) -> DrawnCam:
-    """Cam to draw, from the contour of the run and the record of its dimensions.
+def _part(material: ReportMaterial, record: Record, end: str) -> DrawnCam:
+    """Disc to draw, from the contour of the run and the record of its dimensions; end: of its
+    files.
 
     Lengths are in mm; the keyway is width, depth beyond the bore and angle in rad, the counter-hole
     centre x, y and radius.
@@ -381,7 +404,7 @@ def _part(material: ReportMaterial, record: Record) -> DrawnCam:
     if keyway is not None:
         width, depth = size_of(keyway["width"]), size_of(keyway["depth"])
     return DrawnCam(
-        np.array([contour["contour_x_mm"], contour["contour_y_mm"]]),
+        np.array([contour[f"{end[1:] and 'second_'}contour_{axis}_mm"] for axis in "xy"]),
         None if width is None or depth is None else (
             _MM * width.nominal, _MM * (depth.nominal - bore.nominal),
             float(np.radians(keyway["angle_deg"])),
@@ -494,9 +517,11 @@ def _tables(material: ReportMaterial) -> dict[str, Excerpt | None]:
     # Crowns stand in the workbook of the inspection sheet.
     files: dict[str, Excerpt | None] = {
         f"{material.run.final.path.name}/5_cycle.csv": None,
-        "workshop/contour.csv": None,
-        "workshop/contour_outer.csv": None,
-        "workshop/inspection_outer.csv": Excerpt("every 10 deg", CAM_ANGLE.header, 10.0, {}),
+        **dict.fromkeys(f"workshop/contour{end}.csv" for end in ("", *_OTHERS)),
+        **{
+            f"workshop/inspection{end}.csv": Excerpt("every 10 deg", CAM_ANGLE.header, 10.0, {})
+            for end in _OTHERS
+        },
         "workshop/inspection.csv": Excerpt(
             "every 10 deg",
             CAM_ANGLE.header,

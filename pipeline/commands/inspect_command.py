@@ -27,8 +27,13 @@ def inspect(
         str | None,
         Words("Width of the tolerance zone, um; default: of the inspection sheet.", "WIDTH"),
     ] = None,
-    wall: Annotated[
-        str | None, Words("Measured wall of a groove: inner or outer; default: inner.", "WALL")
+    track: Annotated[
+        str | None,
+        Words(
+            "Measured wall of a groove, inner or outer, or disc of a pair, first or second;"
+            " default: the first of these.",
+            "TRACK",
+        ),
     ] = None,
     keep_phase: Annotated[bool, Words("Keep the measured angle to the keyway in the run.")] = False,
     jobs: JobsOption = None,
@@ -47,7 +52,7 @@ def inspect(
     from camwright.pipeline.base import units
     from camwright.pipeline.results.drawn_cam import drawn_cam
     from camwright.pipeline.results.folder_exchange import amended, settle_recorded
-    from camwright.pipeline.results.workshop_files import measured_wall
+    from camwright.pipeline.results.workshop_files import measured_surface
     from camwright.pipeline.studies import cam_inspection
     from camwright.reports.comparisons.inspection_pictures import draw
 
@@ -56,8 +61,8 @@ def inspect(
         raise InputError("--tolerance", tolerance, "> 0 um")
     settle_recorded(folder)
     case, contour = drawn_cam(folder)
-    surface = measured_wall(case, contour, wall)
-    points = cam_inspection.read_measured(measured, surface or contour)
+    surface = measured_surface(case, contour, track)
+    points = cam_inspection.read_measured(measured, surface)
     band = case.workshop_order.tolerance if width is None else width
     target = folder / cam_inspection.FOLDER if out is None else out
     writing = amended(folder) if out is None else nullcontext(folder)
@@ -66,7 +71,7 @@ def inspect(
             case,
             contour,
             points,
-            wall=surface,
+            track=track,
             keep_phase=keep_phase,
             jobs=jobs,
             progress=progress,

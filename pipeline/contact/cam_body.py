@@ -224,6 +224,11 @@ class CamConjugate(Part):
     """depth that each disc loses with its roller until they are replaced"""
 
     @property
+    def gap(self) -> float:
+        """Clearance of the second roller, m, or its interference below zero."""
+        return (self.clearance or 0.0) - (self.interference or 0.0)
+
+    @property
     def roller(self) -> SecondFollower:
         """Second roller on its stem or arm.
 

@@ -31,6 +31,8 @@ class CycleFigures(TypedDict):
 class InspectionDocument(TypedDict):
     """A measured cam against its run."""
 
+    track: NotRequired[str]
+    """Measured wall of a groove or disc of a pair, where it was stated."""
     phase_deg: float
     """Angle by which the measured contour is turned."""
     size_um: float

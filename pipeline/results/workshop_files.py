@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import radians
 from pathlib import Path
@@ -18,6 +18,7 @@ from camwright.geometry.cutouts import radius_at
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import CamError, InputError, ResultError
 from camwright.geometry.form_closure import Side, groove_wall
+from camwright.geometry.second_track import OppositeFace, discs_of
 from camwright.meshes.step_solid import write_step
 from camwright.meshes.step_text import PartTitle, stamped
 from camwright.pipeline.base.files import Json, json_text, read_text, write_atomic
@@ -38,13 +39,16 @@ _INSPECTION = (
 )  # fmt: skip
 
 WORKSHOP = "workshop"
-SOLID = "cam.step"
-DIMENSIONS = "dimensions.json"
+SOLID, DRAWN = "cam{}.step", "contour{}.dxf"
+DIMENSIONS = "dimensions{}.json"
+"""Files of a disc, by the ending of its name."""
 CROWN = "crown_{}.csv"
 """Drop of the crown of a body, by its word."""
-_OUTER = "_outer"
+_OUTER, SECOND = "_outer", "_second"
 _WALLS: Mapping[str, Side] = MappingProxyType({"": "inner", _OUTER: "outer"})
 """Walls of a groove by the ending of their files."""
+_DISCS = MappingProxyType({"": "first", SECOND: "second"})
+"""Discs of a conjugate pair by the ending of their files."""
 RADII_STEP = 10
 """deg, between the radii of the dimensions."""
 _CROWN_SHARES = (0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)  # of half the flat
@@ -95,41 +99,68 @@ def dimensions_of(case: Case) -> CamDimensions:
     )  # fmt: skip
 
 
-def made_walls(case: Case, contour: Contour) -> dict[str, Contour]:
-    """Surfaces to make, by the ending of the names of their files: the contour, or both walls of a
-    groove.
+def made_surfaces(case: Case, contour: Contour) -> dict[str, Contour]:
+    """Surfaces to make by the ending of their files: the contour, both walls of a groove, or the
+    contours of both discs of a conjugate pair.
 
-    The walls of a groove are half a clearance away from the roller on its nominal path.
+    The walls of a groove are half a clearance away from the roller on its nominal path. The second
+    disc is smaller by the clearance of its roller, or larger by its interference.
     """
-    if case.cam.groove is None:
-        return {"": contour}
-    track, half = contour.require_roller(), groove_of(case.cam, contour).half_width
-    return {end: groove_wall(track, side, half) for end, side in _WALLS.items()}
+    cam = case.cam
+    if cam.groove is not None:
+        track, half = contour.require_roller(), groove_of(cam, contour).half_width
+        return {end: groove_wall(track, side, half) for end, side in _WALLS.items()}
+    discs = discs_of(contour, cam.second)
+    contours = {end: each.contour for end, each in zip(_DISCS, discs, strict=False)}
+    if cam.conjugate is not None:
+        second = contours[SECOND].require_roller()
+        contours[SECOND] = replace(second, roller_radius=second.roller_radius + cam.conjugate.gap)
+    return contours
 
 
-def measured_wall(case: Case, contour: Contour, wall: str | None) -> Contour | None:
-    """Wall of a groove by its side, the inner one where None; None of a cam without a groove.
+def discs_made(case: Case, contour: Contour) -> dict[str, Contour]:
+    """Contours of the discs to make, by the ending of the names of their files: in a groove its
+    inner wall.
+    """
+    surfaces = made_surfaces(case, contour)
+    return {end: surfaces[end] for end in surfaces if end in _DISCS}
+
+
+def measured_surface(case: Case, contour: Contour, track: str | None) -> Contour:
+    """Surface of a track: wall of a groove, "inner" or "outer", disc of a pair, "first" or
+    "second"; of the first one where None.
 
     Raises
     ------
     InputError
-        If the cam has no such wall.
+        If the cam has no such track.
     """
-    walls = made_walls(case, contour)
-    sides = {side: walls[end] for end, side in _WALLS.items()} if len(walls) > 1 else {}
-    if wall is None:
-        return sides.get("inner")
-    chosen = next((each for side, each in sides.items() if side == wall), None)
-    if chosen is None:
-        raise InputError("--wall", wall, " or ".join(sides) or "left out: the cam has no groove")
-    return chosen
+    surfaces = made_surfaces(case, contour)
+    names = _WALLS if _OUTER in surfaces else _DISCS
+    tracks = {names[end]: each for end, each in surfaces.items()} if len(surfaces) > 1 else {}
+    if track is None:
+        return surfaces[""]
+    if track not in tracks:
+        raise InputError("--track", track, " or ".join(tracks) or "left out: the cam has one track")
+    return tracks[track]
+
+
+def real_cam(case: Case, contour: Contour, track: str | None, measured: Contour) -> Contour:
+    """Contour under the first roller of a cam with the measured surface of one track; the other
+    track matches it.
+    """
+    second = case.cam.second
+    path = measured.pitch
+    if second is not None and track == _DISCS[SECOND]:
+        path = second.seen_from(contour).of(path).contour.pitch
+    return replace(contour, pitch=path)
 
 
 def groove_record(case: Case, contour: Contour) -> dict[str, Json] | None:
     """Groove for ``dimensions.json``: width, clearance, depth, fillet, radius of the disc and radii
     of the outer wall by polar angle, mm; None without a groove.
     """
-    groove, walls = case.cam.groove, made_walls(case, contour)
+    groove, walls = case.cam.groove, made_surfaces(case, contour)
     if groove is None:
         return None
     outer = walls[_OUTER].polygon(_RADII_POINTS)
@@ -146,11 +177,15 @@ def groove_record(case: Case, contour: Contour) -> dict[str, Json] | None:
     }
 
 
-def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
+def dimensions_record(case: Case, contour: Contour, end: str = "") -> dict[str, Json]:
     """Record of ``dimensions.json``: sizes, tolerances, material, radii by polar angle; in a
     groove those of the inner wall, and of the outer one in its record.
+
+    Parameters
+    ----------
+    end : str   ending of the files of a disc, "" of the first one
     """
-    groove, contour = groove_record(case, contour), made_walls(case, contour)[""]
+    groove, contour = groove_record(case, contour), made_surfaces(case, contour)[end]
     size, keyway, hole = dimensions_of(case), case.cam.keyway, drilled_hole(case.cam, contour)
     polygon = contour.polygon(_RADII_POINTS)
     record: dict[str, Json] = {
@@ -169,7 +204,8 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
             str(degrees): in_unit(radius_at(polygon, radians(degrees)), "mm")
             for degrees in range(0, 360, RADII_STEP)
         },
-        "arm": swing_record(case, contour),
+        "arm": swing_record(case, contour, end),
+        "second_track": list(second_track_notes(case, contour, end)),
     }
     if groove is not None:
         record["groove"] = groove
@@ -196,21 +232,27 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
     return record
 
 
-def swing_record(case: Case, contour: Contour) -> dict[str, Json] | None:
+def swing_record(case: Case, contour: Contour, end: str = "") -> dict[str, Json] | None:
     """Record of the arm of an oscillating follower and its swing by cam angle; None of a stem.
 
     Rows of two numbers: distance of the reference point of the arm from the cam axis, mm, and angle
-    at the pivot between the line to the cam axis and the arm, deg.
+    at the pivot between the line to the cam axis and the arm, deg. On a second disc those of the
+    second arm.
     """
     arm, degrees = case.follower.arm, np.arange(0.0, 360.0, RADII_STEP)
-    angle = case.follower.arm_angle(contour.lift(np.radians(degrees)), case.cam.prime_radius)
+    theta, second = np.radians(degrees), case.cam.second
+    angle = case.follower.arm_angle(contour.lift(theta), case.cam.prime_radius)
     if arm is None or angle is None:
         return None
-    radius = np.asarray(arm.linkage.radius(angle))
+    linkage = arm.linkage
+    if end and second is not None:
+        linkage = second.linkage(linkage)
+        angle = np.asarray(linkage.angle(np.hypot(*contour.pitch.points(theta))))
+    radius = np.asarray(linkage.radius(angle))
     return {
-        "centre_distance_mm": in_unit(arm.centre_distance, "mm"),
-        "length_mm": in_unit(arm.length, "mm"),
-        "swing": arm.swing,
+        "centre_distance_mm": in_unit(float(linkage.centre_distance), "mm"),
+        "length_mm": in_unit(float(linkage.length), "mm"),
+        "swing": "with" if linkage.sense > 0.0 else "against",
         "reference": case.facing.reference,
         "notes": list(_follower_notes(case)),
         "by_cam_angle": {
@@ -218,6 +260,44 @@ def swing_record(case: Case, contour: Contour) -> dict[str, Json] | None:
             for at, r, psi in zip(degrees, radius, angle, strict=True)
         },
     }
+
+
+def second_track_notes(case: Case, contour: Contour, end: str = "") -> Iterator[str]:
+    """Notes on the place of a disc of a conjugate pair, on its roller and its fit, or on the faces
+    of a yoke; none of other cams.
+
+    Parameters
+    ----------
+    end : str   ending of the files of the disc
+    """
+    cam, pair = case.cam, case.cam.conjugate
+    if cam.yoke is not None:
+        breadth = OppositeFace().track(contour.pitch).reach
+        apart = shown(breadth + cam.yoke.clearance, "mm", 7)
+        yield (
+            f"yoke: breadth {shown(breadth, 'mm', 7)} between parallel planes at every angle; faces"
+            f" {apart} apart, with {shown(cam.yoke.clearance, 'mm')} clearance"
+        )
+    if pair is None:
+        return
+    number, other = (1, 2) if end == "" else (2, 1)
+    side = "towards" if end else "away from"
+    yield (
+        f"disc {number} of 2: disc {other} is {shown(pair.spacing, 'mm')} from it along the shaft"
+        f" between their middles, {side} bearing 1; 0 deg between their lines of angle zero, seen"
+        " from the same side"
+    )
+    radius = pair.roller_radius if end else case.roller.radius
+    width = f"{shown(2.0 * radius, 'mm')} in diameter, {shown(case.roller.width, 'mm')} wide"
+    yield f"roller of disc {number}: {width}"
+    if pair.arm_angle is not None and pair.arm_length is not None:
+        between = f"{shown(pair.arm_angle, 'deg', 6)} between the arms to both rollers"
+        yield f"{between}, the second {shown(pair.arm_length, 'mm', 7)} long"
+    elif pair.distance is not None:
+        yield f"centres of both rollers {shown(pair.distance, 'mm', 7)} apart"
+    word, size = ("clearance", "smaller") if pair.gap > 0.0 else ("interference", "larger")
+    gap = shown(abs(pair.gap), "mm")
+    yield f"{word} of the second roller {gap}, by which the contour of disc 2 is {size}"
 
 
 def _follower_notes(case: Case) -> Iterator[str]:
@@ -266,10 +346,10 @@ def crown_drops(case: Case, word: str) -> tuple[Array, Array]:
     return stated, crown.drop(stated)
 
 
-def notes_of(case: Case) -> Iterator[str]:
-    """Notes of the DXF file: identification, sizes, tolerances and material."""
-    stated, size = case.document, dimensions_of(case)
-    entries = (case.name, stated.part_number, stated.revision and f"revision {stated.revision}")
+def notes_of(case: Case, end: str = "") -> Iterator[str]:
+    """Notes of the DXF file of a disc: identification, sizes, tolerances and material."""
+    stated, size = part_title(case, end), dimensions_of(case)
+    entries = (stated.name, stated.number, stated.revision and f"revision {stated.revision}")
     yield ", ".join(filter(None, entries))
     yield f"bore {size.bore.words}, thickness {shown(size.thickness, 'mm')}"
     if size.keyway_width is not None and size.keyway_depth is not None:
@@ -297,7 +377,7 @@ def notes_of(case: Case) -> Iterator[str]:
         ways = f"swings outwards {arm.swing} the rotation of the cam"
         yield f"{lengths} to the {case.facing.reference}; {swing}, {ways}"
     yield from _follower_notes(case)
-    yield ", ".join(filter(None, (f"material {stated.material or size.material}", size.hardness)))
+    yield ", ".join(filter(None, (f"material {stated.material}", size.hardness)))
     yield "cam angles grow counter-clockwise from the marked line; the cam turns clockwise"
 
 
@@ -315,20 +395,21 @@ def _hardness(material: Material) -> str:
     return ", ".join(words)
 
 
-def outline_of(case: Case, contour: Contour) -> Outline:
-    """Contour, bore, keyway, counter-hole and groove of a case."""
-    cam, walls, cut = case.cam, made_walls(case, contour), None
+def outline_of(case: Case, contour: Contour, end: str = "") -> Outline:
+    """Contour, bore, keyway, counter-hole and groove of a disc of a case; end: of its files."""
+    cam, surfaces, cut = case.cam, made_surfaces(case, contour), None
     if cam.groove is not None:
-        cut = GrooveCut(walls[_OUTER], cam.groove.depth, cam.groove.outer_radius)
-    return Outline(walls[""], cam.bore_radius, cam.keyway, drilled_hole(cam, contour), cut)
+        cut = GrooveCut(surfaces[_OUTER], cam.groove.depth, cam.groove.outer_radius)
+    return Outline(surfaces[end], cam.bore_radius, cam.keyway, drilled_hole(cam, contour), cut)
 
 
-def part_title(case: Case) -> PartTitle:
-    """Product data of the cam in its STEP file."""
+def part_title(case: Case, end: str = "") -> PartTitle:
+    """Product data of a disc in its STEP file; end: of its files."""
     stated = case.document
+    disc = "" if case.cam.conjugate is None else f" disc {2 if end else 1}"
     return PartTitle(
-        case.name,
-        number=stated.part_number or "",
+        case.name + disc,
+        number=f"{stated.part_number}{disc}" if stated.part_number else "",
         revision=stated.revision or "",
         project=stated.project or "",
         author=stated.author or "",
@@ -343,8 +424,8 @@ def write_workshop(
     contour: Contour,
     note: Callable[[str], None] = lambda _: None,
 ) -> None:
-    """Write the files for the workshop: dimensions, contour, drawing, solid, path of the cutter,
-    inspection sheet and crowns.
+    """Write the files for the workshop: dimensions, drawing and solid of each disc, points, path of
+    the cutter and inspection sheet of each surface, and crowns.
 
     A file that the contour does not allow, such as the path of a tool larger than the minimum
     concave radius, is left out; all others are written.
@@ -357,16 +438,11 @@ def write_workshop(
     note : callable     told which file is left out, and why
     """
     folder.mkdir(parents=True, exist_ok=True)
-    outline, order = outline_of(case, contour), case.workshop_order
-    jobs: dict[str, Callable[[Path], object]] = {
-        DIMENSIONS: lambda path: write_atomic(path, dimensions_text(case, contour)),
-        "contour.dxf": lambda path: write_dxf(
-            path, outline, order.arc_error, tuple(notes_of(case))
-        ),
-        SOLID: lambda path: write_step(path, outline, case.cam.width, part_title(case)),
-    }
-    for end, wall in made_walls(case, contour).items():
-        jobs |= _jobs_of(wall, end, order)
+    jobs: dict[str, Callable[[Path], object]] = {}
+    for end in discs_made(case, contour):
+        jobs |= _jobs_of_disc(case, contour, end)
+    for end, surface in made_surfaces(case, contour).items():
+        jobs |= _jobs_of(surface, end, case.workshop_order)
     for word, part in (("cam", case.cam), (case.facing.word, case.facing)):
         if part.crown is not None:
             jobs[CROWN.format(word)] = partial(_write_crown, case, word)
@@ -378,6 +454,20 @@ def write_workshop(
         except CamError as error:
             (folder / name).unlink(missing_ok=True)
             note(f"{WORKSHOP}/{name} is left out: {error}")
+
+
+def _jobs_of_disc(case: Case, contour: Contour, end: str) -> dict[str, Callable[[Path], object]]:
+    """How to write dimensions, drawing and solid of a disc, by file; end: of these."""
+    outline, error = outline_of(case, contour, end), case.workshop_order.arc_error
+    sizes = partial(dimensions_text, case, contour, end)
+    notes = *notes_of(case, end), *second_track_notes(case, contour, end)
+    return {
+        DIMENSIONS.format(end): lambda path: write_atomic(path, sizes()),
+        DRAWN.format(end): lambda path: write_dxf(path, outline, error, notes),
+        SOLID.format(end): lambda path: write_step(
+            path, outline, case.cam.width, part_title(case, end)
+        ),
+    }
 
 
 def _jobs_of(
@@ -399,19 +489,20 @@ def _write_crown(case: Case, word: str, path: Path) -> None:
 
 
 def stamp_solid(folder: Path, case_sha256: str, results_sha256: str) -> None:
-    """Write the hashes of case and results into the header of the STEP file, if any.
+    """Write the hashes of case and results into the headers of the STEP files, if any.
 
     The results are complete only after the solid was written; no hash covers the solid itself.
     """
-    file = folder / SOLID
-    if file.is_file():
-        write_atomic(file, stamped(read_text(file), case_sha256, results_sha256))
+    for end in _DISCS:
+        file = folder / SOLID.format(end)
+        if file.is_file():
+            write_atomic(file, stamped(read_text(file), case_sha256, results_sha256))
 
 
-def dimensions_text(case: Case, contour: Contour) -> str:
-    """JSON of the dimensions; GeometryError for an undercut contour."""
-    contour.require_no_undercut()
-    return json_text(dimensions_record(case, contour)) + "\n"
+def dimensions_text(case: Case, contour: Contour, end: str = "") -> str:
+    """JSON of the dimensions of a disc; GeometryError for an undercut contour."""
+    made_surfaces(case, contour)[end].require_no_undercut()
+    return json_text(dimensions_record(case, contour, end)) + "\n"
 
 
 def contour_table(contour: Contour, theta: Array) -> str:

@@ -25,6 +25,7 @@ from camwright.pipeline.records.inspection_document import CycleFigures, Inspect
 from camwright.pipeline.results import check_records, run_reader
 from camwright.pipeline.results.run_records import cycle_columns
 from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.results.workshop_files import measured_surface, real_cam
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.angle_trace import read_trace
 from camwright.pipeline.torque.trace_file import trace_text
@@ -39,11 +40,14 @@ _POLAR = (("polar_angle_deg", "measured_radius_mm"), ("angle_deg", "radius_mm"))
 
 @dataclass(frozen=True, eq=False)
 class RealPart:
-    """Measured cam: fit to the nominal contour, real contour, and trial on it."""
+    """Measured cam: fit to the nominal contour, real contour, and trial on it; track: the measured
+    one, where it was stated.
+    """
 
     fit: Inspection
     contour: Contour
     trial: Trial
+    track: str | None = None
 
 
 def read_measured(path: Path, contour: Contour) -> Array:
@@ -87,7 +91,7 @@ def inspect_part(
     contour: Contour,
     measured: Array,
     *,
-    wall: Contour | None = None,
+    track: str | None = None,
     keep_phase: bool = False,
     jobs: int | None = None,
     progress: Progress = SILENT,
@@ -99,8 +103,7 @@ def inspect_part(
     case : Case               of the cam
     contour : Contour         nominal
     measured : array (2, n)   surface points, m
-    wall : Contour            measured wall of a groove, the other one is parallel to it; None: the
-                              contour was measured
+    track : str               which is measured, see `measured_surface`; the other one matches it
     keep_phase : bool         measured angles are relative to the keyway
     jobs : int                processes of the certificate; None: number of cores, at most 4
     progress : Progress       told each stage
@@ -111,13 +114,12 @@ def inspect_part(
         If the measured points are not of this cam.
     """
     progress.stage("fit")
-    surface = contour if wall is None else wall
+    surface = measured_surface(case, contour, track)
     fit = inspected(surface, measured)
     real = real_contour(surface, fit, keep_phase=keep_phase)
-    if wall is not None:
-        real = replace(contour, pitch=real.pitch)
+    real = real_cam(case, contour, track, real)
     trial = solve(case, real, jobs=jobs, progress=progress)
-    return RealPart(fit, real, replace(trial, why="measured contour"))
+    return RealPart(fit, real, replace(trial, why="measured contour"), track)
 
 
 def write_inspection(
@@ -164,6 +166,8 @@ def write_inspection(
         "scope": part.trial.case.scope.as_record(),
         "binding": list(part.trial.binding),
     }
+    if part.track is not None:
+        record["track"] = part.track
     write_atomic(folder / "inspection.json", json_text(record) + "\n")
     return record
 
@@ -201,6 +205,7 @@ def lines(record: InspectionDocument) -> list[str]:
     """Lines of text of an inspection record."""
     side = "within" if record["within_tolerance"] else "outside"
     text = [
+        *([f"track: {record['track']}"] if "track" in record else []),
         f"phase {record['phase_deg']:.4f} deg, size {record['size_um']:+.2f} um",
         f"deviation {record['deviation_min_um']:+.2f} to {record['deviation_max_um']:+.2f} um, "
         f"{side} the tolerance zone of {record['tolerance_um']:g} um; scatter "

@@ -347,8 +347,10 @@ def _section(part: DrawnCam, left: float, y: float) -> Iterator[Shape]:
         (left, right), y + high, y + high + 9.0, f"{part.thickness:.6g}", above=True
     )
     middle = 0.5 * (left + right)
-    yield _thin(circle(0.5 * scale * part.thickness + 3.0, (middle, y + high)))
-    yield Text("D", (right + 5.0, y + high - 5.0), _TEXT, bold=True)
+    around = 0.5 * scale * part.thickness + 3.0
+    yield _thin(circle(around, (middle, y + high)))
+    aside = np.sqrt(0.5) * around + 1.0
+    yield Text("D", (middle + aside, y + high + max(aside, 10.2)), _TEXT, bold=True)
     yield Text("C–C", (0.5 * (left + right), y - low - 8.0), _TEXT, align="middle", bold=True)
 
 

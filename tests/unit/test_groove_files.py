@@ -18,7 +18,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import undrilled
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.results.workshop_files import measured_wall, write_workshop
+from camwright.pipeline.results.workshop_files import measured_surface, write_workshop
 from camwright.pipeline.run import run_case
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of
 from camwright.reports.report_data import read_material
@@ -111,7 +111,7 @@ def test_dimensions_of_the_groove(workshop):
 def test_a_measured_wall_is_fitted_to_its_own_nominal(side):
     """A wave of 3 um, its size and its phase; the roller on it runs on the wave of its lift."""
     case, contour = feeder()
-    wall, theta = measured_wall(case, contour, side), uniform_turn(720)
+    wall, theta = measured_surface(case, contour, side), uniform_turn(720)
     wave = 5e-6 + 3e-6 * np.cos(4.0 * theta)
     points = rotation(0.01) @ (wall.points(theta) + wave * wall.normal(theta))
     fit = inspected(wall, points)
@@ -127,8 +127,8 @@ def test_a_measured_wall_is_fitted_to_its_own_nominal(side):
 
 def test_only_a_groove_has_walls_to_measure():
     case, contour = feeder()
-    with pytest.raises(InputError, match="--wall = floor, must be inner or outer"):
-        measured_wall(case, contour, "floor")
+    with pytest.raises(InputError, match="--track = floor, must be inner or outer"):
+        measured_surface(case, contour, "floor")
 
 
 @pytest.fixture(scope="module")
