@@ -29,7 +29,14 @@ from camwright.pipeline.case.limits import (
     Limits,
 )
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, LoadCase
-from camwright.pipeline.case.scope_section import OF_ARM, OF_STEM, PartName, Scope, ScopeName
+from camwright.pipeline.case.scope_section import (
+    OF_ARM,
+    OF_STEM,
+    ROCKER,
+    PartName,
+    Scope,
+    ScopeName,
+)
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
@@ -64,7 +71,7 @@ from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.pivot import Pivot
 from camwright.pipeline.follower.pivot_forces import FRICTION, ArmPivot
-from camwright.pipeline.follower.rocker import RockerOutput
+from camwright.pipeline.follower.rocker import Rocker, RockerOutput
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem
@@ -188,6 +195,7 @@ class Machine(Displayed):
     pivot: Pivot | None = None
     output: RockerOutput | None = None
     deviation: TrackDeviation = EXACT
+    rocker: Rocker | None = None
 
     @property
     def crank_speed(self) -> float:
@@ -237,6 +245,7 @@ class Machine(Displayed):
             **self.follower.parts,
             **self.spring.parts,
             "arm": self.arm if self.arm is not None and self.arm.is_described else None,
+            "rocker": self.rocker if self.rocker is not None and self.rocker.is_described else None,
             "guides": self.guides,
             "camshaft": shaft,
             "camshaft_bearings": shaft and (shaft.bearing_rating or shaft.bearing_static_rating),
@@ -253,13 +262,16 @@ class Machine(Displayed):
 
     @property
     def absent(self) -> tuple[ScopeName, ...]:
-        """What a follower on a stem, or on an arm, does not have."""
-        return OF_ARM if self.arm is None else OF_STEM
+        """What a follower on a stem, or on an arm with or without a second one, does not have."""
+        if self.arm is None:
+            return OF_ARM
+        return OF_STEM if self.rocker is not None else (*OF_STEM, ROCKER)
 
     @property
     def arm_bar(self) -> ArmBar | None:
         """Arm as a beam; None of a stem, and of an arm that is not described."""
-        return ArmBar.of(self.arm, self.follower, self.mass, self.spring.link)
+        output = 0.0 if self.output is None else self.output.reduced_mass
+        return ArmBar.of(self.arm, self.follower, self.mass - output, self.spring.link)
 
     @property
     def tilting(self) -> FollowerTilt:
@@ -610,6 +622,7 @@ def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machin
         arm=follower.arm,
         pivot=follower.pivot,
         output=case.output,
+        rocker=case.rocker,
     )
 
 

@@ -20,7 +20,7 @@ from camwright.pipeline.follower.spring_kinds import TABLES_OF_PARTS, SpringPart
 from camwright.pipeline.records.run_summary import ScopeRecord
 
 PartName = Literal[
-    "roller_bearing", "pin", "fork", "arm", "pivot", "spring", SpringPart, "guides",
+    "roller_bearing", "pin", "fork", "arm", "rocker", "pivot", "spring", SpringPart, "guides",
     "camshaft", "camshaft_bearings", "key", "gear",
 ]  # fmt: skip
 Subject = Literal["stem", "bore", "line_ends", "friction", "requirements"]
@@ -31,6 +31,7 @@ PART_WORDS: dict[PartName, str] = {
     "pin": "pin of the roller",
     "fork": "fork of the roller",
     "arm": "arm of the follower",
+    "rocker": "second arm of the rocker",
     "spring": "spring design",
     **{part: part.replace("_", " ") for part in TABLES_OF_PARTS},
     "guides": "guides",
@@ -53,7 +54,9 @@ SCOPE_WORDS: Mapping[ScopeName, str] = MappingProxyType(
 )
 OF_STEM: tuple[ScopeName, ...] = ("guides", "stem")
 """What an arm does not have."""
-OF_ARM: tuple[ScopeName, ...] = ("arm", "pivot")
+ROCKER: ScopeName = "rocker"
+"""What an arm without a second one does not have."""
+OF_ARM: tuple[ScopeName, ...] = ("arm", ROCKER, "pivot")
 """What a stem does not have."""
 EVERY = "all"
 """Word of a case file for all that a sign-off may leave out."""
@@ -62,6 +65,7 @@ _KEYS: dict[ScopeName, tuple[str, ...]] = {
     "pin": ("roller.pin",),
     "fork": ("roller.fork",),
     "arm": tuple(f"follower.arm.{key}" for key in ("width", "depth", "material", "*_notch")),
+    ROCKER: tuple(f"rocker.{key}" for key in ("width", "depth", "notch")),
     "spring": ("spring.design", "spring.travel_max"),
     **dict(TABLES_OF_PARTS.items()),
     "guides": ("guides", "follower.overhang_at_max_lift", "follower.anti_rotation"),
@@ -173,7 +177,8 @@ def with_every_name(tables: Tables) -> Tables:
         return tables
     follower = tables.get("follower")
     has_arm = isinstance(follower, dict) and "arm" in follower
-    names: list[TomlValue] = [name for name in SCOPE_WORDS if name not in OF_ARM or has_arm]
+    absent = OF_ARM if not has_arm else () if "rocker" in tables else (ROCKER,)
+    names: list[TomlValue] = [name for name in SCOPE_WORDS if name not in absent]
     return tables | {"scope": scope | {"not_covered": names}}
 
 

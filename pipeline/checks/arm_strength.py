@@ -1,11 +1,11 @@
-"""Checks of the arm of an oscillating follower: fatigue at pivot and roller, yield."""
+"""Checks of the arms of an oscillating follower and its rocker: fatigue and yield."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import cache
-from typing import Literal
+from functools import cache, partial
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -13,13 +13,17 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
+from camwright.pipeline.base.levers import Lever
+from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import ARM_SAFETY, ARM_YIELD_SAFETY, SHAFT_RELIABILITY
+from camwright.pipeline.case.scope_section import PartName
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import (
     STATED,
     Allowed,
     Declaration,
+    Declaring,
     Demand,
     Kept,
     check,
@@ -33,7 +37,10 @@ from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.arm import FollowerArm
-from camwright.pipeline.follower.arm_beam import ArmBar, ArmForces, ArmSection
+from camwright.pipeline.follower.arm_beam import ArmBar, ArmForces, ArmSection, SectionLoads
+from camwright.pipeline.follower.camshaft_loads import Surface
+from camwright.pipeline.follower.rocker import Rocker
+from camwright.pipeline.follower.second_arm import SecondArmBar
 from camwright.pipeline.follower.shaft_strength import (
     fatigue_safety,
     reliability_factor,
@@ -61,6 +68,23 @@ def _lacking(arm: FollowerArm, *keys: str) -> tuple[str, ...]:
     return lacking(arm.table, arm, "width", "depth", "material", *keys)
 
 
+def _lacking_of_second(numbers: Numbers) -> tuple[str, ...]:
+    """Keys of section and material that the second arm of a rocker lacks."""
+    rocker, arm = numbers.known_case.rocker, _arm_of(numbers)
+    if rocker is None:
+        raise InputError(Rocker.table, "missing", "given for its checks")
+    missing = lacking(Rocker.table, rocker, "width", "depth", "notch")
+    has_material = rocker.material is not None or arm.material is not None
+    return missing if has_material else (*missing, f"{Rocker.table}.material")
+
+
+def _source(numbers: Numbers, table: str) -> str:
+    """Source of the table of the first or second arm."""
+    rocker = numbers.known_case.rocker
+    second = rocker if table == Rocker.table else None
+    return str((_arm_of(numbers) if second is None else second).source)
+
+
 def _arm_of(numbers: Numbers) -> FollowerArm:
     """Arm of the case; InputError where it has none."""
     arm = numbers.known_case.follower.arm
@@ -74,7 +98,62 @@ def bar_of(numbers: Numbers) -> ArmBar | None:
     case, link = numbers.known_case, numbers.known_case.spring.link
     arm = None if case.follower.arm is None else numbers.of_part(case.follower.arm)
     link = None if link is None else numbers.of_part(link)
-    return ArmBar.of(arm, case.facing, numbers["follower.mass"], link)
+    output = 0.0 if case.output is None else case.output.reduced_mass
+    return ArmBar.of(arm, case.facing, numbers["follower.mass"] - output, link)
+
+
+def second_bar_of(numbers: Numbers) -> SecondArmBar | None:
+    """Second arm of a case as a bar; None without one on an arm, or without a material."""
+    case = numbers.known_case
+    arm = case.follower.arm
+    if arm is None or case.rocker is None:
+        return None
+    material = case.rocker.material or arm.material
+    if material is None:
+        return None
+    return SecondArmBar(case.rocker, numbers["follower.arm.length"], material)
+
+
+def second_loads(bar: SecondArmBar, cam: LoadedCam) -> SectionLoads:
+    """Loads (..., n) of the section of the second arm of a loaded cam."""
+    return bar.loads(cam.output_force, cam.jet.lift, cam.speed**2 * cam.jet.lift_d2)
+
+
+class _JudgedSection(NamedTuple):
+    """Section of an arm that is judged: its loads on a loaded cam, material and surface finish."""
+
+    section: ArmSection
+    loads: Callable[[LoadedCam], SectionLoads]
+    material: Material
+    surface: Surface
+
+
+def _first_arm(numbers: Numbers, which: str = "sections") -> tuple[_JudgedSection, ...]:
+    """Sections of the arm; () where it is not described.
+
+    which: name of those of `ArmBar`: `sections`, all, `pivot` or `roller`
+    """
+    bar = bar_of(numbers)
+    if bar is None:
+        return ()
+
+    def loads(section: ArmSection, cam: LoadedCam) -> SectionLoads:
+        return bar.loads(section, arm_forces(cam))
+
+    return tuple(
+        _JudgedSection(each, partial(loads, each), bar.material, bar.arm.surface)
+        for each in getattr(bar, which)
+    )
+
+
+def _second_arm(numbers: Numbers) -> tuple[_JudgedSection, ...]:
+    """Section of the second arm at the pivot; () without one, or without a material."""
+    bar = second_bar_of(numbers)
+    if bar is None:
+        return ()
+    return (
+        _JudgedSection(bar.section, partial(second_loads, bar), bar.material, bar.rocker.surface),
+    )
 
 
 def arm_forces(cam: LoadedCam) -> ArmForces:
@@ -86,12 +165,12 @@ def arm_forces(cam: LoadedCam) -> ArmForces:
         along=np.asarray(-sense * across * cam.motion.side),
         normal=cam.normal,
         closing=cam.closing,
-        inertia=cam.inertia,
+        inertia=np.asarray(cam.inertia - cam.output_inertia),
         couple=cam.follower_moment,
     )
 
 
-def _nan_first(each: tuple[Extreme, ArmSection]) -> float:
+def _nan_first(each: tuple[Extreme, _JudgedSection]) -> float:
     return -np.inf if np.isnan(each[0].value) else each[0].value
 
 
@@ -100,11 +179,7 @@ def _governing(section: ArmSection) -> str:
     return f"governing section: {section.name}, {distance} from the pivot"
 
 
-def _sections(bar: ArmBar, place: str) -> tuple[ArmSection, ...]:
-    return bar.pivot if place == "pivot" else bar.roller
-
-
-def _strength(section: ArmSection, bar: ArmBar, reliability: float) -> tuple[float, ...]:
+def _strength(judged: _JudgedSection, reliability: float) -> tuple[float, ...]:
     """Endurance strength of a section, Pa, and its factors of surface k_a, size k_b and reliability
     k_e; all NaN where the material has no tensile or fatigue strength.
 
@@ -112,119 +187,164 @@ def _strength(section: ArmSection, bar: ArmBar, reliability: float) -> tuple[flo
     ----------
     reliability : float   share of the arms that survive, 0.5 to 1
     """
-    card = bar.material
+    card = judged.material
     tensile, endured = card.tensile_strength, card.fatigue_bending
     if tensile is None or endured is None:
         return (np.nan,) * 4
-    finish, rest = surface_factor(bar.arm.surface, tensile), reliability_factor(reliability)
-    size = size_factor(section.diameter)
+    finish, rest = surface_factor(judged.surface, tensile), reliability_factor(reliability)
+    size = size_factor(judged.section.diameter)
     return finish * size * rest * endured, finish, size, rest
 
 
-def _arm_fatigue(place: Literal["pivot", "roller"], needs: Literal["", "roller"]) -> Declaration:
-    """Check of the fatigue of the arm at its pivot or roller.
+class _ArmPlace(NamedTuple):
+    """Place of an arm that is judged: its words, its part of the scope, keys and sections."""
 
-    Parameters
-    ----------
-    needs : str   kind of follower that has this place, see `Kind`; "": any
-    """
-    notch = f"{place}_notch"
+    where: str
+    part: PartName
+    needs: Literal["arm", "roller"]
+    table: str
+    method: str
+    loads: str
+    reason: str
+    card: Mapping[str, str]
+    values: tuple[str, ...]
+    levers: tuple[Lever, ...]
+    lacking: Callable[[Numbers], tuple[str, ...]]
+    sections: Callable[[Numbers], tuple[_JudgedSection, ...]]
+
+
+_METHOD = "Goodman line, bending, torsion and force along the arm over the turn"
+_CARD = {
+    "S_e'": f"{_ARM}.material.fatigue_bending",
+    "R_m": f"{_ARM}.material.tensile_strength",
+}
+
+
+def _at(place: Literal["pivot", "roller"], needs: Literal["arm", "roller"]) -> _ArmPlace:
+    """The arm at its pivot or roller."""
+    return _ArmPlace(
+        *(f"arm at its {place}", "arm", needs, _ARM, f"{_METHOD}, by contact, spring and inertia"),
+        *(_LOADS, _BREAKS, _CARD, _VALUES, _LEVERS),
+        lambda numbers: _lacking(_arm_of(numbers), f"{place}_notch"),
+        partial(_first_arm, which=place),
+    )
+
+
+_OF_SECOND = _ArmPlace(
+    *("second arm at its pivot", "rocker", "arm", Rocker.table),
+    f"{_METHOD}, by its output and its own inertia",
+    "M, F: moment in the plane of the cam and force along the second arm, by mass, force and spring"
+    " of its output and by its own mass, as if without lash; L = 0, T = 0",
+    "a broken second arm drops what it moves, and its spring no longer holds the follower",
+    dict.fromkeys(_CARD, f"{STATED} [MPa]"),
+    (*given.LENGTH, "rocker.notch"),
+    (*(levers.one(f"rocker.{key}", most=2.0) for key in ("depth", "width")), *levers.LOAD),
+    _lacking_of_second,
+    _second_arm,
+)
+
+
+def _fatigue(name: str, at: _ArmPlace) -> Declaration:
+    """Check of the fatigue of an arm at a place; name: its id."""
 
     @check(
         ARM_SAFETY,
-        id=f"arm_fatigue_{place}",
-        title=f"Fatigue safety factor of the arm at its {place}",
-        method="Goodman line, bending, torsion and force along the arm over the turn, by contact,"
-        " spring and inertia",
+        id=name,
+        title=f"Fatigue safety factor of the {at.where}",
+        method=at.method,
         lift_can_help=True,
-        needs=needs,
-        part="arm",
-        kept_as=f"normal force at the fatigue of the arm at its {place}",
+        needs=at.needs,
+        part=at.part,
+        kept_as=f"normal force at the fatigue of the {at.where}",
         formula="1/(s_a/S_e + s_m/R_m) >= S; s_a, s_m: von Mises amplitude and mean of K_f (M/W +"
         " F/A + L/W_y) and K_f T/W_t over a turn, S_e = k_a k_b k_e S_e': endurance with factors of"
-        f" surface, size and reliability, S: limits.arm_safety. Least over the sections; {_LOADS}",
+        " surface, size and reliability, S: limits.arm_safety. Least over the sections;"
+        f" {at.loads}",
         symbols={
             **dict.fromkeys(("s_a", "s_m"), f"{STATED} [MPa]"),
             **dict.fromkeys(("k_a", "k_b", "k_e"), STATED),
-            "S_e'": "follower.arm.material.fatigue_bending",
-            "R_m": "follower.arm.material.tensile_strength",
+            **at.card,
             "S_e": "[MPa]",
         },
-        reason=_BREAKS,
+        reason=at.reason,
         values=(
-            *_VALUES,
-            "follower.arm.material.tensile_strength",
-            "follower.arm.material.fatigue_bending",
+            *at.values,
+            f"{at.table}.material.tensile_strength",
+            f"{at.table}.material.fatigue_bending",
             "limits.shaft_reliability",
         ),
-        levers=_LEVERS,
+        levers=at.levers,
         page="Follower",
         scales_with=(NORMAL_FORCE, 1.0),
     )
     def fatigue(solution: Solution) -> Demand:
         """Least fatigue safety factor over the sections at the place and the load cases."""
         machine, limit = solution.machine, solution.machine.limits[ARM_SAFETY]
-        arm, bar = _arm_of(solution.numbers), machine.arm_bar
-        missing = _lacking(arm, notch)
-        if arm.material is not None:
-            missing += lacking_of_card(arm.material, "fatigue_bending", "tensile_strength")
-        if bar is None or missing:
+        missing, sections = at.lacking(solution.numbers), at.sections(solution.numbers)
+        if sections:
+            card = sections[0].material
+            missing += lacking_of_card(card, "fatigue_bending", "tensile_strength")
+        if not sections or missing:
             return Demand(None, limit, missing=missing)
-        tensile, rest = bar.material.tensile_strength or np.nan, machine.limits[SHAFT_RELIABILITY]
+        tensile, rest = card.tensile_strength or np.nan, machine.limits[SHAFT_RELIABILITY]
 
         @cache
-        def stresses(section: ArmSection, cycle: Cycle) -> tuple[Array, Array]:
-            forces = arm_forces(cam_of(solution, cycle))
-            return section.amplitude_and_mean(bar.loads(section, forces))
+        def stresses(judged: _JudgedSection, cycle: Cycle) -> tuple[Array, Array]:
+            return judged.section.amplitude_and_mean(judged.loads(cam_of(solution, cycle)))
 
-        def safety_of(section: ArmSection) -> Callable[[Cycle], float]:
+        def safety_of(judged: _JudgedSection) -> Callable[[Cycle], float]:
             """Function for the fatigue safety factor of a section over the turn of a load case."""
-            endured = np.array([_strength(section, bar, rest)[0]])
+            endured = np.array([_strength(judged, rest)[0]])
 
             def safety(cycle: Cycle) -> float:
-                amplitude, mean = stresses(section, cycle)
+                amplitude, mean = stresses(judged, cycle)
                 return float(fatigue_safety(amplitude[None], mean[None], endured, tensile)[0])
 
             return safety
 
-        worst, section = min(
+        worst, judged = min(
             (
                 (worst_case(solution.cycles, safety_of(each), at_least=True), each)
-                for each in _sections(bar, place)
+                for each in sections
             ),
             key=_nan_first,
         )
-        endured, finish, size, reliable = _strength(section, bar, rest)
-        amplitude, mean = stresses(section, cycle_of(solution.cycles, worst))
+        endured, finish, size, reliable = _strength(judged, rest)
+        amplitude, mean = stresses(judged, cycle_of(solution.cycles, worst))
         k = first_greatest(amplitude / endured + mean / tensile)
+        stated = {
+            "s_a": float(amplitude[k]),
+            "s_m": float(mean[k]),
+            "k_a": finish,
+            "k_b": size,
+            "k_e": reliable,
+            "S_e'": card.fatigue_bending or np.nan,
+            "R_m": tensile,
+        }
         return Demand(
             worst.value,
             limit,
             worst,
-            note=_governing(section),
+            note=_governing(judged.section),
             figures=(
-                arm.source,
+                _source(solution.numbers, at.table),
                 machine.limits.source(SHAFT_RELIABILITY),
-                f"{bar.material.name}: {bar.material.source}",
+                f"{card.name}: {card.source}",
                 "Shigley, 10th ed., sec. 6-9 (to be confirmed)",
             ),
-            method="Goodman line, bending, torsion and force along the arm over the turn;"
-            f" fatigue notch factor {section.notch:g}, k_a {finish:.3f} ({arm.surface}), k_b"
-            f" {size:.3f}, k_e {reliable:.3f}",
+            method=f"{_METHOD}; fatigue notch factor {judged.section.notch:g}, k_a {finish:.3f}"
+            f" ({judged.surface}), k_b {size:.3f}, k_e {reliable:.3f}",
             stated={
-                "s_a": float(amplitude[k]),
-                "s_m": float(mean[k]),
-                "k_a": finish,
-                "k_b": size,
-                "k_e": reliable,
+                key: value for key, value in stated.items() if STATED in at.card.get(key, STATED)
             },
         )
 
     return fatigue
 
 
-arm_fatigue_pivot = _arm_fatigue("pivot", "")
-arm_fatigue_roller = _arm_fatigue("roller", "roller")
+arm_fatigue_pivot = _fatigue("arm_fatigue_pivot", _at("pivot", "arm"))
+arm_fatigue_roller = _fatigue("arm_fatigue_roller", _at("roller", "roller"))
+rocker_fatigue = _fatigue("rocker_fatigue", _OF_SECOND)
 
 
 def _yield_allowed(numbers: Numbers) -> Allowed:
@@ -236,19 +356,29 @@ def _yield_allowed(numbers: Numbers) -> Allowed:
     return Allowed(arm.material.core_yield / numbers.limit(ARM_YIELD_SAFETY))
 
 
-def _with_section(demand: Demand, solution: Solution) -> Demand:
+def _second_allowed(numbers: Numbers) -> Allowed:
+    """Allowed stress of the second arm, Pa: yield strength over the safety; its missing keys."""
+    missing, bar = _lacking_of_second(numbers), second_bar_of(numbers)
+    if bar is None or missing:
+        return Allowed(None, missing)
+    return Allowed(bar.material.core_yield / numbers.limit(ARM_YIELD_SAFETY))
+
+
+def _with_section(
+    sections: Callable[[Numbers], tuple[_JudgedSection, ...]], demand: Demand, solution: Solution
+) -> Demand:
     """Demand with the section that governs, its loads, N and N m, and its moduli."""
-    bar = solution.machine.arm_bar
-    if demand.at is None or bar is None:
+    every = sections(solution.numbers)
+    if demand.at is None or not every:
         return demand
     cycle, k = row_of(solution.cycles, demand.at)
-    forces = arm_forces(cam_of(solution, cycle))
-    section = max(bar.sections, key=lambda each: float(each.greatest(bar.loads(each, forces))[k]))
-    loads = bar.loads(section, forces)
+    cam = cam_of(solution, cycle)
+    worst = max(every, key=lambda each: float(each.section.greatest(each.loads(cam))[k]))
+    section, loads, card = worst.section, worst.loads(cam), worst.material
     return replace(
         demand,
         note=_governing(section),
-        figures=(f"{bar.material.name}: {bar.material.source}",),
+        figures=(f"{card.name}: {card.source}",),
         stated={
             "M": abs(float(loads.bending[k])),
             "F": abs(float(loads.along[k])),
@@ -259,42 +389,62 @@ def _with_section(demand: Demand, solution: Solution) -> Demand:
             "W_y": float(section.side_modulus),
             "W_t": float(section.torsion_modulus),
             "K_f": float(section.notch),
-            "R_p": bar.material.core_yield,
+            "R_p": card.core_yield,
         },
     )
 
 
-@check(
-    ARM_YIELD_SAFETY,
-    title="Greatest von Mises stress of the arm at a notch",
-    unit="MPa",
-    method="bending, torsion and force along the arm at every section, with the fatigue notch"
-    " factors",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    part="arm",
-    kept_as="von Mises stress of the arm",
-    formula="sqrt((K_f (M/W + F/A + L/W_y))^2 + 3 (K_f T/W_t)^2) <= R_p / S; K_f: fatigue notch"
-    " factor, W, A, W_y, W_t: moduli and area of the section, R_p: yield strength of the core, S:"
-    f" limits.arm_yield_safety. Greatest over the sections at pivot and roller, all angles and load"
-    f" cases; {_LOADS}",
-    symbols={
-        **dict.fromkeys(("M", "L", "T"), f"{STATED} [N m]"),
-        "F": f"{STATED} [N]",
-        **dict.fromkeys(("W", "W_y", "W_t"), f"{STATED} [mm^3]"),
-        "A": f"{STATED} [mm^2]",
-        "K_f": STATED,
-        "R_p": f"{STATED} [MPa]",
-    },
-    reason=f"a bent arm moves the roller off its path; {_BREAKS}",
-    values=(*_VALUES, "follower.arm.material.*yield_strength"),
-    levers=_LEVERS,
-    page="Follower",
-    scales_with=(NORMAL_FORCE, 1.0),
-).measured(
+def _yield_check(
+    words: str, part: PartName, loads: str, reason: str, table: str, values: tuple[str, ...],
+    change: tuple[Lever, ...],
+) -> Declaring:  # fmt: skip
+    """Declaration of the check of the greatest stress of an arm against yield."""
+    return check(
+        ARM_YIELD_SAFETY,
+        title=f"Greatest von Mises stress of the {words} at a notch",
+        unit="MPa",
+        method="bending, torsion and force along the arm at every section, with the fatigue notch"
+        " factors",
+        lift_can_help=True,
+        tier=Tier.SCREENING,
+        needs="arm",
+        part=part,
+        kept_as=f"von Mises stress of the {words}",
+        formula="sqrt((K_f (M/W + F/A + L/W_y))^2 + 3 (K_f T/W_t)^2) <= R_p / S; K_f: fatigue notch"
+        " factor, W, A, W_y, W_t: moduli and area of the section, R_p: yield strength of the core,"
+        " S: limits.arm_yield_safety. Greatest over the sections at pivot and roller, all angles"
+        f" and load cases; {loads}",
+        symbols={
+            **dict.fromkeys(("M", "L", "T"), f"{STATED} [N m]"),
+            "F": f"{STATED} [N]",
+            **dict.fromkeys(("W", "W_y", "W_t"), f"{STATED} [mm^3]"),
+            "A": f"{STATED} [mm^2]",
+            "K_f": STATED,
+            "R_p": f"{STATED} [MPa]",
+        },
+        reason=f"a bent arm moves the roller off its path; {reason}",
+        values=(*values, f"{table}.material.*yield_strength"),
+        levers=change,
+        page="Follower",
+        scales_with=(NORMAL_FORCE, 1.0),
+    )
+
+
+def _greatest(sections: tuple[_JudgedSection, ...], cam: LoadedCam) -> Array:
+    """Greatest von Mises stress over sections at each cam angle (..., n), Pa; NaN without any."""
+    if not sections:
+        return np.full_like(cam.normal, np.nan)
+    worst, *others = (each.section.greatest(each.loads(cam)) for each in sections)
+    for other in others:
+        # a NaN of either stays one
+        worst = np.where(np.real(other) <= np.real(worst), worst, other + 0.0 * worst)
+    return worst
+
+
+@_yield_check("arm", "arm", _LOADS, _BREAKS, _ARM, _VALUES, _LEVERS).measured(
     "angles",
     allowed=_yield_allowed,
-    remark=_with_section,
+    remark=partial(_with_section, _first_arm),
     deviation=0.005,
     bounded="line",
     kept=Kept(unit="MPa"),
@@ -303,11 +453,20 @@ def arm_yield(cam: LoadedCam) -> Array:
     """Greatest von Mises stress over the sections of the arm at each cam angle (..., n), Pa; NaN
     where the arm is not described.
     """
-    bar, forces = bar_of(cam.numbers), arm_forces(cam)
-    if bar is None:
-        return np.full_like(cam.normal, np.nan)
-    worst, *others = (each.greatest(bar.loads(each, forces)) for each in bar.sections)
-    for other in others:
-        # a NaN of either stays one
-        worst = np.where(np.real(other) <= np.real(worst), worst, other + 0.0 * worst)
-    return worst
+    return _greatest(_first_arm(cam.numbers), cam)
+
+
+@_yield_check(
+    *("second arm", _OF_SECOND.part, _OF_SECOND.loads, _OF_SECOND.reason, Rocker.table),
+    *(_OF_SECOND.values, _OF_SECOND.levers),
+).measured(
+    "angles",
+    allowed=_second_allowed,
+    remark=partial(_with_section, _second_arm),
+    deviation=0.005,
+)
+def rocker_yield(cam: LoadedCam) -> Array:
+    """Von Mises stress of the second arm at its pivot at each cam angle (..., n), Pa; NaN where it
+    is not described.
+    """
+    return _greatest(_second_arm(cam.numbers), cam)

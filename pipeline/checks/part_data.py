@@ -61,7 +61,7 @@ def _data(
         if springs and solution.case.spring.absent:
             return None
         if coverable is not None:
-            if not machine.scope.covers(coverable):
+            if coverable in machine.absent or not machine.scope.covers(coverable):
                 return None
             if not machine.describes(coverable):
                 note = f"no {words} is described; describe it or leave it out in [scope]"
@@ -144,6 +144,13 @@ data_arm = _data(
     described_by=tuple(
         f"follower.arm.{key}" for key in ("width", "depth", "material", "pivot_notch")
     ),
+    page="Follower",
+)
+data_rocker = _data(
+    "rocker",
+    lambda case: {"rocker": case.rocker},
+    "arm",
+    described_by=("rocker.width", "rocker.depth", "rocker.notch"),
     page="Follower",
 )
 data_spring = _data(

@@ -36,9 +36,11 @@ from camwright.pipeline.follower.pivot_forces import (
     Pull,
     arm_pivot,
 )
+from camwright.pipeline.follower.rocker import RockerOutput
 from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
 from camwright.pipeline.follower.spring import end_travel, lever
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise
+from camwright.pipeline.follower.spring_link import SpringBehindRocker
 from camwright.pipeline.follower.wound_wire import SpringWork, WoundWire
 
 
@@ -432,10 +434,36 @@ class LoadedCam:
         """
         lift, acceleration = self.jet.lift, speed**2 * self.jet.lift_d2
         force: Array = self.numbers["follower.mass"] * acceleration
-        output = None if self.numbers.case is None else self.numbers.case.output
+        output = self.output
         if output is None:
             return force
         return np.asarray(force + output.inertia(lift, speed * self.jet.slope, acceleration))
+
+    @property
+    def output(self) -> RockerOutput | None:
+        """Mass and force that a rocker moves; None without them."""
+        return None if self.numbers.case is None else self.numbers.case.output
+
+    @property
+    def output_inertia(self) -> Value:
+        """Inertia force of the output of a rocker on the follower, N; 0 without one."""
+        if self.output is None:
+            return 0.0
+        acceleration = self.speed**2 * self.jet.lift_d2
+        return self.output.whole_inertia(self.jet.lift, self.velocity, acceleration)
+
+    @property
+    def output_force(self) -> Array:
+        """Force on the output of a rocker against its lift, N: of its mass, of a constant force and
+        of a spring on it.
+        """
+        shape, acceleration = self.spring_shape, self.speed**2 * self.jet.lift_d2
+        force = np.zeros_like(self.velocity)
+        if self.output is not None:
+            force = force + self.output.push(self.jet.lift, self.velocity, acceleration)
+        if isinstance(shape, SpringBehindRocker):
+            force = force + self.spring_force / shape.lever(self.jet.lift)
+        return np.asarray(force)
 
     @cached_property
     def inertia(self) -> Array:

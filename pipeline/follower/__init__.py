@@ -38,6 +38,7 @@ In the order of the calculation:
 | `camshaft_loads`        | key, bearings, unbalance, counter-hole     | N; Pa; kg m           |
 | `shaft_strength`        | camshaft sections, bending; gear teeth     | Pa; safety, -; rad    |
 | `arm_beam`              | arm as a beam: sections, stress, bending   | M, N m; Pa; m/N       |
+| `second_arm`            | second arm of a rocker as a beam           | M, N m                |
 | `pivot_bush`            | pin tilted in the bush of a pivot          | rad; N/m              |
 | `follower_tilt`         | tilt of stem or arm across the cam         | rad; rad/(N m)        |
 | `follower_stiffness`    | bearing, pin, fork, stem, shaft in series  | m/N; N/m              |

@@ -13,6 +13,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.rocker_lift import RockerArm, RockerLinkage
+from camwright.pipeline.base.material import MadeOf
 from camwright.pipeline.base.quantities import (
     In,
     Known,
@@ -25,6 +26,7 @@ from camwright.pipeline.base.quantities import (
 )
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.follower.camshaft_loads import Notch, Surface
 
 _Raised = Annotated[float, In("deg", at_least=-75, at_most=75)]
 
@@ -62,6 +64,8 @@ class Rocker(Part):
         "length": "by `ratio`, constant",
         "input_length": "that of `[follower.arm]`",
         "ramp": "without lash there is none",
+        "material": "that of `[follower.arm]`",
+        "hub": "none: the second arm is judged at the axis of its pivot",
         "output_mass": "`mass`, else none",
         "output_force": "`force`, else none",
     }
@@ -97,6 +101,19 @@ class Rocker(Part):
     ] = None
     """constant force on the output against its lift that `follower.external_force` contains by the
     constant `ratio`"""
+    width: Annotated[Length | None, Known("drawing", "20 mm")] = None
+    """width of the second arm along the cam axis"""
+    depth: Annotated[Length | None, Known("drawing", "25 mm")] = None
+    """depth of the second arm across its length in the plane of the cam"""
+    hub: Annotated[Length | None, Known("drawing", "35 mm")] = None
+    """outer diameter of the hub around the pivot, where the second arm begins"""
+    material: Annotated[MadeOf | None, Known("drawing", "c45")] = None
+    surface: Annotated[Surface, Known("drawing")] = "machined"
+    """surface finish of the second arm"""
+    notch: Annotated[
+        Notch | None, Known("Peterson's Stress Concentration Factors: hole or fillet", 2.0)
+    ] = None
+    """fatigue notch factor of the second arm at its pivot"""
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
@@ -143,6 +160,11 @@ class Rocker(Part):
             else RockerArm(arm_length)
         )
         return RockerLinkage(first, RockerArm(self.length, self.angle), self.lash)
+
+    @property
+    def is_described(self) -> bool:
+        """Whether the section of the second arm is stated, by one of its dimensions at least."""
+        return self.width is not None or self.depth is not None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -234,6 +256,10 @@ class RockerOutput:
     def moving_mass(self, lift: Value) -> Value:
         """Mass (...), kg, at the follower beyond that of zero lift, by the square of the ratio."""
         return self.mass * (self.linkage.travel(lift)[1] ** 2 - self.ratio**2)
+
+    def whole_inertia(self, lift: Value, velocity: Value, acceleration: Value) -> Value:
+        """Inertia force (...), N, of the output on the follower; m, m/s and m/s2 of it."""
+        return self.reduced_mass * acceleration + self.inertia(lift, velocity, acceleration)
 
     def inertia(self, lift: Value, velocity: Value, acceleration: Value) -> Value:
         """Inertia force (...), N, on the follower beyond that of the mass at zero lift; m, m/s and

@@ -60,9 +60,6 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     ("unit/test_arm_assembly.py", "test_gaps_of_an_arm_by_polygons_over_the_turn"): (
         "arm_gap", "arm_cam_gap",
     ),
-    ("unit/test_arm_assembly.py", "test_gaps_of_a_linked_spring_by_polygons_over_the_turn"): (
-        "arm_gap", "arm_cam_gap",
-    ),
     (_ASSEMBLY, "test_gaps_along_the_camshaft_by_counting_free_micrometres"): (
         "bearing_gap", "gear_gap", "fork_gap",
     ),
@@ -97,6 +94,9 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     ),
     (_ARM, "test_fatigue_and_yield_of_the_arm_by_stress_tensors"): (
         "arm_fatigue_pivot", "arm_fatigue_roller", "arm_yield",
+    ),
+    ("verification/test_second_arm.py", "test_fatigue_and_yield_of_the_second_arm_by_lumps"): (
+        "rocker_fatigue", "rocker_yield",
     ),
     (_ARM, "test_edge_pressure_of_the_pivot_over_the_turn"): ("pivot_edge_pressure",),
     # spring and motion

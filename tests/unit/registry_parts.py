@@ -38,6 +38,7 @@ from trial_variants import (
     with_material,
     with_part,
     with_ring,
+    with_second_arm,
     with_shaft,
     with_speed,
     with_worst_friction,
@@ -53,9 +54,9 @@ from camwright.pipeline.follower.camshaft_loads import Counterweight
 SHAKEDOWN_USE = 4.0 * 0.259034
 
 
-def with_yield(safety):
+def with_yield(safety, arm=None):
     """An arm at a safety against yield."""
-    arm = on_arm()
+    arm = arm or on_arm()
     limits = made.changed(arm.case.limits, arm_yield_safety=safety)
     return made.changed_solution(arm, case=made.changed(arm.case, limits=limits))
 
@@ -557,6 +558,28 @@ tried(
     by_hand.arm_stress(),
     "Mohr's circle at the notch",
     on_arm,
+)
+by_limit(
+    "rocker_fatigue",
+    "arm_safety",
+    lambda: with_second_arm(depth=NAN),
+    by_hand.second_arm_safety(),
+    "Goodman, free body of the second arm up to its end, Shigley ch. 6",
+    base=with_second_arm,
+    missing=lambda: with_second_arm(notch=None),
+)
+tried(
+    "rocker_yield",
+    limited(
+        "rocker_yield",
+        lambda p: with_yield(1500e6 / p, with_second_arm()),
+        with_second_arm,
+    ),
+    lambda: with_second_arm(width=None),
+    lambda: with_second_arm(depth=NAN),
+    float(np.abs(by_hand.second_arm_stresses()).max()),
+    "M/W of a free body of the second arm, times the notch factor",
+    with_second_arm,
 )
 by_limit(
     "roller_pin_shear",

@@ -45,7 +45,7 @@ MUST_HAVE = {
     *("arm_gap", "arm_cam_gap"),
     "tooth_count",
     "tooth_ratio",
-    *("arm_fatigue_pivot", "arm_fatigue_roller", "arm_yield"),
+    *("arm_fatigue_pivot", "arm_fatigue_roller", "arm_yield", "rocker_fatigue", "rocker_yield"),
     *("guide_gap", "cam_radius", "torque_reduction", "contact_torque"),
     # forces and contact
     *("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed", "friction_balance"),

@@ -13,6 +13,7 @@ from trial_variants import (
     on_arm,
     with_extension_spring,
     with_gas_spring,
+    with_second_arm,
     with_torsion_spring,
 )
 
@@ -101,7 +102,7 @@ def test_a_part_is_described_or_left_out_by_the_scope(part):
     declared = BY_ID[f"data_{part}"]
     kinds = {"gas_spring": with_gas_spring, "torsion_spring": with_torsion_spring,
              "extension_spring": with_extension_spring, "arm": on_arm,
-             "pivot": made.arm_solution}  # fmt: skip
+             "rocker": with_second_arm, "pivot": made.arm_solution}  # fmt: skip
     whole = kinds.get(part, made.solution)()
     found = declared(whole)
     assert found is not None

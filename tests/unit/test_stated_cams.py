@@ -125,6 +125,7 @@ def in_groove(numbers: Numbers) -> dict[str, Any]:
 
 OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
     "arm_yield": on_arm,
+    "rocker_yield": on_arm,
     **dict.fromkeys(
         (
             "pivot_pressure",

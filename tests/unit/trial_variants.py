@@ -20,6 +20,7 @@ from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.camshaft_loads import Counterweight, Reversal
+from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.spring_kinds import ExtensionSpring, GasSpring, TorsionSpring
 from camwright.pipeline.follower.spring_link import LinkedSpring, SpringLink
 
@@ -105,6 +106,13 @@ def on_arm(cycle: Cycle | None = None, **values: Any) -> Solution:
     arm = FollowerArm(centre_distance=0.09, length=0.08, swing="with", **(stated | values))
     case = made.case(follower=made.changed(made.case().follower, arm=arm))
     return made.solution(case=case, cycles=(cycle or made.cycle(),))
+
+
+def with_second_arm(**values: Any) -> Solution:
+    """The solution with a rocker of half the ratio on an arm, which moves 20 kg."""
+    stated = {"width": 0.006, "depth": 0.010, "hub": 0.03, "notch": 2.0} | values
+    rocker, plain = Rocker(ratio=0.5, output_mass=20.0, **stated), on_arm()
+    return made.changed_solution(plain, case=made.changed(plain.case, rocker=rocker))
 
 
 def with_linked_spring(length: float = 0.1) -> Solution:
