@@ -33,6 +33,7 @@ from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import groove_of
 from camwright.pipeline.cycle.crossover_history import WallImpact
 from camwright.pipeline.cycle.cycle import Cycle
@@ -54,6 +55,7 @@ PLATE_MOMENT = 0.509
     " negative in a hollow, c: limits.undercut_factor",
     symbols={"r": "roller.radius", "kappa_p": "pitch_curvature"},
     reason="At zero the outer wall has a cusp; below, the roller is not held.",
+    tier=Tier.SCREENING,
     method="least 1 + roller radius x pitch curvature, refined between samples",
     lift_can_help=True,
     needs="roller",
@@ -61,7 +63,12 @@ PLATE_MOMENT = 0.509
     load_cases=NONE,
     levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
     page="Cam",
-).measured("contour", value=lambda worst, _: 1.0 - worst, bound=lambda limit, _: 1.0 - limit)
+).measured(
+    "contour",
+    value=lambda worst, _: 1.0 - worst,
+    bound=lambda limit, _: 1.0 - limit,
+    deviation=1e-4,
+)
 def outer_undercut(cam: LoadedCam) -> Array:
     """1 less the undercut factor of the outer wall."""
     return -cam.motion.sharpness
@@ -114,6 +121,7 @@ def _of_wall(demand: Demand, solution: Solution) -> Demand:
         " J. Appl. Mech. 17 (1950) 67, recalled: verify; Goodman line of the material",
         confirmed=False,
     ),
+    tier=Tier.SCREENING,
     method="the rim as a plate held at the floor, the whole normal force at its edge; it is the"
     " same of any depth",
     lift_can_help=True,
@@ -134,7 +142,7 @@ def _of_wall(demand: Demand, solution: Solution) -> Demand:
     values=(*given.LOADS, "cam.material.fatigue_bending", "cam.material.tensile_strength"),
     levers=(levers.one("cam.groove.outer_radius", most=1.5), *levers.GENTLER),
     page="Cam",
-).measured("angles", allowed=_wall_allowed, remark=_of_wall)
+).measured("angles", allowed=_wall_allowed, remark=_of_wall, deviation=0.02)
 def groove_wall(cam: LoadedCam) -> Array:
     """Bending stress at the root of the rim, Pa; infinite without a rim, 0 on the inner wall."""
     thick = cam.numbers["cam.groove.outer_radius"] - cam.motion.contour_radius
@@ -147,6 +155,7 @@ def groove_wall(cam: LoadedCam) -> Array:
     title="Profile tolerance over the clearance of the groove",
     unit="-",
     source=Source("a roller between walls that close in on it is blocked", confirmed=True),
+    tier=Tier.SCREENING,
     method="width of the profile tolerance, by which both walls together may narrow the groove",
     moved_by_tolerance=False,
     needs="roller",
@@ -158,7 +167,7 @@ def groove_wall(cam: LoadedCam) -> Array:
     values=("cam.profile_tolerance", "cam.groove.clearance"),
     levers=(levers.one("cam.groove.clearance"),),
     page="Cam",
-).measured("case", allowed=lambda _: Allowed(1.0))
+).measured("case", allowed=lambda _: Allowed(1.0), deviation=1e-9)
 def groove_clearance(cam: LoadedCam) -> Array:
     """Width of the profile tolerance over the clearance of the groove."""
     numbers = cam.numbers
@@ -172,6 +181,7 @@ def groove_clearance(cam: LoadedCam) -> Array:
     formula="R <= r; R: cam.groove.outer_radius, r: limits.cam_radius",
     symbols={"R": "cam.groove.outer_radius"},
     reason="The cam must fit into its space.",
+    tier=Tier.SCREENING,
     method="radius of the disc as stated",
     moved_by_tolerance=False,
     needs="roller",
@@ -179,7 +189,7 @@ def groove_clearance(cam: LoadedCam) -> Array:
     load_cases=NONE,
     levers=(levers.one("cam.groove.outer_radius", -1, 1.5),),
     page="Cam",
-).measured("case")
+).measured("case", deviation=1e-9)
 def groove_radius(cam: LoadedCam) -> Array:
     """Radius of the disc, m."""
     return np.asarray(cam.numbers["cam.groove.outer_radius"])
@@ -198,6 +208,7 @@ def groove_radius(cam: LoadedCam) -> Array:
         "o": "roller.axial_offset",
     },
     reason="A roller that runs on both discs at once is blocked.",
+    tier=Tier.SCREENING,
     method="distance of the discs along the shaft less half of disc, roller and its axial offset",
     moved_by_tolerance=False,
     needs="roller",
@@ -205,7 +216,7 @@ def groove_radius(cam: LoadedCam) -> Array:
     load_cases=NONE,
     levers=(levers.one("cam.conjugate.spacing"),),
     page="Cam",
-).measured("case")
+).measured("case", deviation=1e-9)
 def second_disc_gap(cam: LoadedCam) -> Array:
     """Gap along the shaft, m."""
     numbers = cam.numbers
@@ -488,6 +499,7 @@ _CLEARANCE = (*(levers.one(each, -1) for each in _CLEARANCES), *levers.GENTLER)
 @check(
     LANDING_SPEED,
     title="Maximum landing speed on the walls",
+    tier=Tier.SCREENING,
     method=_FLIGHT,
     lift_can_help=True,
     closed_by="form",
@@ -514,6 +526,7 @@ def landing_speed(solution: Solution) -> Demand:
     title="Contact pressure at the landing on a wall",
     unit="MPa",
     source=Source("surface endurance of cam and follower, once a turn", confirmed=True),
+    tier=Tier.SCREENING,
     method=f"{_FLIGHT}; stopped on the stiffness of the follower, pressure under the greatest"
     " force",
     lift_can_help=True,
@@ -563,6 +576,7 @@ def landing_pressure(solution: Solution) -> Demand | None:
 @check(
     CROSSOVER_SLIP,
     title="Maximum slip of the roller at a crossover",
+    tier=Tier.SCREENING,
     method="the roller keeps its spin in flight: in a groove it lands where it is to turn the other"
     " way, on a disc of two with the spin at which it left this disc",
     lift_can_help=True,

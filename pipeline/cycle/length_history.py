@@ -60,6 +60,20 @@ CORNER_ERROR, BOUNDED_ERROR = 0.05, 0.02
 at a corner, of a bounded peak."""
 
 
+def lines_pressed(machine: Machine, force: Array, radius: Array) -> NDArray[np.bool_]:
+    """Where a line of contact is solved (...): where it is pressed; of a cam that pulls not by a
+    force that is next to none, which it has at every crossover and at a slow speed all over the
+    turn.
+
+    Parameters
+    ----------
+    force : array (...)    normal force, N
+    radius : array (...)   relative radius, m
+    """
+    least = _NEXT_TO_NONE if machine.cam.pulls else NO_FORCE
+    return np.asarray(np.isfinite(radius) & (force > least))
+
+
 @dataclass(frozen=True, eq=False)
 class LengthHistory:
     """Pressure along the line of contact over plane-strain peak pressure, arrays (n,).
@@ -199,12 +213,9 @@ class TurnOfLine(NamedTuple):
 
     @property
     def rows(self) -> NDArray[np.intp]:
-        """Angles with contact; of a cam that pulls without those of a force that is next to none,
-        which it has at every crossover and at a slow speed all over the turn.
-        """
+        """Angles with contact, see `lines_pressed`."""
         radius = self.contact.relative_radius
-        least = _NEXT_TO_NONE if self.machine.cam.pulls else NO_FORCE
-        return np.flatnonzero(np.isfinite(radius) & (radius > 0) & (self.force > least))
+        return np.flatnonzero((radius > 0) & lines_pressed(self.machine, self.force, radius))
 
     @property
     def tilt(self) -> LineTilt:

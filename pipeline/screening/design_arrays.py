@@ -10,21 +10,30 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array, Value, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.follower_path import Motion
-from camwright.geometry.lift import Jet
+from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base.kept_results import KeptResult
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import value_of
+from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
-from camwright.pipeline.case.machine import CREEP, Machine, machine
+from camwright.pipeline.case.machine import CREEP, Machine, machine, machines
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.checks.arm_strength import bar_of
 from camwright.pipeline.checks.torque_balance import NO_MEAN
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, face_of, motion_of, pivot_of
+from camwright.pipeline.cycle.crossover_history import WallImpact, impacts
+from camwright.pipeline.cycle.loaded_cam import (
+    LoadedCam,
+    face_of,
+    motion_of,
+    on_wall,
+    pivot_of,
+    roller_of,
+)
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import keyway_cut, rotating_force
 from camwright.pipeline.follower.follower_forces import Push
@@ -32,6 +41,14 @@ from camwright.pipeline.follower.follower_tilt import FollowerTilt, arm_tilt
 from camwright.pipeline.follower.guide_table import SupportOfMany
 from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.screening.screened_cam import ScreenedCam, ScreenedState
+
+
+def _in_cam_axes(motion: Motion) -> Array:
+    """Contact points of a motion over the turn as complex numbers in the axes of the cam, m."""
+    along, across = motion.contact_point
+    theta = uniform_turn(along.shape[-1])
+    return np.asarray((along + 1j * across) * np.exp(1j * (theta + motion.travel)))
+
 
 Judged = tuple[Array, Array | float | None]
 """Demand (m,) and limit (m,) of a check, SI; NaN and None are missing."""
@@ -123,7 +140,11 @@ class Designs:
             "contact.modulus": self.machine.contact_modulus,
             "cam.fastest": self.fastest[:, None] / self.case.mechanism.gear_ratio,
         }
-        return Numbers({**self.columns, **self.of_springs, **known}, self.case)
+        numbers = Numbers({**self.columns, **self.of_springs, **known}, self.case)
+        if not self.machine.spring.absent:
+            return numbers
+        widest = sampled_greatest(motion_of(Jet(*self.jets), numbers).contour_radius)
+        return numbers | {"cam.greatest_radius": widest[:, None]}
 
     def limit(self, row: AnyLimit) -> Array:
         """Values of a limit (m,), SI; NaN without one."""
@@ -196,10 +217,26 @@ class Designs:
         numbers = self.numbers | {"spring.preload_greatest": preload}
         return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), numbers, lift)
 
+    def carried(self, motion: Motion, wall: Array) -> Motion:
+        """Motion (m, n) of the roller or face that carries, by that of the first on the unloaded
+        cams; wall (m, n) as of `LoadedCam.wall`.
+        """
+        return on_wall(motion, wall) if self.case.cam.pulls else motion
+
+    @KeptResult
+    def tracks(self) -> tuple[Motion, ...]:
+        """Motion of the unloaded cams at the samples of the lift on each of their tracks."""
+        first = self.whole.motion
+        if not self.case.cam.pulls:
+            return (first,)
+        one = np.ones(first.jet.lift.shape)
+        return tuple(self.carried(first, wall) for wall in (one, -one))
+
     @KeptResult
     def least_factor(self) -> Array:
-        """Minimum undercut factor (m,)."""
-        return 1.0 - sampled_greatest(self.whole.motion.sharpness)
+        """Minimum undercut factor (m,), of any track."""
+        sharpest = [sampled_greatest(each.sharpness) for each in self.tracks]
+        return np.asarray(1.0 - np.max(sharpest, axis=0))
 
     @KeptResult
     def least_radius(self) -> Array:
@@ -350,19 +387,57 @@ class Designs:
         """Unbalance of the cams, kg m, and its direction, rad, both (m, 1); zero with a
         counter-hole.
         """
-        cam, (along, across) = self.machine.cam, self.whole.motion.contact_point
+        cam = self.machine.cam
         if cam.counter_hole is not None:
             return np.zeros((self.count, 1)), np.zeros((self.count, 1))
-        theta = uniform_turn(along.shape[-1])
-        ring = (along + 1j * across) * np.exp(1j * (theta + self.whole.motion.travel))
-        beside = np.roll(ring, -1, axis=-1)
-        swept = np.imag(np.conj(ring) * beside)
-        moment = np.sum((ring + beside) * swept, axis=-1, keepdims=True) / 6.0
+        moment = self._moment_of_plate if cam.groove is None else self._moment_of_groove
         if cam.keyway is not None:
             cut = keyway_cut(self.value("cam.bore_radius"), cam.keyway.width, cam.keyway.depth)
             moment = moment - cut.moment * np.exp(1j * cam.keyway.angle)
         product = cam.material.density * self.value("cam.width") * moment
         return np.abs(product), np.angle(product)
+
+    @property
+    def _moment_of_plate(self) -> Array:
+        """First moment of the plane of the cams about their axis (m, 1), m3."""
+        ring = _in_cam_axes(self.whole.motion)
+        beside = np.roll(ring, -1, axis=-1)
+        swept = np.imag(np.conj(ring) * beside)
+        return np.asarray(np.sum((ring + beside) * swept, axis=-1, keepdims=True) / 6.0)
+
+    @property
+    def _moment_of_groove(self) -> Array:
+        """That of a round disc less its groove, over the width of the disc; see
+        `Groove.section`.
+        """
+        path, radius = roller_of(self.whole.motion), self.value("roller.radius")
+        inner, outer = (
+            replace(self.whole, numbers=self.numbers | {"roller.radius": size}).motion
+            for size in (radius, -radius)
+        )
+        points = [_in_cam_axes(each) for each in (inner, outer)]
+        centre, normal = 0.5 * (points[0] + points[1]), (points[1] - points[0]) / (2.0 * radius)
+        half = radius + 0.5 * self.value("cam.groove.clearance")
+        step = FULL_TURN / centre.shape[-1]
+        strip = (
+            2.0 * half * path.path_speed * (centre + half**2 / 3.0 * path.path_curvature * normal)
+        )
+        share = self.value("cam.groove.depth") / self.value("cam.width")
+        return np.asarray(-share * step * np.sum(strip, axis=-1, keepdims=True))
+
+    @KeptResult
+    def flights(self) -> tuple[tuple[WallImpact, ...], ...]:
+        """Landings of each design between its tracks, of all load cases; none of one track."""
+        if not self.case.cam.clearance > 0.0:
+            return ((),) * self.count
+        theta = uniform_turn(self.lift.shape[-1])
+        return tuple(self._flown(k, theta) for k in range(self.count))
+
+    def _flown(self, number: int, theta: Array) -> tuple[WallImpact, ...]:
+        """Landings of a design, by its number; theta (N,): cam angles of its lift, rad."""
+        case = replaced(self.case, {k: float(each[number, 0]) for k, each in self.columns.items()})
+        contour = case.contour(Lift(theta, self.lift[number % len(self.lift)]))
+        return tuple(one for state in machines(case) for one in impacts(state, contour))
 
     def thrown(self, speed: Value) -> tuple[Array, Array]:
         """Centrifugal forces on cam and counterweight (2, m, n), N, at cam speeds (m, 1), rad/s."""
@@ -402,7 +477,11 @@ class Designs:
     @KeptResult
     def relative_radius(self) -> Array:
         """Relative radius R of cam and follower (m, n), m; NaN if undercut."""
-        radius = self.motion.size * (1.0 - self.motion.sharpness)
+        return self.relative_radius_of(self.motion)
+
+    def relative_radius_of(self, motion: Motion) -> Array:
+        """R (m, n), m, of the motion on a track; NaN if one is undercut."""
+        radius = magnitude(np.asarray(motion.size)) * (1.0 - motion.sharpness)
         return np.where(self.least_factor[:, None] > 0.0, radius, np.nan)
 
     @KeptResult
@@ -475,7 +554,7 @@ def _to_all(*_: object) -> NDArray[np.bool_]:
     return np.array(True)
 
 
-def _never(_: Designs) -> bool:
+def never(_: Designs) -> bool:
     return False
 
 
@@ -491,4 +570,4 @@ class Screened(NamedTuple):
     judged: Callable[[Designs], Judged | None]
     deviation: float
     applies: Callable[[Array, Designs], NDArray[np.bool_]] = _to_all
-    is_bound: Callable[[Designs], bool] = _never
+    is_bound: Callable[[Designs], bool] = never

@@ -33,6 +33,7 @@ ARRAYS: tuple[str, ...] = (
     "spring.rate", "spring.preload", "spring.travel_max",
     *(f"spring.design.{name}" for name in WIRE),
     "cam.prime_radius", "cam.offset", "cam.width", "cam.bore_radius", "cam.profile_tolerance",
+    *(f"cam.groove.{name}" for name in ("clearance", "depth", "corner_radius", "outer_radius")),
     "roller.radius", "roller.width", "roller.crown.radius", "roller.bearing.C", "roller.bearing.C0",
     "roller.bearing.speed_limit", "roller.bearing.radial_limit",
     "roller.bearing.static_radial_limit",

@@ -22,6 +22,7 @@ from camwright.pipeline.cycle.length_history import (
     ContactLoads,
     camshaft_compliance,
     factor_range,
+    lines_pressed,
     raised_load,
     worst_of,
 )
@@ -137,7 +138,7 @@ def factors_of(
         for each in (tilt.greatest, tilt.forced, _yields(designs), turning.held)
     )
     whole = LineFactors(np.ones(force.shape), np.ones(force.shape), np.zeros(force.shape))
-    contact = (force > 0) & np.isfinite(radius)
+    contact = lines_pressed(designs.machine, force, radius)
     raised, aside = np.ones(force.shape), force * designs.stem_offset
     if contact.any():
         raised[contact] = raised_load(force[contact])

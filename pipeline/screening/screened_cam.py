@@ -66,6 +66,8 @@ class Block(DesignValues, Protocol):
     def supports(self) -> SupportOfMany: ...
     @property
     def relative_radius(self) -> Array: ...
+    def relative_radius_of(self, motion: Motion) -> Array: ...
+    def carried(self, motion: Motion, wall: Array) -> Motion: ...
     @property
     def least_radius(self) -> Array: ...
     def thrown(self, speed: Value) -> tuple[Array, Array]: ...
@@ -84,9 +86,16 @@ class ScreenedCam(LoadedCam):
     crank_speed: Array
     figures: dict[tuple[object, ...], Array] = field(default_factory=dict, repr=False)
 
-    @property
+    @cached_property
     def motion(self) -> Motion:
-        return self.block.motion
+        return self.block.carried(self.block.motion, self.wall) if self.pulls else self.block.motion
+
+    @cached_property
+    def relative_radius(self) -> Array:
+        """Relative radius R (m, n), m, on the track that carries; NaN if one is undercut."""
+        if not self.pulls:
+            return self.block.relative_radius
+        return self.block.relative_radius_of(self.motion)
 
     @property
     def least_radius(self) -> Array:
@@ -105,16 +114,18 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def _free(self) -> Array:
-        """Axial force without guide friction, >= 0, N."""
-        return np.asarray(np.maximum(self.required, 0.0))
+        """Axial force without guide friction towards the track that carries, >= 0, N."""
+        return np.asarray(np.maximum(self.required * self.wall, 0.0))
 
     @cached_property
     def share(self) -> Array:
-        return share_left(self.slope, self.jam, self.motion.lock)
+        return share_left(self.direction, self.jam, self.motion.lock)
 
     @cached_property
     def axial(self) -> Array:
-        return self._free / self.share if self.pivoted is None else self.pivoted.axial
+        if self.pivoted is not None:
+            return self.pivoted.axial
+        return self._free * self.wall / self.share
 
     def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
         return pivot.clipped(required, Pressed.of(self.motion), pull, self.direction, JAM_FLOOR)
@@ -156,7 +167,7 @@ class ScreenedCam(LoadedCam):
             for one, share in zip(friction, supports.shares, strict=True)
         )
         free = self._free.ravel()
-        direction = np.broadcast_to(np.sign(self.slope), shape).ravel()
+        direction = np.broadcast_to(self.direction, shape).ravel()
         axial, left = free.copy(), np.flatnonzero((free * load > 0.0) & (direction != 0.0))
         for _ in range(_FRICTION_ROUNDS):
             if not left.size:
@@ -172,7 +183,7 @@ class ScreenedCam(LoadedCam):
     @cached_property
     def guides(self) -> GuideLoads:
         """Loads of the guides by their tables, N."""
-        return self.block.supports.loads(self.axial)
+        return self.block.supports.loads(self.axial * self.wall)
 
     @cached_property
     def rubbing(self) -> OfGuides:
@@ -210,8 +221,8 @@ class ScreenedCam(LoadedCam):
     @cached_property
     def ends(self) -> LoadEnds:
         """First angles at which followers leave the cam or lock; see `Loads.ends`."""
-        index = np.sign(self.slope) * self.jam + self.motion.lock
-        return ends_of(self.normal <= 0.0, index >= 1.0)
+        index = self.direction * self.jam + self.motion.lock
+        return ends_of((self.normal <= 0.0) & (not self.pulls), index >= 1.0)
 
     @cached_property
     def friction_power(self) -> Array:
@@ -221,7 +232,9 @@ class ScreenedCam(LoadedCam):
     @cached_property
     def friction_loss(self) -> Array:
         """Friction loss of guides and face over a cam turn (m,), J."""
-        rubbed = self.jam * self.axial if self.pivoted is None else self.pivoted.friction
+        rubbed = (
+            self.jam * self.axial * self.wall if self.pivoted is None else self.pivoted.friction
+        )
         work = rubbed * np.abs(self.slope) + self.axial * self.motion.sliding
         work = work + self.motion.lock * self.axial * self.slope
         return FULL_TURN * np.mean(work + self.viscous * self.slope, axis=-1)
@@ -231,11 +244,11 @@ class ScreenedCam(LoadedCam):
         """Contact pressure of plane strain, Pa; NaN where the contour bounds no body."""
         load = self.normal / self.numbers["contact.width"]
         modulus = self.numbers["contact.modulus"]
-        return np.sqrt(peak_pressure_square(load, 1.0 / self.block.relative_radius, modulus))
+        return np.sqrt(peak_pressure_square(load, 1.0 / self.relative_radius, modulus))
 
     @cached_property
     def _factors(self) -> LineFactors | None:
-        loads = self.normal, self.block.relative_radius, self._turning
+        loads = self.normal, self.relative_radius, self._turning
         return factors_of(self.block, self.p0_line, *loads)
 
     @property
@@ -275,7 +288,7 @@ class ScreenedCam(LoadedCam):
         heat = friction * force * sliding / self.numbers["contact.width"]
         half = np.where((heat > 0) & ~np.isnan(self.half_width), self.half_width, 1.0)
         rise = flash_rise(machine, heat, sliding, self.speed * motion.along_face, half)
-        lost = np.isnan(self.block.relative_radius)
+        lost = np.isnan(self.relative_radius)
         return None if rise is None else np.where(lost, np.nan, rise)
 
     @property
@@ -284,7 +297,7 @@ class ScreenedCam(LoadedCam):
 
         0 where a roughness or the oil is not known, NaN without contact.
         """
-        machine, block, motion = self.block.machine, self.block, face_of(self.motion)
+        machine, motion = self.block.machine, face_of(self.motion)
         oil, rough = machine.lubricant, machine.cam.roughness
         other, rise = machine.follower.roughness, self.flash
         ratio = np.zeros(self.normal.shape)
@@ -292,7 +305,7 @@ class ScreenedCam(LoadedCam):
             return ratio
         load = np.maximum(self.normal, 0.0) / self.numbers["contact.width"]
         passing = self.speed * (0.5 * motion.slip + motion.along_face)
-        for k, radius in enumerate(block.relative_radius):
+        for k, radius in enumerate(self.relative_radius):
             ratio[k] = np.nan
             if np.isfinite(radius).all():
                 groups = LineFilm.of(
@@ -309,7 +322,7 @@ class ScreenedCam(LoadedCam):
     def half_width(self) -> Array:
         load = np.maximum(self.normal, 0.0) / self.numbers["contact.width"]
         modulus = self.numbers["contact.modulus"]
-        return np.sqrt(half_width_square(load, self.block.relative_radius, modulus))
+        return np.sqrt(half_width_square(load, self.relative_radius, modulus))
 
     @property
     def _unsolved(self) -> Array:

@@ -18,14 +18,19 @@ from camwright.pipeline.base.counterweight_body import CounterweightBody
 from camwright.pipeline.base.units import celsius
 from camwright.pipeline.case.limits import (
     ASSEMBLY_GAP,
+    CROSSOVER_SLIP,
     FRICTION_POWER,
+    LANDING_SPEED,
     SURFACE_TEMPERATURE,
     TORQUE_REDUCTION,
+    AnyLimit,
 )
 from camwright.pipeline.checks import (
     assembly,
+    contact_strength,
     demands,
     flat_face_sliding,
+    form_closure,
     roller_bearing,
     spring_strength,
     torque_balance,
@@ -35,11 +40,12 @@ from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.cycle.arm_bodies import with_swing
+from camwright.pipeline.cycle.crossover_history import WallImpact
 from camwright.pipeline.cycle.machine_envelope import counterweight_body
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import Counterweight
 from camwright.pipeline.follower.spring import spring_energy
-from camwright.pipeline.screening.design_arrays import Designs, Judged, Screened
+from camwright.pipeline.screening.design_arrays import Designs, Judged, Screened, never
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 from camwright.pipeline.screening.screened_cam import ScreenedCam
 
@@ -368,6 +374,28 @@ def _contact_temperature(designs: Designs) -> Judged | None:
     return hottest, allowed
 
 
+def _of_landings(designs: Designs, row: AnyLimit, measure: Callable[[WallImpact], float]) -> Judged:
+    """Greatest figure of the landings of all load cases (m,), 0 without one, and its limit."""
+    return _worst_landing(designs, measure), designs.limit(row)
+
+
+def _worst_landing(designs: Designs, measure: Callable[[WallImpact], float]) -> Array:
+    every = [[measure(one) for one in flown] or [0.0] for flown in designs.flights]
+    return np.array([np.max(values) for values in every])
+
+
+def _landing_pressure(designs: Designs) -> Judged | None:
+    """Greatest contact pressure at a landing and the least endurance pressure over its safety (m,),
+    Pa; None where no design lands.
+    """
+    how = contact_strength.contact_pressure.measured
+    if how is None or not any(designs.flights):
+        return None
+    demand, limit = _worst_landing(designs, lambda one: one.pressure), how.allowed(designs.numbers)
+    allowed = _of_each(np.nan if limit.value is None else limit.value, designs)
+    return demand, np.where(demand > allowed, allowed, np.nan) if limit.if_exceeded else allowed
+
+
 def _gas_stroke_rate(designs: Designs) -> Judged | None:
     rate = _strokes(designs) * designs.numbers["cam.fastest"] / FULL_TURN
     limit = spring_strength.gas_of(designs.case).stroke_rate_limit
@@ -406,14 +434,35 @@ _ARRAYS: Mapping[str, tuple[Callable[[Designs], Judged | None], float]] = {
     flat_face_sliding.contact_temperature.id: (_contact_temperature, 0.02),
     spring_strength.gas_stroke_rate.id: (_gas_stroke_rate, 1e-9),
     spring_strength.gas_heating.id: (_gas_heating, 1e-4),
+    LANDING_SPEED.id: (
+        lambda designs: _of_landings(designs, LANDING_SPEED, lambda one: one.flight.speed),
+        1e-4,
+    ),
+    CROSSOVER_SLIP.id: (
+        lambda designs: _of_landings(designs, CROSSOVER_SLIP, lambda one: one.slip),
+        1e-4,
+    ),
+    form_closure.landing_pressure.id: (_landing_pressure, 1e-4),
 }
 """Screening of checks without a measure, by id, with its deviation; see `Screened`."""
+
+
+_WITHOUT_REVERSALS = (
+    torque_balance.friction_power.id,
+    torque_balance.mechanism_temperature.id,
+)
+"""Checks whose demand lacks the slip of rollers that a cam that pulls turns the other way."""
+
+
+def _pulled(designs: Designs) -> bool:
+    return designs.case.cam.pulls
 
 
 def _screened(declared: Declaration) -> Screened | None:
     """Screening of a check; None where there is none."""
     if declared.id in _ARRAYS:
-        return Screened(declared.id, *_ARRAYS[declared.id])
+        is_bound = _pulled if declared.id in _WITHOUT_REVERSALS else never
+        return Screened(declared.id, *_ARRAYS[declared.id], is_bound=is_bound)
     how, measure = declared.measured, declared.measure
     return None if how is None or measure is None else _by_measure(declared, measure, how)
 

@@ -411,12 +411,6 @@ def test_refusals_of_the_case(old, new, message):
     assert str(error.value).startswith(message)
 
 
-def test_what_is_not_done_is_refused():
-    """A screening, in one line."""
-    from camwright.pipeline.screening.design_screening import screen_designs
-
+def test_tables_of_a_case_in_a_groove_read_back():
     case = read_case(FILE)
-    refusal = r'cam\.closure = groove, must be "spring" for '
-    with pytest.raises(InputError, match=refusal + "a screening"):
-        screen_designs(case, {"follower.mass": np.array([1.0])})
     assert case_of(case.tables()).cam.groove == case.cam.groove
