@@ -60,6 +60,7 @@ HARD_STOP_DEG = 45.0
 """Upper bound of the pressure angle of translating followers; Rothbart (2004), ch. 6."""
 BINDS = 0.997
 """Utilisation from which a limit is active; the synthesis keeps a small margin."""
+_NO_LENGTH = 1e-9  # of the place of a hole over its radius
 _ORDERS = 24  # harmonics of a cam turn
 _SHOWN, _MOST = 0.5, 6  # utilisation from which a limit is shown, and the number of limits
 
@@ -203,15 +204,20 @@ def _outline(turn: SheetTurn) -> SheetFigure | None:
     distance = np.abs((c["cam_angle_deg"] - theta + 180.0) % 360.0 - 180.0)
     worst, name = int(np.argmin(distance)), turn.follower_name
     pitch = np.array([c["pitch_x_mm"], c["pitch_y_mm"]]) if turn.rolls else None
+    track, second = turn.track_at(turn.worst), turn.second_disc
+    centre = np.array([c[f"{track}pitch_{axis}_mm"][worst] for axis in "xy"]) if track else None
+    groove, touch = _groove(turn, worst)
+    if track:
+        touch = np.array([c[f"{track}contour_{axis}_mm"][worst] for axis in "xy"])
+        name = f"second {name}"
     return OutlineFigure(
         "outline", "Contour and pitch curve" if turn.rolls else "Contour",
         f"The cam in the direction of its shaft, with the {name} at the maximum contact pressure."
-        f"{_balance(turn)}",
+        f"{_balance(turn)}{'' if second is None else ' Dashed: the second disc.'}",
         np.array([c["contour_x_mm"], c["contour_y_mm"]]), pitch,
-        _roller_outline(turn, worst) if turn.rolls else _face_outline(turn, worst), name,
-        turn.length("cam", "bore_radius"),
-        turn.keyway,
-        worst, f"at {theta:.4g} deg", turn.counter_hole, *_groove(turn, worst),
+        _roller_outline(turn, worst, track) if turn.rolls else _face_outline(turn, worst, track),
+        name, turn.length("cam", "bore_radius"), turn.keyway, worst, f"at {theta:.4g} deg",
+        turn.counter_hole, groove, touch, second, centre,
     )  # fmt: skip
 
 
@@ -242,9 +248,12 @@ def _balance(turn: SheetTurn) -> str:
         f" at {quantity(balance['unbalance_angle_deg'], 'deg')}"
     )
     hole = turn.counter_hole
+    if turn.walls is not None:  # none is drilled into a cam that pulls
+        return f"{unbalance}."
     if hole is None:
         return f"{unbalance}; {balance['hole_note'] or 'no counter-hole is necessary'}."
     x, y, radius, drilled = hole
+    x, y = (0.0 if abs(each) < _NO_LENGTH * radius else each for each in (x, y))
     rest = max(float(balance["residual_unbalance_g_mm"]), 0.0)
     rest = 0.0 if rest < 1e-6 * float(balance["unbalance_g_mm"]) else rest
     return (
@@ -254,17 +263,20 @@ def _balance(turn: SheetTurn) -> str:
     )
 
 
-def _roller_outline(turn: SheetTurn, at: int) -> Array | None:
-    """Circle (2, n) of the roller about the point of the pitch curve at row `at` of the contour,
-    mm; None if its radius is unknown.
+def _roller_outline(turn: SheetTurn, at: int, track: str) -> Array | None:
+    """Circle (2, n) of the roller of a track, see `SheetTurn.track_at`, about the point of its
+    pitch curve at row `at` of the contour, mm; None if its radius is unknown.
     """
     radius, c = turn.length("roller", "radius"), turn.contour
+    if track:
+        radius = turn.length("cam", "conjugate", "roller_radius")
     if radius is None:
         return None
-    return circle((float(c["pitch_x_mm"][at]), float(c["pitch_y_mm"][at])), radius)
+    x, y = (float(c[f"{track}pitch_{axis}_mm"][at]) for axis in "xy")
+    return circle((x, y), radius)
 
 
-def _face_outline(turn: SheetTurn, at: int) -> Array | None:
+def _face_outline(turn: SheetTurn, at: int, track: str) -> Array | None:
     """Closed outline (2, n) of the face of the follower, mm, touching the contour at its row `at`;
     None if the width or thickness of the face is unknown.
 
@@ -275,8 +287,8 @@ def _face_outline(turn: SheetTurn, at: int) -> Array | None:
     width, thick = (turn.length("follower", "face", key) for key in ("width", "thickness"))
     if width is None or thick is None:
         return None
-    touch = np.array([c["contour_x_mm"][at], c["contour_y_mm"][at]])
-    normal = np.array([c["normal_x"][at], c["normal_y"][at]])
+    touch = np.array([c[f"{track}contour_{axis}_mm"][at] for axis in "xy"])
+    normal = np.array([c[f"{track}normal_{axis}"][at] for axis in "xy"])
     radius, half = turn.length("follower", "face", "radius"), 0.5 * width
     front = np.linspace(-half, half, 25)
     sunk, high = 0.0 * front, 0.0
@@ -347,6 +359,11 @@ def _radii(turn: SheetTurn) -> Figure | None:
         if turn.rolls or column != "pitch_radius_of_curvature_mm":
             radii = broken(turn.columns[column], LARGEST_RADIUS_MM)
             curves.append(Curve(turn.crank, radii, label, colour))
+    if turn.second_disc is not None:
+        second = turn.contour["second_contour_radius_of_curvature_mm"]
+        away = turn.contour["cam_angle_deg"][:, None] - turn.columns["cam_angle_deg"]
+        radii = broken(second[np.abs(away).argmin(axis=0)], LARGEST_RADIUS_MM)
+        curves.append(Curve(turn.crank, radii, "second disc", SERIES[len(wanted)]))
     return angle_figure(
         turn, "radii", "Radii of curvature",
         f"Signed radius of curvature, positive where convex. Radii above {LARGEST_RADIUS_MM:g} mm, "

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from camwright.geometry.arm_path import Arm
-from camwright.geometry.arrays import median
+from camwright.geometry.arrays import Array, median, rotation
 from camwright.geometry.rocker_lift import RockerArm, RockerLinkage
 from camwright.pipeline.base.counterweight_body import CounterweightBody
 from camwright.pipeline.base.envelope import Disc, MechanismSizes, Sleeve
@@ -26,6 +26,7 @@ from camwright.reports.drawing.arrangement import (
     DrawnSector,
 )
 from camwright.reports.drawing.drawing_shapes import Drawing
+from camwright.reports.drawing.second_follower import DrawnSecond
 from camwright.reports.drawing.spring_shapes import (
     DRAWN,
     Coil,
@@ -82,8 +83,27 @@ def motion_of(turn: SheetTurn) -> DrawnMotion:
         turn.load_case, np.radians(c["cam_angle_deg"]), turn.crank, turn.words.shaft,
         c["lift_mm"], np.radians(c["pressure_angle_deg"]), c.get("face_contact_offset_mm"),
         {name: np.nan_to_num(c[_COLUMNS[name]]) for name in FORCES if _COLUMNS[name] in c},
-        turn.walls,
+        turn.walls, _pulling(turn),
     )  # fmt: skip
+
+
+def _pulling(turn: SheetTurn) -> tuple[Array, Array] | None:
+    """Contact of the second track and its outward normal in the drawing (2, n), mm, at the rows of
+    the cycle; None of a cam without one.
+    """
+    table = turn.contour
+    if "second_normal_x" not in table:
+        return None
+    angle = turn.columns["cam_angle_deg"]
+
+    def at(name: str) -> Array:
+        return np.interp(angle, table["cam_angle_deg"], table[name], period=360.0)
+
+    cos, sin = np.sin(np.radians(angle)), np.cos(np.radians(angle))
+    pairs = (tuple(at(f"second_{name}") for name in names)
+             for names in (("contour_x_mm", "contour_y_mm"), ("normal_x", "normal_y")))  # fmt: skip
+    touch, normal = (np.stack([cos * x - sin * y, sin * x + cos * y]) for x, y in pairs)
+    return touch, normal
 
 
 @lru_cache(maxsize=2)
@@ -105,8 +125,36 @@ def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
         stroke, roller, _pin(turn, roller or 0.0), _face(turn) if roller is None else None, stem,
         end, guides, spring, seat,
         _sizes(turn, (axis, lowest, stroke, stem, end - lowest), guides, spring, seat),
-        _counterweight(turn), _arm(turn), _groove(turn),
+        _counterweight(turn), _arm(turn), _groove(turn), _second(turn, lowest, stroke),
     )  # fmt: skip
+
+
+def _second(turn: SheetTurn, lowest: float, stroke: float) -> DrawnSecond | None:
+    """Second roller or face of a cam that pulls; None without one, or if its place is not stated.
+
+    Parameters
+    ----------
+    lowest, stroke : float   height of the first above the cam axis at zero lift, greatest lift, mm
+    """
+    disc = turn.second_disc
+    gap = turn.length("cam", "yoke", "clearance")
+    if disc is None:
+        if gap is None:
+            return None
+        return DrawnSecond(np.array([0.0, -(2.0 * lowest + stroke + gap)]), None, None, 0.0)
+
+    def of(key: str, unit: str = "mm") -> float | None:
+        return turn.length("cam", "conjugate", key, unit=unit)
+
+    spacing, distance, arm, angle = of("spacing"), of("distance"), of("arm_length"), _arm(turn)
+    between = of("arm_angle", "rad")
+    if angle is not None and arm is not None and between is not None:
+        centre = rotation(angle.sense * between) @ np.array([0.0, -arm])
+    elif distance is not None:
+        centre = np.array([0.0, -distance])
+    else:
+        return None
+    return DrawnSecond(centre, of("roller_radius"), disc, spacing or 0.0)
 
 
 def _groove(turn: SheetTurn) -> DrawnGroove | None:
@@ -313,8 +361,15 @@ def _sizes(
     edge = np.hypot(turn.contour["contour_x_mm"], turn.contour["contour_y_mm"])
     radius = turn.length("cam", "groove", "outer_radius") or float(edge.max())
     width = turn.length("cam", "width") or 0.0
+    discs, below = list(_discs(turn)), 0.0
+    if (second := _second(turn, lowest, lift)) is not None:
+        reach = second.radius or _face(turn)[1]
+        half, below = max(half, second.radius or 0.0), reach - float(second.centre[1])
+        if second.disc is not None:
+            discs.append(Disc(second.spacing, width, 2.0 * float(np.hypot(*second.disc).max())))
+            deep += second.spacing
     return MechanismSizes(radius, width, axis, lowest, lift, (half, deep), diameter, end,
-                          tuple(sleeves), _discs(turn))  # fmt: skip
+                          tuple(sleeves), tuple(discs), below)  # fmt: skip
 
 
 def _discs(turn: SheetTurn) -> tuple[Disc, ...]:

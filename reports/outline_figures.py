@@ -47,7 +47,8 @@ class OutlineFigure:
     `pitch` is the pitch curve of a roller follower, `follower` the outline of roller or face at
     row `worst`; None if unknown. `keyway` is width and depth, mm, and angle, rad; `counter_hole`
     centre x, y and radius, mm, and whether it is drilled; `groove` outer wall (2, n) and radius of
-    the disc, mm. `touches` is the point of contact, of the contour where None.
+    the disc, mm. `touches` is the point of contact, of the contour where None. `second` is the
+    contour of a second disc, `centre` the roller centre, of the pitch curve where None.
     """
 
     id: str
@@ -64,6 +65,8 @@ class OutlineFigure:
     counter_hole: tuple[float, float, float, bool] | None = None
     groove: tuple[Array, float] | None = None
     touches: Array | None = None
+    second: Array | None = None
+    centre: Array | None = None
 
     @property
     def _disc(self) -> list[OutlineCurve]:
@@ -88,6 +91,8 @@ class OutlineFigure:
             OutlineCurve(closed(self.contour), "blue", name, 1.4, fill="steel", angle=angle),
             *self._openings(),
         ]  # fmt: skip
+        if self.second is not None:
+            curves.append(OutlineCurve(closed(self.second), "green", "second disc", 1.2, "dashed"))
         if self.pitch is not None:
             curves.append(OutlineCurve(
                 closed(self.pitch), "muted", "pitch curve (roller centre)", 0.9, "dashdot",
@@ -107,7 +112,8 @@ class OutlineFigure:
         contact = self.contour[:, touch] if self.touches is None else self.touches[:, None]
         curves.append(OutlineCurve(contact, "vermillion", marker="dot"))
         if self.pitch is not None:
-            curves.append(OutlineCurve(self.pitch[:, touch], "vermillion", marker="cross"))
+            centre = self.pitch[:, touch] if self.centre is None else self.centre[:, None]
+            curves.append(OutlineCurve(centre, "vermillion", marker="cross"))
         return tuple(curves)
 
     def _openings(self) -> list[OutlineCurve]:
@@ -149,7 +155,8 @@ class OutlineFigure:
     @property
     def reach(self) -> float:
         """Half the side of the square about the shaft that is shown, mm."""
-        shown = [c for c in (self.contour, self.pitch, self.follower) if c is not None]
+        all_curves = (self.contour, self.pitch, self.follower, self.second)
+        shown = [c for c in all_curves if c is not None]
         disc = 0.0 if self.groove is None else self.groove[1]
         return 1.06 * max(disc, *(float(np.abs(points).max()) for points in shown))
 

@@ -19,7 +19,7 @@ from camwright.reports.report_tables import Record, in_unit
 _FLAT = 0.02
 """Share of the greatest curve of a panel below which another one looks like zero."""
 _UNDERFLOW = 1e-12  # in the unit of the panel
-_NO_FORCE = 1e-6  # N, of what stands for the spring that a groove does without
+_NO_FORCE = 1e-6  # N, of what stands for the spring that a cam does without
 _LOW_HEIGHT = 0.6  # of a panel for small curves
 
 
@@ -65,12 +65,12 @@ class SheetTurn:
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:
         """Centre x, y and radius of the counter-hole, mm, and whether it is drilled; None without a
-        hole, or if one that is not drilled does not balance the cam.
+        hole, or if one that is not drilled does not balance the cam, or cannot be drilled.
         """
         names = ("hole_x_mm", "hole_y_mm", "hole_diameter_mm")
         values = [self.balance[name] for name in names]
         drilled = bool(self.balance["hole_drilled"])
-        proposed = not self.balance["hole_note"]
+        proposed = not self.balance["hole_note"] and self.walls is None
         if not (drilled or proposed) or not all(isinstance(v, (int, float)) for v in values):
             return None
         x, y, diameter = (float(value) for value in values if value is not None)
@@ -128,16 +128,30 @@ class SheetTurn:
         return np.array([self.contour["outer_x_mm"], self.contour["outer_y_mm"]])
 
     @property
+    def second_disc(self) -> Array | None:
+        """Contour of the second disc (2, n), mm; None of a cam with one disc."""
+        if not isinstance(self.case.get("cam", {}).get("conjugate"), Mapping):
+            return None
+        return np.array([self.contour[f"second_contour_{axis}_mm"] for axis in "xy"])
+
+    @property
     def sprung(self) -> bool:
-        """Whether a spring acts on the follower: a groove may hold it without one."""
-        if self.outer_wall is None:
-            return True
+        """Whether a spring acts on the follower: a second track or its weight may hold it."""
         return bool(np.abs(self.columns["spring_force_N"]).max() > _NO_FORCE)
 
     @property
     def walls(self) -> Array | None:
-        """Wall of a groove that carries at each row: 1 the inner, -1 the outer; None without."""
+        """Track that carries at each row: 1 the first or inner, -1 the second or outer; None of a
+        cam with one track.
+        """
         return self.columns.get("wall")
+
+    def track_at(self, row: int) -> str:
+        """Prefix of the columns of `contour` on the track that carries at a row of the cycle:
+        "second_", or "" of the first one and in a groove.
+        """
+        pulls = self.walls is not None and self.walls[row] < 0.0
+        return "second_" if pulls and "second_normal_x" in self.contour else ""
 
     @property
     def rolls(self) -> bool:

@@ -61,7 +61,8 @@ class MechanismSizes:
     follower                half of its greatest length across the stem and along the camshaft
     stem_diameter, stem_end   height of the end over the reference point
     sleeves                 guides, and spring with its seats over the turn
-    discs                   gear, bearings, shaft
+    discs                   second disc, gear, bearings, shaft
+    below                   length of the follower below roller centre or face
     """
 
     cam_radius: float
@@ -74,6 +75,7 @@ class MechanismSizes:
     stem_end: float
     sleeves: tuple[Sleeve, ...]
     discs: tuple[Disc, ...]
+    below: float = 0.0
 
     @property
     def on_shaft(self) -> tuple[Box, ...]:
@@ -90,7 +92,7 @@ class MechanismSizes:
         across = self.axis - half, self.axis + half
         return (
             *self.on_shaft,
-            Box(across, (self.lowest, highest), (-deep, deep)),
+            Box(across, (self.lowest - self.below, highest), (-deep, deep)),
             *(self._sleeve(each, highest) for each in (stem, *self.sleeves)),
         )
 

@@ -259,7 +259,7 @@ def headline(solution: Solution) -> HeadlineRecord:
         "lift_max_mm": _MM * contour.lift.highest.value,
         "pressure_angle_max_deg": float(np.degrees(contour.pressure_angle_max().value)),
         "pitch_radius_of_curvature_min_mm": _MM * contour.least_convex_pitch_radius().value,
-        "normal_force_min_N": float(min(c.loads.normal_force.min() for c in solution.cycles)),
+        "normal_force_min_N": min(map(_least_force, solution.cycles)),
         "normal_force_max_N": over(lambda c: c.loads.normal_force),
         "p0_max_MPa": contact(lambda h: h.p0, _MPA),
         "p0_hertz_max_MPa": contact(lambda h: h.p0_hertz, _MPA),
@@ -275,6 +275,17 @@ def headline(solution: Solution) -> HeadlineRecord:
         else None,
         "residual_equilibrium_max": _residual_max(solution.cycles),
     }
+
+
+def _least_force(cycle: Cycle) -> float:
+    """Least contact force of a turn, N: zero where it passes from one track to another or at
+    standstill without a spring, of whose stand-in the force is.
+    """
+    loads, machine = cycle.loads, cycle.machine
+    passes = bool(np.ptp(loads.wall) > 0.0) or machine.spring.absent
+    if loads.held and machine.disc_preload is None and passes:
+        return 0.0
+    return float(loads.normal_force.min())
 
 
 def figures(trial: Trial) -> CamFigures:
@@ -304,7 +315,7 @@ def figures(trial: Trial) -> CamFigures:
                 "load_case": cycle.load_case,
                 "speed_rpm": in_unit(cycle.machine.crank_speed, "rpm"),
                 "cam_speed_rpm": in_unit(cycle.machine.cam_speed, "rpm"),
-                "normal_force_min_N": trough(loads.normal_force),
+                "normal_force_min_N": _least_force(cycle) and trough(loads.normal_force),
                 "normal_force_max_N": peak(loads.normal_force) if whole else None,
                 "drive_torque_min_Nm": trough(loads.cam_torque) if whole else None,
                 "drive_torque_max_Nm": peak(loads.cam_torque) if whole else None,

@@ -7,6 +7,7 @@ In the order of use:
 | `drawing_shapes` | outlines, arrows, texts; groups that move together        | x, y, mm     |
 | `spring_shapes`  | coils, gas spring, torsion spring between their seats     | L, mm        |
 | `arm_parts`      | second arm with its output, spring between arm and ground | lift, mm     |
+| `second_follower` | second roller or face, its arm or frame, second disc     | mm           |
 | `arrangement`    | the mechanism at a cam angle, with force arrows to scale  | theta, rad   |
 | `part_view`      | the cam in front view, section and detail, dimensioned    | mm           |
 | `drawing_svg`    | a drawing as SVG, in fixed colours or in those of a page  |              |

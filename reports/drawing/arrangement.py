@@ -33,6 +33,7 @@ from camwright.reports.drawing.drawing_shapes import (
     rectangle,
     segment,
 )
+from camwright.reports.drawing.second_follower import DrawnSecond
 from camwright.reports.drawing.spring_shapes import Coil, DrawnSpring, NoSpring
 
 _EDGE, _THIN = 0.45, 0.22  # mm, of lines on a mechanism `_WHOLE` high
@@ -185,6 +186,7 @@ class DrawnMechanism:
     counterweight            in the frame of the cam; None: none
     arm                      that carries the roller, in place of stem, guides and spring; or None
     groove                   around the contour, in which the roller runs; or None
+    second                   roller or face that pulls the follower back; or None
     """
 
     contour: Array
@@ -206,6 +208,7 @@ class DrawnMechanism:
     counterweight: DrawnSector | None
     arm: DrawnArm | None = None
     groove: DrawnGroove | None = None
+    second: DrawnSecond | None = None
 
     @property
     def sprung(self) -> bool:
@@ -235,7 +238,17 @@ class DrawnMechanism:
             for lift in (0.0, 0.5 * self.stroke, self.stroke)
             for (x, y), size in self.arm.beside(lift)
         ]
+        if self.arm is not None and self.second is not None:
+            beside.append(self._second_box(self.arm, self.second))
         return around((*self.sizes.on_shaft, Box(across, along, (-deep, deep)), pivot, *beside))
+
+    def _second_box(self, arm: DrawnArm, second: DrawnSecond) -> Box:
+        """Box of the second roller of an arm over its swing."""
+        turned = [rotation(float(arm.turn(lift))) @ second.centre
+                  for lift in (0.0, 0.5 * self.stroke, self.stroke)]  # fmt: skip
+        left, right, low, high = second.reach(np.stack(turned, axis=1))
+        deep = self.sizes.follower[1]
+        return Box((left, right), (arm.pivot + low, arm.pivot + high), (-deep, deep))
 
     @property
     def shown_forces(self) -> tuple[str, ...]:
@@ -256,14 +269,19 @@ class DrawnMechanism:
     @cached_property
     def reach(self) -> float:
         """Greatest radius about the camshaft, of cam, gear and bearings, mm."""
+        if self.second is not None:  # a roller below the shaft
+            return -min(box.along[0] for box in self.sizes.on_shaft)
         return -self.envelope.along[0]
 
     @cached_property
     def radius_max(self) -> float:
-        """Greatest radius of the cam, mm: of the contour, or of the disc with a groove."""
+        """Greatest radius of the cam, mm: of the contours, or of the disc with a groove."""
         if self.groove is not None:
             return self.groove.radius
-        return float(np.hypot(*self.contour).max())
+        discs = [self.contour]
+        if self.second is not None and self.second.disc is not None:
+            discs.append(self.second.disc)
+        return max(float(np.hypot(*disc).max()) for disc in discs)
 
     @cached_property
     def top(self) -> float:
@@ -273,7 +291,7 @@ class DrawnMechanism:
     @cached_property
     def height(self) -> float:
         """Height of cam and follower together, mm."""
-        return self.top + self.reach
+        return self.top + max(self.reach, -self.envelope.along[0])
 
     @cached_property
     def scale(self) -> float:
@@ -297,8 +315,10 @@ class DrawnMotion:
 
     theta : cam angle, rad; lift, mm; pressure_angle, rad; contact_offset : of the contact from the
     axis of a flat face, mm, None of a roller; forces : N by the names of `FORCES`, reactions
-    positive where they act against a side force that is positive; wall : of a groove that carries,
-    1 the inner, -1 the outer, which pulls; None without a groove
+    positive where they act against a side force that is positive; wall : that carries, 1 the first
+    track or inner wall, -1 the second or outer, which pulls; None of one track; pulling : contact
+    of the second track in the drawing (2, n), mm, with its normal towards roller or face; None in a
+    groove
     """
 
     load_case: str
@@ -310,11 +330,16 @@ class DrawnMotion:
     contact_offset: Array | None
     forces: dict[str, Array]
     wall: Array | None = None
+    pulling: tuple[Array, Array] | None = None
 
     @property
     def pushes(self) -> Array:
         """Sense (n,) of the contact force along the travel: 1 outwards, -1 of a cam that pulls."""
         return np.ones(self.theta.shape) if self.wall is None else self.wall
+
+    def carried(self, second: Array, first: Array) -> Array:
+        """Of values (2, n) on both tracks those on the track that carries."""
+        return np.where(self.pushes < 0.0, second, first)
 
     @cached_property
     def greatest_force(self) -> float:
@@ -332,10 +357,12 @@ def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing
     top one.
     """
     m, lift = mechanism, float(motion.lift[row])
-    theta = float(motion.theta[row])
+    turn = cam_turn(float(motion.theta[row]))
     groups = (
         ShapeGroup("axes", (*_axes(m), *_gear(m))),
-        ShapeGroup("cam", tuple(_cam(m)), Pose(cam_turn(theta))),
+        *_second_track(m, lift, turn),
+        ShapeGroup("cam", tuple(_cam(m)), Pose(turn)),
+        *(() if m.second is None else m.second.hidden(turn, Pen("ink", _EDGE * m.scale))),
         ShapeGroup("turning", tuple(_turning(m))),
         *(_stem_groups(m, lift) if m.arm is None else arm_groups(m, m.arm, lift)),
         ShapeGroup("forces", tuple(arrows(m, motion, row))),
@@ -347,6 +374,32 @@ def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing
         f"{alt(m, motion, row)} Envelope across and along {line} and along the camshaft: {size} mm."
     )
     return Drawing("Arrangement", words, groups, _box(m))
+
+
+def _second_track(m: DrawnMechanism, lift: float, turn: float) -> tuple[ShapeGroup, ...]:
+    """Groups of the second roller or face with its arm or frame, and of the second disc, behind the
+    cam turned by `turn`, rad; none without them. Lift in mm.
+    """
+    second, edge = m.second, Pen("ink", _EDGE * m.scale, "steel")
+    if second is None:
+        return ()
+    pose = Pose(shift=(m.axis, m.lowest + lift))
+    carrier: tuple[Shape, ...]
+    if m.arm is not None:
+        pose = Pose(float(m.arm.turn(lift)), (0.0, m.arm.pivot))
+        carrier = second.arm(m.arm.half, edge)
+    elif m.face is not None:
+        room = m.radius_max + 0.3 * m.stem
+        carrier = (second.frame(m.face, room, m.stem, edge),)
+    else:
+        lifts = m.lowest, m.lowest + m.stroke
+        carrier = (second.plate(lifts, m.bore or 0.5 * m.stem, m.stem, edge),)
+    holes = [] if m.bore is None else [bore_outline(m.bore, m.keyway)]
+    return (
+        ShapeGroup("frame", carrier, pose),
+        *second.behind(turn, holes, edge),
+        ShapeGroup("second-roller", second.roller(m.pin, edge), pose),
+    )
 
 
 def _stem_groups(m: DrawnMechanism, lift: float) -> tuple[ShapeGroup, ...]:
@@ -485,12 +538,16 @@ def alt(m: DrawnMechanism, motion: DrawnMotion, row: int) -> str:
         f"{FORCES[key].lower()} {_newtons(motion, key, row)}" for key in m.shown_forces
     )
     carried = "face" if m.roller is None else "roller"
-    stem = "follower, guides and spring" if m.sprung else "follower in its groove and guides"
+    stem = "follower, guides and spring"
+    if not m.sprung:
+        stem = "follower and guides" if m.groove is None else "follower in its groove and guides"
     parts = stem if m.arm is None else f"{carried} and arm on its pivot"
     if m.arm is not None and m.arm.second is not None:
         parts += ", second arm with its output"
     if m.arm is not None and m.arm.spring is not None:
         parts += ", spring"
+    if m.second is not None:
+        parts += f", {m.second.words}"
     return (
         f"Cam, {parts} in the plane of the cam at "
         f"{_angle_words(motion, row)}, load case {motion.load_case}. Lift "
@@ -639,7 +696,15 @@ def _guides(m: DrawnMechanism) -> list[Shape]:
 
 
 def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
-    """Contact of cam and follower in the drawing, over the turn, (2, n), mm."""
+    """Contact of cam and follower in the drawing, over the turn, (2, n), mm, on the track that
+    carries.
+    """
+    first = _first_contact(mechanism, motion)
+    return first if motion.pulling is None else motion.carried(motion.pulling[0], first)
+
+
+def _first_contact(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
+    """Contact of the first roller or face, or in a groove of the wall that carries, (2, n), mm."""
     m, (centre, travel) = mechanism, mechanism.reference(motion.lift)
     radius = m.roller if m.arm is None or m.arm.radius is None else m.arm.radius
     if radius is None and m.arm is not None and motion.contact_offset is not None:
@@ -666,9 +731,12 @@ def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arr
     m = mechanism
     scale = m.arrow_length / motion.greatest_force if motion.greatest_force > 0.0 else 0.0
     touch = contact_point(m, motion)[:, row]
-    angle = float(motion.pressure_angle[row] - m.reference(motion.lift)[1][row])
-    push = motion.pushes[row] * np.array([np.sin(angle), np.cos(angle)])
-    at = {"contact": (touch, push)}
+    angles = motion.pressure_angle - m.reference(motion.lift)[1]
+    push = np.stack([np.sin(angles), np.cos(angles)])
+    push = (
+        motion.pushes * push if motion.pulling is None else motion.carried(motion.pulling[1], push)
+    )
+    at = {"contact": (touch, push[:, row])}
     if m.arm is None:
         beside = m.axis + m.spring.reach + 1.6 * m.scale
         seat = np.array([beside, m.spring.seat + motion.lift[row]])
@@ -768,7 +836,8 @@ def _box(m: DrawnMechanism) -> tuple[float, float, float, float]:
     if m.arm is None:
         left = min(left, m.axis - 0.5 * m.stem - m.arrow_length - 0.5 * margin)
     top = max(m.top + margin, max(y for _, y in places.values()) + 2.2 * m.text)
-    return left, -m.reach - 2.4 * margin, right, top
+    bottom = min(-m.reach, m.envelope.along[0]) - 2.4 * margin
+    return left, bottom, right, top
 
 
 def moving_record(
