@@ -111,8 +111,6 @@ class CaseRun:
         began: float | None = None,
     ) -> None:
         """Options of the run; nothing is read or written before the context is entered."""
-        if depth > Tier.PREVIEW:
-            case.require_one_disc("the contact by finite elements")
         self.case = case if positions is None else case.with_positions(positions)
         self.out, self.depth = Path(out), depth
         self._jobs, self._resume, self._replace = jobs, resume, replace

@@ -303,8 +303,8 @@ def pressure_torque(cycle: Cycle) -> Array:
     contact, theta = cycle.contact, cycle.theta
     (x, y), (tx, ty) = np.empty((2, 2, theta.size))
     for pair, at in cycle.pair.on_walls(theta):
-        x[at], y[at] = pair.contour.points(theta[at])
-        tx[at], ty[at] = _tangent_of_points(pair.contour, theta[at])
+        (x[at], y[at]), _ = pair.touched(theta[at])
+        tx[at], ty[at] = _tangent_of_points(pair.contour, pair.angle(theta[at]))
     xi, width = contact.pressure_xi, cycle.pair.width
     force = width * _integral(contact.pressure, xi)
     # xi runs clockwise, against the tangent of the contour

@@ -47,6 +47,23 @@ class BoreStress:
         names = ("von_mises", "x", "y", "at_edge", "away_from_edges")
         freeze(self, **{name: getattr(self, name) for name in names})
 
+    def where(self, at: NDArray[np.bool_], other: BoreStress) -> BoreStress:
+        """This stress with that of another bore at some angles: `at` (n,), and its k values."""
+
+        def chosen(name: str) -> Array:
+            values = np.array(getattr(self, name))
+            values[at] = getattr(other, name)
+            return values
+
+        return BoreStress(
+            von_mises=chosen("von_mises"),
+            x=chosen("x"),
+            y=chosen("y"),
+            at_edge=chosen("at_edge"),
+            away_from_edges=chosen("away_from_edges"),
+            excluded=self.excluded,
+        )
+
 
 def bore_stress(
     cam: LoadedBody,

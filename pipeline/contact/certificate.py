@@ -58,7 +58,7 @@ def contact_meshes(
     half_width : float   of the Hertz contact, m
     edges : float        element edges per half-width at the contact
     """
-    contact = pair.contour.points(theta)
+    contact, _ = pair.touched(theta)
 
     def sizing(far_size: float) -> ElementSize:
         return ElementSize.from_half_width(
@@ -71,8 +71,8 @@ def contact_meshes(
         )
 
     far = float(pair.contour.perimeter()) / _FAR_ON_OUTLINE
-    other = pair.follower
-    return pair.cam_mesh(sizing(far)), other.mesh_at(pair.contour, theta, sizing(other.far_size))
+    other, angle = pair.follower, float(pair.angle(theta))
+    return pair.cam_mesh(sizing(far)), other.mesh_at(pair.contour, angle, sizing(other.far_size))
 
 
 def solve_pair(
@@ -96,8 +96,8 @@ def solve_pair(
     half_width, _ = hertz.line_contact(load, pair.relative_radius(theta), pair.contact_modulus)
     other = pair.follower
     cam, facing = contact_meshes(pair, theta, float(half_width), edges)
-    springs = other.springs(facing, pair.contour, theta)
-    frame = ContactFrame(pair.contour.points(theta), pair.contour.normal(theta))
+    springs = other.springs(facing, pair.contour, float(pair.angle(theta)))
+    frame = ContactFrame(*pair.touched(theta))
     sides = (
         ContactSide(elastic_body(cam, pair.cam, pair.held), "contour"),
         ContactSide(elastic_body(facing, other.material, other.held, springs), other.surface),

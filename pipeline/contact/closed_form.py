@@ -73,9 +73,9 @@ def in_full(
     """
     if not pair.contour.rolls:  # a face touches convex parts alone
         return np.zeros(theta.shape, dtype=bool), None
-    radius = np.full(theta.shape, pair.contour.require_roller().follower_radius)
-    if pair.second is not None and pair.wall is not None:
-        radius[pair.wall(theta) < 0] = pair.second.radius
+    radius = np.empty(theta.shape)
+    for each, at in pair.on_walls(theta):
+        radius[at] = each.contour.require_roller().follower_radius
     return concave_line(line_load, relative_radius, radius, pair.follower.material, pair.cam)
 
 

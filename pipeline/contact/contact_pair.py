@@ -12,7 +12,6 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import ContactError
-from camwright.geometry.second_track import SecondFollower
 from camwright.meshes.body_mesh import BodyMesh, cam_mesh, rim_mesh
 from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base.units import shown
@@ -27,7 +26,8 @@ class ContactPair:
 
     The body of the cam is the plane region between contour and bore, held at the bore; or, with the
     radius of a rim (m), that between the outer wall of a groove and this circle, held there. A cam
-    that pulls as well has a second pair, by whose surface it does.
+    that pulls as well has a second pair, by whose surface it does. All cam angles are those of the
+    first track.
     """
 
     contour: Contour
@@ -41,8 +41,11 @@ class ContactPair:
     pulling: ContactPair | None = None
     wall: Callable[[Array], Array] | None = None
     """of a cam that pulls: cam angles (...) -> 1 where it pushes, -1 where it pulls"""
-    second: SecondFollower | None = None
-    """by which it pulls on a disc of its own, in a preview alone; None of a groove"""
+    turn: float = 0.0
+    """by which the cam angles of its contour are ahead of those of the first track, rad"""
+    own_body: bool = True
+    """of a pair by which a cam pulls: whether on a body of its own, as all but the second face of a
+    yoke are"""
 
     @property
     def held(self) -> str:
@@ -83,9 +86,25 @@ class ContactPair:
         """
         points, normals = np.empty((2, theta.size)), np.empty((2, theta.size))
         for pair, at in self.on_walls(theta):
-            points[:, at] = pair.contour.points(theta[at])
-            normals[:, at] = pair.contour.normal(theta[at])
+            points[:, at], normals[:, at] = pair.touched(theta[at])
         return points, normals
+
+    def touched(self, theta: ArrayLike) -> tuple[Array, Array]:
+        """Contact points (2, ...), m, on this surface, and its outward normals, at cam angles, rad,
+        whether it carries or not.
+        """
+        at = self.angle(theta)
+        return self.contour.points(at), self.contour.normal(at)
+
+    def angle(self, theta: ArrayLike) -> Array:
+        """Cam angles (...) of its contour at those of the first track, rad."""
+        return np.asarray(theta, dtype=float) + self.turn
+
+    def follower_contacts(self, theta: Array) -> tuple[Array, Array]:
+        """Contact points (2, n), m, and outward normals in the frame of the follower's body; (2, 1)
+        where all are equal.
+        """
+        return self.follower.contacts(self.contour, self.angle(theta))
 
     @property
     def contact_modulus(self) -> float:
@@ -107,14 +126,9 @@ class ContactPair:
             If the contour is undercut: 1/R = 1/(r_r (1 - r_r kappa_p)) is positive elsewhere.
         """
         curvature = self._relative_curvature(theta)
-        if self.wall is not None:
+        if self.wall is not None and self.pulling is not None:
             pushes = self.wall(np.asarray(theta, dtype=float)) > 0
-            if self.second is not None:
-                track = self.second.track(self.contour.pitch)
-                pulled = 1.0 / track.relative_radius(np.asarray(theta, dtype=float))
-                curvature = np.where(pushes, curvature, pulled)
-            elif self.pulling is not None:
-                curvature = np.where(pushes, curvature, self.pulling._relative_curvature(theta))
+            curvature = np.where(pushes, curvature, self.pulling._relative_curvature(theta))
         if not (curvature > 0).all():
             worst = float(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))])
             name, place = self.follower.name, shown(worst, "deg")
@@ -122,7 +136,11 @@ class ContactPair:
         return 1 / curvature
 
     def _relative_curvature(self, theta: ArrayLike) -> Array:
-        return np.asarray(self.contour.follower_curvature + self.contour.curvature(theta))
+        return self.contour.follower_curvature + self.curvature(theta)
+
+    def curvature(self, theta: ArrayLike) -> Array:
+        """Curvature of the contour (...), 1/m, at the contact at cam angles, rad."""
+        return np.asarray(self.contour.curvature(self.angle(theta)))
 
     def gap(self, theta: Array, xi: Array) -> Array:
         """Distance (n, q), m, of contour and follower along the normal, unloaded.
@@ -130,7 +148,7 @@ class ContactPair:
         theta (n,) rad; xi (n, q) m along the tangent of the contact frame, which is opposite to
         that of the contour.
         """
-        return self.contour.follower_gap(xi) - self.contour.surface_offset(theta, -xi)
+        return self.contour.follower_gap(xi) - self.contour.surface_offset(self.angle(theta), -xi)
 
 
 def elastic_body(

@@ -18,7 +18,7 @@ from camwright.pipeline.contact.contact_pair import ContactPair, elastic_body
 from camwright.pipeline.contact.contact_patch import contact_patch, solve_patches
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.plane_stress_measures import Index
-from camwright.pipeline.contact.follower_body import EDGES_ACROSS_WALL
+from camwright.pipeline.contact.follower_body import EDGES_ACROSS_WALL, FollowerBody
 from camwright.pipeline.contact.tiers import Tier
 
 # Half-width over relative radius beyond which the error of the flat patch exceeds 0.5 %.
@@ -43,18 +43,27 @@ class CycleBodies:
     @classmethod
     def meshed(cls, pair: ContactPair) -> CycleBodies:
         """Bodies of a pair; the element size follows from the contour and the minimum wall."""
-        other = pair.follower
-        mesh = other.coarse_mesh()
-        facing = elastic_body(mesh, other.material, other.held, other.springs(mesh, None, 0.0))
-        return cls(
-            loaded_cam(pair),
-            LoadedBody(facing, other.surface, other.free),
-            None if pair.pulling is None else cls.meshed(pair.pulling),
+        cam = loaded_cam(pair)
+        pulling, other = pair.pulling, _loaded_follower(pair.follower)
+        if pulling is None:
+            return cls(cam, other)
+        same = pulling.follower == pair.follower
+        second = cls(
+            loaded_cam(pulling) if pulling.own_body else cam,
+            other if same else _loaded_follower(pulling.follower),
         )
+        return cls(cam, other, second)
 
     def of(self, pair: ContactPair) -> CycleBodies:
         """Bodies of a pair by whose surface the cam pushes or pulls; see `ContactPair.on_walls`."""
         return self if self.pulling is None or pair.pulling is not None else self.pulling
+
+
+def _loaded_follower(other: FollowerBody) -> LoadedBody:
+    """Body of the follower on its coarse mesh, factorised."""
+    mesh = other.coarse_mesh()
+    facing = elastic_body(mesh, other.material, other.held, other.springs(mesh, None, 0.0))
+    return LoadedBody(facing, other.surface, other.free)
 
 
 def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
@@ -182,7 +191,7 @@ def _gap_round_off(
     p0 scatters by a fifth of it. Zero without load.
     """
     gap = half_width**2 / (2 * radius)
-    size = np.hypot(*pair.contour.points(theta))
+    size = np.hypot(*pair.touched(theta)[0])
     error = np.minimum(np.finfo(float).eps * size, gap)
     share: Array = np.divide(error, gap, out=np.where(load > 0, 1.0, 0.0), where=gap > 0)
     return share
@@ -203,8 +212,8 @@ def _loaded_positions(
     materials = (pair.cam, pair.follower.material)
     patches = (contact_patch(materials[0].poisson), contact_patch(materials[1].poisson))
     shares = tuple(pair.contact_modulus / each.plane_strain_modulus for each in materials)
-    cam = bodies.cam.correction(pair.contour.points(theta), pair.contour.normal(theta))
-    other = bodies.follower.correction(*pair.follower.contacts(pair.contour, theta))
+    cam = bodies.cam.correction(*pair.touched(theta))
+    other = bodies.follower.correction(*pair.follower_contacts(theta))
 
     bend = load * (other.bend + cam.bend)
     unit_xi, _, _ = patches[0].shapes.sampled
@@ -286,7 +295,7 @@ def stress_on_patch(
     if points is not None:
         unit, added = unit[:, points], added[:, points]
     # First-order change of the stress with the depth below a free curved surface.
-    curvature = pair.contour.curvature(theta)
+    curvature = pair.curvature(theta)
     of_added = np.stack(
         [
             load * cam.along,

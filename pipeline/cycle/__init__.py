@@ -29,6 +29,7 @@ In the order of the calculation:
 | `length_records`     | contacts of finite length as records            | K, -                   |
 | `contact_store`      | store of solved pieces of the contact           |                        |
 | `certificate_angles` | angles of the certificate, their solution       | theta, rad             |
+| `pressed_discs`      | discs under the contacts of their followers     | theta, rad; F_n, N     |
 | `notch_fatigue`      | keyway's root: Goodman, FKM, bound              | sigma, Pa; use, -      |
 | `hub_history`        | keyway's root over the turns, its fatigue       | sigma, Pa; safety, -   |
 | `solution`           | all load cases of a cam, by one tier            |                        |

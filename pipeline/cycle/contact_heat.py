@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -17,7 +16,6 @@ from camwright.pipeline.follower.flat_face_motion import FaceSliding
 def flash_history(
     machine: Machine,
     pair: ContactPair,
-    path: FollowerPath,
     theta: Array,
     contact: ContactHistory,
     sliding: FaceSliding,
@@ -35,11 +33,9 @@ def flash_history(
     """
     if machine.face.friction is None:
         return None
-    along = np.asarray(path.slide(theta).along_face)
-    if pair.second is not None and pair.wall is not None:
-        track = pair.second.track(path)
-        second = track.contour.pitch.slide(theta + track.turn).along_face
-        along = np.where(pair.wall(theta) < 0.0, second, along)
+    along = np.empty(theta.size)
+    for each, at in pair.on_walls(theta):
+        along[at] = each.contour.pitch.slide(each.angle(theta[at])).along_face
     through = machine.cam_speed * along
     heat = sliding.power / pair.width
     half_width = np.where(heat > 0, contact.half_width, 1.0)

@@ -21,7 +21,9 @@ def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
 
     In a groove the inner wall is on the disc within, held at its bore. The outer wall is on the rim
     around it. The web under the groove carries the rim; in the plane the rim is held at its outer
-    circle instead, many half-widths behind the contact.
+    circle instead, many half-widths behind the contact. A second roller presses on a disc of its
+    own with the same bore and keyway, the second face of a yoke on the same cam; its block is like
+    the first.
     """
     cam, width = machine.cam, machine.contact_width
     pair = ContactPair(
@@ -33,10 +35,21 @@ def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
         follower=machine.follower.body(width, machine.stem, machine.spring.preload),
         counter_hole=drilled_hole(cam, contour),
     )
+    second = cam.second
+    if second is not None:
+        track, body = second.track(contour.pitch), pair.follower
+        if second.own_disc:
+            roller = replace(machine.roller, radius=second.radius)
+            body = roller.body(width, machine.stem, machine.spring.preload)
+        pulling = replace(
+            pair, contour=track.contour, follower=body, turn=track.turn, own_body=second.own_disc,
+            counter_hole=None if second.own_disc else pair.counter_hole,
+        )  # fmt: skip
+        return replace(pair, pulling=pulling)
     if cam.groove is None:
         return pair
-    track = contour.require_roller()
-    wall = groove_wall(track, "outer", track.roller_radius)
+    inner = contour.require_roller()
+    wall = groove_wall(inner, "outer", inner.roller_radius)
     return replace(pair, pulling=replace(pair, contour=wall, rim_radius=cam.groove.outer_radius))
 
 
@@ -45,7 +58,7 @@ def under_load(pair: ContactPair, loads: Loads) -> ContactPair:
     if not loads.held:
         return pair
     wall = CarryingWall(loads.theta, loads.signed_force)
-    return replace(pair, wall=wall, second=loads.second)
+    return replace(pair, wall=wall)
 
 
 @dataclass(frozen=True, eq=False)

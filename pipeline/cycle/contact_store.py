@@ -57,6 +57,8 @@ def piece_key(pair: ContactPair, normal_force: Array, *inputs: float) -> str:
     if pair.pulling is not None and pair.wall is not None:
         digest.update(pair.wall(uniform_turn(_WALL_ANGLES)).tobytes())
         digest.update(piece_key(pair.pulling, normal_force, *inputs).encode())
+    if pair.turn:
+        digest.update(np.array(pair.turn).tobytes())
     if pair.rim_radius is not None:
         digest.update(np.array(pair.rim_radius).tobytes())
     return digest.hexdigest()

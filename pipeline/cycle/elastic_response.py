@@ -45,7 +45,8 @@ class ElasticHistory:
 
 
 def elastic_follower(machine: Machine, lift: Array | None = None) -> ElasticFollower:
-    """Follower mass on bearing, pin, fork, stem and camshaft in series.
+    """Follower mass on bearing, pin, fork, stem and camshaft in series, with that of the output of
+    a rocker.
 
     Parameters
     ----------
@@ -65,6 +66,7 @@ def elastic_follower(machine: Machine, lift: Array | None = None) -> ElasticFoll
         machine.spring.preload,
         machine.damping_ratio,
         load,
+        machine.output if machine.output is not None and machine.output.changes else None,
     )
 
 
@@ -90,7 +92,8 @@ def elastic_history(
         first = float(response.theta[k])
         jump = bounce(lift, _law(cam_speed), follower, BOUNCE_TURNS, start, first)
         lost, force = jump.flights, float(jump.contact_force.max())
-    return ElasticHistory(response, at - response.position, lost, force, _method(cam_speed))
+    method = _method(cam_speed, constant=follower.output is None)
+    return ElasticHistory(response, at - response.position, lost, force, method)
 
 
 def _start_position(contact_force: Array) -> int:
@@ -118,10 +121,12 @@ def _law(cam_speed: Array) -> float | PeriodicPolynomial:
     return float(cam_speed[0]) if is_steady(cam_speed) else periodic_quintic(cam_speed)
 
 
-def _method(cam_speed: Array) -> str:
-    """Method of the solution in words, by cam speeds (n,), rad/s."""
+def _method(cam_speed: Array, *, constant: bool) -> str:
+    """Method of the solution in words, by cam speeds (n,), rad/s; constant: of the mass."""
     if is_steady(cam_speed):
-        return "harmonic balance at constant speed"
+        if constant:
+            return "harmonic balance at constant speed"
+        return "collocation at constant speed, with the mass of the output by its ratio"
     low, high = cam_speed.min(), cam_speed.max()
     swing = 100.0 * (high - low) / (0.5 * (high + low))
     return f"collocation on the computed speed, which varies by {swing:.2g} %"

@@ -19,6 +19,7 @@ from camwright.pipeline.contact.hub_elements import HubLoads, RotatingBody, Seat
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.notch_fatigue import notch_strength
 from camwright.pipeline.cycle.numbers import Numbers, greatest_interference, least_interference
+from camwright.pipeline.cycle.pressed_discs import PressedDisc, pressed_discs
 
 ANGLES = 180
 """Cam angles of a turn at which the state of the seat is solved."""
@@ -85,27 +86,43 @@ def hub_fatigue(
 ) -> HubFatigue | None:
     """Fatigue of the keyway root by finite elements; None without data, or with unknown loads.
 
+    Of a conjugate pair that of the disc with the lower safety factor, each on a seat of its own.
+
     Raises
     ------
     CamError
         If the cam cannot be meshed, or the contact of its seat is not found.
     """
-    seated = seated_cam(contour, numbers, refinement)
-    least, greatest = least_interference(numbers), greatest_interference(numbers)
-    if seated is None or least is None or greatest is None:
-        return None
     if any(np.isnan(cycle.loads.normal_force).any() for cycle in cycles):
         return None
-    loose = _fatigue(seated, cycles, numbers, float(least))
-    tight = _fatigue(seated, cycles, numbers, float(greatest))
-    return None if loose is None or tight is None else HubFatigue(loose, tight)
+    turns = [pressed_discs(contour, cycle.loads) for cycle in cycles]
+    least, greatest = least_interference(numbers), greatest_interference(numbers)
+    if least is None or greatest is None:
+        return None
+    worst: list[HubFatigue] = []
+    for discs in zip(*turns, strict=True):
+        seated = seated_cam(discs[0].contour, numbers, refinement)
+        if seated is None:
+            return None
+        loose = _fatigue(seated, cycles, discs, numbers, float(least))
+        tight = _fatigue(seated, cycles, discs, numbers, float(greatest))
+        if loose is None or tight is None:
+            return None
+        worst.append(HubFatigue(loose, tight))
+    return min(worst, key=lambda one: one.governing.safety)
 
 
 def _fatigue(
-    seated: SeatedCam, cycles: Sequence[Cycle], numbers: Numbers, interference: float
+    seated: SeatedCam,
+    cycles: Sequence[Cycle],
+    discs: Sequence[PressedDisc],
+    numbers: Numbers,
+    interference: float,
 ) -> RootFatigue | None:
     """Fatigue of the keyway root over all load cases at one interference, m; None without the data
     of its strength.
+
+    discs : the seated disc under the loads of each cycle
     """
     cam = numbers.known_case.cam
     key, flanks, radius = cam.key, cam.key_flanks, cam.keyway_root_radius
@@ -117,12 +134,12 @@ def _fatigue(
         return None
     stresses, opened = [], []
     steps = [slice(None, None, max(1, cycle.theta.size // ANGLES)) for cycle in cycles]
-    for cycle, step in zip(cycles, steps, strict=True):
+    for cycle, disc, step in zip(cycles, discs, steps, strict=True):
         loads = HubLoads(
-            cycle.theta[step],
-            np.maximum(cycle.loads.normal_force[step], 0.0) / cam.width,
+            disc.theta[step],
+            disc.force[step] / cam.width,
             # the drive of the cam turns it against the way of the contact along the contour
-            -key.application_factor * cycle.loads.cam_torque[step] / flanks.length,
+            -key.application_factor * disc.torque[step] / flanks.length,
             cycle.machine.cam_speed,
             interference,
         )

@@ -201,12 +201,11 @@ def rolling_history(
     worst = partial(map_, governing=True) if bodies is None else None
     flash = None
     if motion.sliding is not None:
-        flash = flash_history(machine, pair, contour.pitch, theta, contact, motion.sliding)
+        flash = flash_history(machine, pair, theta, contact, motion.sliding)
     reach = rolling_pass(pair.cam.poisson).shear_range.max()
     bore = None
     if bodies is not None:
-        points, normals = contour.points(theta), contour.normal(theta)
-        bore = bore_stress(bodies.cam, points, normals, contact.line_load)
+        bore = _bore(pair, bodies, theta, contact.line_load)
     return RollingHistory(
         shear_range=reach * contact.p0,
         bore=bore,
@@ -248,6 +247,22 @@ def _envelope(
     )
 
 
+def _bore(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load: Array) -> BoreStress:
+    """Stress of the bores at cam angles (n,), rad: that of the disc which is pressed.
+
+    The force of the outer wall of a groove is taken as one of the same size on the inner one: its
+    rim has no bore.
+    """
+    bore = bore_stress(bodies.cam, *pair.touched(theta), line_load)
+    if pair.pulling is None or pair.pulling.rim_radius is not None:
+        return bore
+    for each, at in pair.on_walls(theta):
+        if each is pair.pulling:
+            pressed = bodies.of(each).cam, *each.touched(theta[at]), line_load[at]
+            bore = bore.where(at, bore_stress(*pressed, excluded=bore.excluded or None))
+    return bore
+
+
 def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load: Array) -> Array:
     """Stress along the contour (n,), Pa, of the real cam beyond the half-plane, by line loads.
 
@@ -261,7 +276,7 @@ def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load
 
 def _unit_stress(pair: ContactPair, bodies: CycleBodies, theta: Array) -> Array:
     """Stress (n,), Pa per N/m, that the body of one surface adds along it."""
-    along = bodies.cam.correction(pair.contour.points(theta), pair.contour.normal(theta)).along
+    along = bodies.cam.correction(*pair.touched(theta)).along
     return np.interp(theta, theta[::_THINNED], along[::_THINNED], period=FULL_TURN)
 
 

@@ -293,8 +293,6 @@ def solved_turns(
     body : bool               whether the contour encloses a body; None: to be determined
     error_bars : bool         compute the errors by sampling and by every second crank angle
     """
-    if tier >= Tier.CYCLE:
-        case.require_one_disc("the contact by finite elements")
     states = tuple(each.machine for each in turns)
     pair = contact_pair(states[0], contour)
     mesh = bodies = None
@@ -435,10 +433,11 @@ def bore_error(pair: ContactPair, cycles: tuple[Cycle, ...]) -> float | None:
         return None
     value, cycle, k = worst
     theta, bore = cycle.theta[[k]], cycle.rolling.bore
+    pressed = cycle.pair.carrying(float(theta[0]))
+    pressed = pair if pressed.rim_radius is not None else pressed
     fine = bore_stress(
-        loaded_cam(pair, refinement=2.0),
-        pair.contour.points(theta),
-        pair.contour.normal(theta),
+        loaded_cam(pressed, refinement=2.0),
+        *pressed.touched(theta),
         cycle.contact.line_load[[k]],
         excluded=None if bore is None else bore.excluded,
     )
@@ -471,7 +470,7 @@ def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:
         return None
     _, theta, half_width, pair = worst
     bodies = contact_meshes(pair, theta, half_width, EDGES[1])
-    contact = pair.contour.points(theta)
+    contact, _ = pair.touched(theta)
     gated = [gate(quality(body, contact, half_width), edges_min=EDGES[1]) for body in bodies]
     both = Quality(
         min_angle_deg=min(q.min_angle_deg for q in gated),

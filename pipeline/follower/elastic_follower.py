@@ -15,9 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, Value, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
+from camwright.pipeline.follower.rocker import RockerOutput
 
 STEADY = 1e-12  # relative variation up to which a speed is constant
 
@@ -35,6 +36,8 @@ class ElasticFollower:
     preload : float          P, N, >= 0
     guide_damping : float    c_k between mass and frame, N s/m, >= 0
     load : ExternalForce     F_e, weight and external force, towards the cam
+    output : RockerOutput    whose mass at the follower, part of `mass` at zero lift, changes with
+                             the lift; None: none, or of a constant ratio
     """
 
     mass: float
@@ -44,6 +47,7 @@ class ElasticFollower:
     damping: float = 0.0
     guide_damping: float = 0.0
     load: ExternalForce = NO_FORCE
+    output: RockerOutput | None = None
 
     def __post_init__(self) -> None:
         """Refuse a mass or stiffness that is not positive, and a negative damping, rate or
@@ -65,10 +69,22 @@ class ElasticFollower:
         preload: float,
         ratio: float,
         load: ExternalForce = NO_FORCE,
+        output: RockerOutput | None = None,
     ) -> ElasticFollower:
-        """With the damping of the stem as a share of critical damping."""
+        """With the damping of the stem as a share of critical damping, of the mass at zero lift."""
         critical = 2.0 * np.sqrt(mass * (stiffness + spring_rate))
-        return cls(mass, stiffness, spring_rate, preload, ratio * float(critical), load=load)
+        damping = ratio * float(critical)
+        return cls(mass, stiffness, spring_rate, preload, damping, load=load, output=output)
+
+    def moving(self, position: Value) -> tuple[Value, Value]:
+        """Mass m(x) (...), kg, and its slope m'(x), kg/m, at positions of it, m.
+
+        The equation of motion has m x'' + m' x'^2/2 in place of m x''.
+        """
+        if self.output is None:
+            return self.mass + 0.0 * position, 0.0 * position
+        beyond = self.output.moving_mass(position)
+        return self.mass + beyond, 2.0 * self.output.inertia(position, 1.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +125,8 @@ def quasi_static(lift: ArrayLike, follower: ElasticFollower, theta: ArrayLike = 
 
 
 def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) -> Response:
-    """Periodic response at constant speed by harmonic balance, with bilateral contact.
+    """Periodic response of a constant mass at constant speed by harmonic balance, with bilateral
+    contact.
 
     Parameters
     ----------
@@ -153,6 +170,9 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
     """Periodic response of a follower on its elastic stem at varying speed of the cam, by
     trigonometric collocation.
 
+    A mass that changes with the lift is that at the lift of the foot, and the square of its speed
+    is taken to first order in the speed of the shortening.
+
     Parameters
     ----------
     lift : array (n,)            s at equal angles of one turn from 0, m; n odd preferred
@@ -171,11 +191,14 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
     if not (speed > 0.0).all():
         raise InputError("cam_speed", float(speed.min()), "> 0 rad/s")
     f, rate = follower, speed[:, None] * _differentiation(s.size)
-    system: Array = f.mass * rate @ rate + (f.damping + f.guide_damping) * rate
-    system[np.diag_indices(s.size)] += f.stiffness + f.spring_rate
     foot_speed = rate @ s
     foot_acceleration = rate @ foot_speed
-    drive = f.mass * foot_acceleration + f.guide_damping * foot_speed + f.spring_rate * s
+    mass, slope = (np.asarray(each) for each in f.moving(s))
+    damping = f.damping + f.guide_damping + slope * foot_speed
+    system: Array = mass[:, None] * (rate @ rate) + damping[:, None] * rate
+    system[np.diag_indices(s.size)] += f.stiffness + f.spring_rate
+    drive = mass * foot_acceleration + 0.5 * slope * foot_speed**2
+    drive = drive + f.guide_damping * foot_speed + f.spring_rate * s
     held = f.preload + f.load.at(uniform_turn(s.size))
     short = np.asarray(np.linalg.solve(system, drive + held), dtype=float)
     short_speed = rate @ short
@@ -190,7 +213,7 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
 
 def periodic_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
     """Periodic response of a follower on its elastic stem at n equal cam angles; by harmonic
-    balance at constant speed, otherwise by collocation.
+    balance at constant speed and mass, otherwise by collocation.
 
     Parameters
     ----------
@@ -199,7 +222,7 @@ def periodic_response(lift: Array, cam_speed: Array, follower: ElasticFollower) 
     follower : ElasticFollower   mass, stem and spring
     """
     speed = finite("cam_speed", cam_speed)
-    if is_steady(speed):
+    if is_steady(speed) and follower.output is None:
         return harmonic_response(lift, float(speed[0]), follower)
     return collocation_response(lift, speed, follower)
 

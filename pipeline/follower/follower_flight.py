@@ -257,7 +257,9 @@ class _Motion:
                 approach = u - y[1]
                 push = f.stiffness * (s - y[0]) + f.damping * approach
                 force, work, lost = force + push, work + push * u, lost + f.damping * approach**2
-            return [pace * y[1], pace * force / f.mass, pace * work, pace * lost, pace]
+            mass, slope = f.moving(y[0])
+            force = force - 0.5 * slope * y[1] ** 2
+            return [pace * y[1], pace * force / mass, pace * work, pace * lost, pace]
 
         stem = np.sqrt(f.stiffness / f.mass)
         return scipy.integrate.solve_ivp(
@@ -296,7 +298,7 @@ class _Motion:
             position=x,
             velocity=v,
             contact_force=f.stiffness * squeeze + f.damping * approach,
-            energy=0.5 * f.mass * v**2 + stored - work,
+            energy=0.5 * f.moving(x)[0] * v**2 + stored - work,
             dissipated=lost,
             flights=flights,
         )

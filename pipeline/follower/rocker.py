@@ -239,6 +239,11 @@ class RockerOutput:
         return self.rocker.output_force or 0.0
 
     @property
+    def changes(self) -> bool:
+        """Whether its mass at the follower changes with the lift."""
+        return self.mass > 0.0 and self.rocker.length is not None
+
+    @property
     def reduced_mass(self) -> float:
         """Its share of the mass of the follower, kg."""
         return self.mass * self.ratio**2

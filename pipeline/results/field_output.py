@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from enum import StrEnum
 from importlib.resources import files
 from pathlib import Path
@@ -297,6 +298,8 @@ def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[s
     """
     count = cycle.theta.size
     shown = np.arange(0, count, -(-count // FRAMES))
+    if pair.pulling is not None and pair.pulling.rim_radius is None:
+        pair = replace(pair, pulling=None, wall=None)  # the first roller or face, all over the turn
     places = follower_places(pair, cycle.theta[shown])
     return {
         "load_case": np.array(cycle.load_case),

@@ -16,8 +16,13 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
+from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.gmsh_mesher import Index
-from camwright.pipeline.contact.body_compliance import CorrectionField, from_contact_axes
+from camwright.pipeline.contact.body_compliance import (
+    CorrectionField,
+    LoadedBody,
+    from_contact_axes,
+)
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.two_scale import CycleBodies, stress_on_patch
 from camwright.pipeline.cycle.cycle import Cycle
@@ -122,10 +127,11 @@ def follower_places(pair: ContactPair, theta: Array) -> Poses:
     """
     contacts, normals = pair.contacts(theta)
     normals = -normals
-    at, up = pair.follower.contacts(pair.contour, theta)
+    at, up = np.empty((2, *contacts.shape))
+    for each, here in pair.on_walls(theta):
+        at[:, here], up[:, here] = each.follower_contacts(theta[here])
     cosine, sine = (up * normals).sum(axis=0), up[0] * normals[1] - up[1] * normals[0]
     turn = np.array([[cosine, -sine], [sine, cosine]]).transpose(2, 0, 1)
-    at = np.broadcast_to(at, contacts.shape)
     return Poses(contacts.T - np.einsum("kab,bk->ka", turn, at), turn)
 
 
@@ -164,27 +170,30 @@ class TurnFields:
         """Corners (2, n), m, of the coarse meshes by block; the block of the cam has all its
         bodies.
         """
-        meshes = [each.bodies.cam.body.mesh for each in self._surfaces]
-        other = self.bodies.follower.body.mesh
-        first, second = self.names
         return {
-            first: np.hstack([mesh.points[:, : mesh.corners] for mesh in meshes]),
-            second: other.points[:, : other.corners],
+            name: np.hstack([mesh.points[:, : mesh.corners] for mesh in self._meshes(name)])
+            for name in self.names
         }
+
+    def _meshes(self, name: str) -> list[BodyMesh]:
+        """Meshes of all bodies of a block: of the cam or the follower."""
+        return [each.body.mesh for each in dict.fromkeys(self._bodies(name))]
+
+    def _bodies(self, name: str) -> list[LoadedBody]:
+        """Body of a block that each surface of the cam loads."""
+        every = [each.bodies for each in self._surfaces]
+        return [each.cam if name == self.names[0] else each.follower for each in every]
 
     @cached_property
     def triangles(self) -> dict[str, Index]:
         """Triangles (3, t), as indices of the corners of their mesh, by block."""
-        first, second = self.names
-        meshes = [each.bodies.cam.body.mesh for each in self._surfaces]
-        starts = np.cumsum([0, *(mesh.corners for mesh in meshes[:-1])])
-        parts = [mesh.triangles[:3] + start for mesh, start in zip(meshes, starts, strict=True)]
-        return {
-            first: np.hstack(parts),
-            second: self.bodies.follower.body.mesh.triangles[:3],
-            first + ZONE: zone_triangles(),
-            second + ZONE: zone_triangles(),
-        }
+        joined = {}
+        for name in self.names:
+            meshes = self._meshes(name)
+            starts = np.cumsum([0, *(mesh.corners for mesh in meshes[:-1])])
+            parts = [mesh.triangles[:3] + start for mesh, start in zip(meshes, starts, strict=True)]
+            joined[name] = np.hstack(parts)
+        return joined | {name + ZONE: zone_triangles() for name in self.names}
 
     @cached_property
     def _sites(self) -> tuple[ZoneSite, ZoneSite]:
@@ -204,37 +213,43 @@ class TurnFields:
         surfaces = self._surfaces
         if len(surfaces) == 1:
             return self._carried(part)
-        first, joined = self.names[0], dict[str, BodyField]()
+        joined = dict[str, BodyField]()
         for carrying, here in self.pair.on_walls(self.cycle.theta[part]):
             number = int(carrying is self.pair.pulling)
             each = surfaces[number]
             fields = each._carried(part[here])
-            fields[first] = self._among_all(fields[first], number)
+            fields |= {name: self._among_all(fields[name], name, number) for name in self.names}
             for name, field in fields.items():
                 joined[name] = field.put(joined.get(name, field.nothing(here.size)), here)
         return joined
 
-    def _among_all(self, field: BodyField, number: int) -> BodyField:
-        """Field on the coarse mesh of all bodies of the cam, of which one is loaded; the others are
-        at rest.
+    def _among_all(self, field: BodyField, name: str, number: int) -> BodyField:
+        """Field on the coarse mesh of all bodies of a block, of which one is loaded; the others are
+        at rest, and hidden where they lie in a plane of their own: discs of a pair.
 
         Parameters
         ----------
         field : BodyField   on the coarse mesh of the loaded body
-        number : int        of this body, from 0
+        name : str          of the block
+        number : int        of the surface of the cam that carries, from 0
         """
-        points = self.coarse_points[self.names[0]]
-        triangles, count = self.triangles[self.names[0]].shape[1], field.points.shape[2]
-        meshes = [each.bodies.cam.body.mesh for each in self._surfaces]
+        meshes, loaded = self._meshes(name), self._bodies(name)[number].body.mesh
+        if len(meshes) == 1:
+            return field
+        number = [each is loaded for each in meshes].index(True)
+        points = self.coarse_points[name]
+        triangles, count = self.triangles[name].shape[1], field.points.shape[2]
         node = sum(mesh.corners for mesh in meshes[:number])
         cell = sum(mesh.triangles.shape[1] for mesh in meshes[:number])
         nodes = slice(node, node + meshes[number].corners)
         cells = slice(cell, cell + meshes[number].triangles.shape[1])
         displacement, stress = (np.zeros((k, points.shape[1], count)) for k in (2, 3))
-        hidden = np.zeros((triangles, count), dtype=bool)
+        one_plane = self.pair.pulling is None or self.pair.pulling.rim_radius is not None
+        hidden = np.full((triangles, count), not one_plane)
         displacement[:, nodes], stress[:, nodes] = field.displacement, field.stress
         hidden[cells] = field.hidden
-        still = np.broadcast_to(points[:, :, None], displacement.shape)
+        still = np.repeat(points[:, :, None], count, axis=2)
+        still[:, nodes] = field.points
         return BodyField(still, displacement, stress, hidden)
 
     def _carried(self, part: IntArray) -> dict[str, BodyField]:
@@ -246,11 +261,13 @@ class TurnFields:
         """
         pair, theta, contact = self.pair, self.cycle.theta[part], self.cycle.contact
         load = contact.line_load[part], contact.half_width_hertz[part]
-        contour, normals = pair.contour, pair.contour.normal(theta)
+        contour, (points, normals) = pair.contour, pair.touched(theta)
         first, second = self.names
-        at_cam = self._sites[0], contour.points(theta), normals
-        cam = Loaded(*at_cam, *load, lambda along: fallen_back(contour, theta, along))
-        facing = self._sites[1], *pair.follower.contacts(contour, theta)
+        angle = pair.angle(theta)
+        cam = Loaded(
+            self._sites[0], points, normals, *load, lambda along: fallen_back(contour, angle, along)
+        )
+        facing = self._sites[1], *pair.follower_contacts(theta)
         other = Loaded(*facing, *load, contour.follower_gap)
         places = follower_places(pair, theta)
         fields = {

@@ -369,8 +369,7 @@ def _rolling(base: Cycle) -> RollingHistory:
     rolling = put(
         base.rolling,
         sliding=sliding,
-        flash=sliding
-        and flash_history(base.machine, base.pair, base.contour.pitch, THETA, contact, sliding),
+        flash=sliding and flash_history(base.machine, base.pair, THETA, contact, sliding),
         traction_demand=0.02 + 0.01 * WAVE,
         von_mises=420e6 + 100e6 * WAVE,
     )

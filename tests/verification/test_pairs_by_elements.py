@@ -1,0 +1,175 @@
+"""Both tracks of conjugate discs and of a yoke by finite elements.
+
+Places of the second track by the geometry of stem, arm and yoke; contact against Hertz, and both
+bodies in full on fine meshes of their own.
+"""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.geometry.arrays import rotation
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.checks.torque_balance import pressure_torque
+from camwright.pipeline.contact.bore_stress import bore_stress
+from camwright.pipeline.contact.certificate import mesh_figures
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
+from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
+from camwright.pipeline.cycle.pressed_discs import pressed_discs
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.solver import solve
+
+DATA = Path(__file__).parents[1] / "data"
+STEM, ARM, YOKE = "conjugate_feeder", "conjugate_arm", "yoke_pump"
+ALL = [STEM, ARM, YOKE]
+
+
+@cache
+def loaded(name):
+    """First cycle of a case with its contact pair under load."""
+    trial = preview_case(read_case(DATA / f"{name}.toml"), corners=False)
+    cycle = trial.cycles[0]
+    return cycle, under_load(contact_pair(cycle.machine, cycle.contour), cycle.loads)
+
+
+@cache
+def bodies(name):
+    return CycleBodies.meshed(loaded(name)[1])
+
+
+@cache
+def solved(name):
+    case = read_case(DATA / f"{name}.toml").with_positions(72)
+    contour = loaded(name)[0].contour
+    return solve(case, contour, tier=Tier.CYCLE, torques={}, corners=False)
+
+
+# --- places -----------------------------------------------------------------------------------
+def across(cycle, theta):
+    """Centre of the second roller, or a point of the second face, in the cam frame (2, n), m."""
+    first, conjugate = cycle.contour.pitch.points(theta), cycle.machine.cam.conjugate
+    outwards = np.stack([np.cos(theta), np.sin(theta)])
+    if conjugate is None:
+        lift = cycle.contour.lift
+        return first - (2.0 * cycle.contour.pitch.base_radius + lift.highest.value) * outwards
+    if conjugate.distance is not None:
+        return first - conjugate.distance * outwards
+    arm = cycle.contour.pitch.arm
+    pivot = arm.centre_distance * outwards
+    swung, at = first - pivot, []
+    for k in range(theta.size):
+        turned = [rotation(s * conjugate.arm_angle) @ swung[:, k] for s in (1.0, -1.0)]
+        # across the line of centres: the arms are on either side of it
+        side = pivot[0, k] * swung[1, k] - pivot[1, k] * swung[0, k]
+        other = [pivot[0, k] * t[1] - pivot[1, k] * t[0] for t in turned]
+        chosen = turned[int(np.argmin(np.sign(side) * np.array(other)))]
+        at.append(pivot[:, k] + conjugate.arm_length / arm.length * chosen)
+    return np.array(at).T
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_the_second_contact_is_under_the_second_roller_or_face(name):
+    """By the parts of the follower in the cam frame, to round-off."""
+    cycle, pair = loaded(name)
+    theta = np.array([0.3, 1.1, 2.2, 3.9, 5.5])
+    points, normals = pair.pulling.touched(theta)
+    there = across(cycle, theta)
+    if name == YOKE:  # anywhere along the face, whose normal points to the cam
+        outwards = np.stack([np.cos(theta), np.sin(theta)])
+        assert normals == pytest.approx(-outwards, abs=1e-12)
+        assert ((points - there) * outwards).sum(axis=0) == pytest.approx(0.0, abs=1e-9)
+        return
+    radius = cycle.machine.cam.conjugate.roller_radius
+    assert points + radius * normals == pytest.approx(there, abs=1e-9)
+    assert pair.pulling.follower.radius == radius
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_the_gap_beside_the_second_contact_by_points(name):
+    """Height of the roller over its tangent less that of the contour, in the contact frame."""
+    _, pair = loaded(name)
+    pulling, theta = pair.pulling, np.array([0.3, 1.0, 2.2])
+    points, normal = pulling.touched(theta)
+    for k, angle in enumerate(theta):
+        near, _ = pulling.touched(angle + np.linspace(-0.004, 0.004, 9))
+        along = np.array([normal[1, k], -normal[0, k]])
+        arm = near - points[:, k, None]
+        xi, height = along @ arm, normal[:, k] @ arm
+        radius = np.inf if name == YOKE else pulling.follower.radius
+        follower = 0.0 if name == YOKE else radius - np.sqrt(radius**2 - xi**2)
+        gap = pulling.gap(theta[[k]], xi[None])[0]
+        assert gap == pytest.approx(follower - height, abs=1e-13)
+
+
+# --- contact ----------------------------------------------------------------------------------
+@pytest.mark.parametrize("name", ALL)
+def test_finite_elements_agree_with_hertz_on_both_tracks(name):
+    """Half-widths below 1 % of the relative radius: the closed form holds to 1e-4."""
+    cycle, pair = loaded(name)
+    theta, force = cycle.theta[::24], cycle.loads.normal_force[::24]
+    history = two_scale_history(pair, bodies(name), theta, force)
+    pushes = pair.wall(theta) > 0
+    assert 3 < pushes.sum() < theta.size - 3
+    for at in (pushes, ~pushes):
+        assert history.p0[at] == pytest.approx(history.p0_hertz[at], rel=1e-4)
+    assert history.p0_hertz == pytest.approx(cycle.contact.p0_hertz[::24], rel=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ALL)
+def test_pressures_turn_the_cam_as_the_forces_do(name):
+    """Torque of the pressures at contact points and normals, against force times slope.
+
+    To 1e-5: the couple of a pressure on a surface whose curvature changes.
+    """
+    for cycle in solved(name).cycles:
+        torque, by_pressure = cycle.loads.cam_torque, pressure_torque(cycle)
+        assert by_pressure == pytest.approx(torque, abs=1e-5 * np.abs(torque).max())
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_every_disc_has_the_force_and_torque_of_its_tracks(name):
+    """Forces of all discs together, and torques, are those of the turn."""
+    cycle, _ = loaded(name)
+    discs = pressed_discs(cycle.contour, cycle.loads)
+    assert len(discs) == (1 if name == YOKE else 2)
+    assert sum(d.force for d in discs) == pytest.approx(cycle.loads.normal_force, rel=1e-12)
+    torque = cycle.loads.cam_torque
+    assert sum(d.torque for d in discs) == pytest.approx(torque, abs=1e-9 * np.abs(torque).max())
+
+
+def test_a_yoke_presses_both_faces_on_one_body():
+    of_yoke = bodies(YOKE)
+    assert of_yoke.pulling.cam is of_yoke.cam
+    assert of_yoke.pulling.follower is of_yoke.follower
+    of_pair = bodies(ARM)
+    assert of_pair.pulling.cam is not of_pair.cam
+    assert of_pair.pulling.follower is not of_pair.follower
+
+
+@pytest.mark.slow
+def test_the_bore_of_the_disc_that_is_pressed():
+    """At angles at which the second carries the stress is that of its own body alone."""
+    cycle = solved(ARM).cycles[0]
+    pulled, bore = cycle.loads.wall < 0, cycle.rolling.bore
+    theta, load = cycle.theta[pulled], cycle.contact.line_load[pulled]
+    places = cycle.pair.pulling.touched(theta)
+    own = bore_stress(cycle.bodies.pulling.cam, *places, load, excluded=bore.excluded)
+    assert bore.von_mises[pulled] == pytest.approx(own.von_mises, rel=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("name", ALL)
+def test_both_bodies_in_full_agree_with_the_cycle(name, side):
+    """Meshes of eight elements per half-width at the worst angle of each track: 1 %."""
+    cycle, pair = loaded(name)
+    k = int(np.argmax(np.where(cycle.loads.wall == side, cycle.contact.p0_hertz, 0.0)))
+    theta, force = cycle.theta[[k]], cycle.loads.normal_force[[k]]
+    full = mesh_figures(pair.carrying(float(theta[0])), float(theta[0]), float(force[0]), 8.0)
+    history = two_scale_history(pair, bodies(name), theta, force)
+    for figure in ("p0", "half_width", "tau_max", "von_mises"):
+        assert getattr(full, figure) == pytest.approx(float(getattr(history, figure)[0]), rel=1e-2)
