@@ -20,7 +20,7 @@ from camwright.reports.drawing.drawing_shapes import (
 )
 
 # Over bore, stem or roller: slot, plate beside it and past the roller centre, bar of a frame.
-_SLOT, _BESIDE_SLOT, _PAST, _BAR = 1.15, 0.55, 0.65, 0.6
+_SLOT, _BESIDE_SLOT, _PAST, _FRAME_BAR = 1.15, 0.55, 0.65, 0.6
 _HALF_ROUND = 25  # points of half a circle
 
 
@@ -103,7 +103,7 @@ class DrawnSecond:
         """
         wide, thick = face
         foot, half = float(self.centre[1]), max(room, 0.5 * wide)
-        outside = half + _BAR * stem
+        outside = half + _FRAME_BAR * stem
         opening = rectangle(-half, foot, half, 0.0)
         frame = rectangle(-outside, foot - thick, outside, thick)
         return DrawnOutline((frame, opening), edge)
