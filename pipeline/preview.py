@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 _CONVERGENCE = 2.0  # of a preview over that of a run
 _PREVIEW_ROUNDS = 3  # of synthesis and correction
+_MOST_ROUNDS = 6  # of them, where each brings a cam that exceeds a limit nearer to it
+_NEARER = 0.7  # of the excess of the round before: most that counts as nearer
 _ENDED_ROUNDS = 2  # of them, where the effort ends the search
 _ENDED = "the preview ends the search for the cam before it has converged; a run goes on"
 _EFFORT = 16  # tried steps of a search: most need fewer
@@ -158,6 +160,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
     if problem.convergence is not None:
         problem = replace(problem, convergence=_CONVERGENCE * problem.convergence)
     tried: list[tuple[Solution, SynthesisRecord]] = []
+    excess = 0.0
     for each in rounds(problem, late=True):
         design = each.design
         drawn, gain = redrawn(case, design.variables), design.ripple_gain
@@ -165,10 +168,13 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         tried.append((solved, design_record(design, each.problem)))
         if not design.feasible and len(tried) == 1:
             break
-        settled = each.compare(solved).settled
+        comparison, before = each.compare(solved), excess
+        settled, excess = comparison.settled, comparison.excess
         # After a search that its effort has ended, corrections do not settle.
         most = _ENDED_ROUNDS if design.ended else _PREVIEW_ROUNDS
-        if not design.feasible or each.number >= most or (settled and not each.rises):
+        nearer = 0.0 < excess <= _NEARER * before and not design.ended
+        over = each.number >= (_MOST_ROUNDS if nearer else most)
+        if not design.feasible or over or (settled and not each.rises):
             break
     if len(tried) == 1 or settled:
         return _trial_of(*tried[-1], progress)

@@ -156,10 +156,10 @@ def utilisations(problem, cam, item):
         "curvature_rate": size((cam.s1 + cam.s3) / radius**3) / limit["curvature_rate"],
         "cam_radius": cam.outside / limit["cam_radius"],
         "minimum_wall": limit["minimum_wall"] * p.held_radius / cam.outside,
-        "contact_pressure": pressed(p.pressure),
+        "contact_pressure": pressed(p.pressure / fix.pressure_weight),
         "face_pv": pressed(p.face_pv / (np.pi / 4 * item.cam_speed * cam.height)),
         "face_width": 2 * (arms + half) / p.face_width,
-        "bore_pressure": force / p.normal_force,
+        "bore_pressure": force * fix.force_weight / p.normal_force,
         "contact_force_margin": kept(force, at.least),
         "contact_at_overspeed": kept(
             at.spring + item.mass * p.overspeed**2 * cam.s2, at.least

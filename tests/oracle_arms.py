@@ -274,8 +274,10 @@ class OracleArm:
         }  # fmt: skip
         face = {
             "undercut": ("shape", lambda at: at.sharpness / (1 - at.p.undercut_factor)),
-            "bore_pressure": ("loads", lambda at: at.normal / at.p.normal_force),
-            "contact_pressure": ("loads", lambda at: self._pressed(at, at.p.pressure)),
+            "bore_pressure": ("loads", lambda at: at.normal * at.fix.force_weight
+                              / at.p.normal_force),
+            "contact_pressure": ("loads", lambda at: self._pressed(
+                at, at.p.pressure / at.fix.pressure_weight)),
             "face_pv": ("loads", lambda at: self._pressed(
                 at, self.bounds["face_pv"] / (ca.pi / 4 * at.scenario.cam_speed * at.sliding))),
             "face_width": ("loads", self._width),

@@ -45,7 +45,8 @@ def cam_radius(at):
 
 def contact_pressure(at):
     bearable = ca.pi * at.p.contact_width * at.p.roller_radius * at.p.pressure**2
-    return at.sharpness + at.normal * at.p.contact_modulus * at.fix.contact**2 / bearable
+    ratio = at.fix.contact * at.fix.pressure_weight
+    return at.sharpness + at.normal * at.p.contact_modulus * ratio**2 / bearable
 
 
 def contact_force_margin(at):
@@ -74,7 +75,7 @@ def jam_index_friction_max(at):
 
 
 def roller_static(at):
-    return at.normal / at.p.normal_force
+    return at.normal * at.fix.force_weight / at.p.normal_force
 
 
 def roller_speed(at):

@@ -41,9 +41,9 @@ SCENARIO = (
     "in_operation",
 )  # fmt: skip
 CORRECTION = (
-    "contact", "guide_a", "guide_b", "rubbing_a", "rubbing_b", "jam", "edge_a", "edge_b", "hot_a",
-    "hot_b", "surge", "swept_surge", "elastic", "swept_speed", "elastic_speed", "rolling",
-    "least_lift",
+    "contact", "pressure_weight", "force_weight", "guide_a", "guide_b", "rubbing_a", "rubbing_b",
+    "jam", "edge_a", "edge_b", "hot_a", "hot_b", "surge", "swept_surge", "elastic", "swept_speed",
+    "elastic_speed", "rolling", "least_lift",
 )  # fmt: skip
 """Results of finite elements, surge and heat on the last cam, constants of a synthesis."""
 FREE = ("rate", "preload", "prime_radius")

@@ -146,11 +146,13 @@ def with_corrections(problem, seed):
     ratios = ("contact", "guide_a", "guide_b", "rubbing_a", "rubbing_b", "jam", "edge_a", "edge_b",
               "hot_a", "hot_b")  # fmt: skip
     forces = ("surge", "swept_surge", "elastic")  # N
-    single = {"swept_speed": 180.0, "elastic_speed": 190.0, "rolling": 1.6, "least_lift": 8e-4}
+    single = {"swept_speed": 180.0, "elastic_speed": 190.0, "rolling": 1.6, "least_lift": 8e-4,
+              "lever": 1e-3}  # fmt: skip
     correction = Correction(
         **{name: about(1.1, 0.2) for name in ratios},
         **{name: about(0.0, 30.0) for name in forces},
         **{name: np.full(turn.size, value) for name, value in single.items()},
+        **{name: about(1.1, 0.2) for name in ("pressure_weight", "force_weight")},
     )
     scenarios = tuple(
         changed(item, correction=correction, viscous_damping=3.0) for item in problem.scenarios

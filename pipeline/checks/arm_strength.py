@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
@@ -28,7 +28,7 @@ from camwright.pipeline.checks.check import (
     Kept,
     check,
 )
-from camwright.pipeline.checks.demands import NORMAL_FORCE
+from camwright.pipeline.checks.demands import NORMAL_FORCE, rating_over
 from camwright.pipeline.checks.extremes import Extreme, cam_of, cycle_of, row_of, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.tiers import Tier
@@ -42,7 +42,6 @@ from camwright.pipeline.follower.camshaft_loads import Surface
 from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.second_arm import SecondArmBar
 from camwright.pipeline.follower.shaft_strength import (
-    fatigue_safety,
     reliability_factor,
     size_factor,
     surface_factor,
@@ -179,24 +178,60 @@ def _governing(section: ArmSection) -> str:
     return f"governing section: {section.name}, {distance} from the pivot"
 
 
-def _strength(judged: _JudgedSection, reliability: float) -> tuple[float, ...]:
-    """Endurance strength of a section, Pa, and its factors of surface k_a, size k_b and reliability
-    k_e; all NaN where the material has no tensile or fatigue strength.
+def _reliability(numbers: Numbers) -> tuple[float]:
+    """Factor k_e of the reliability of an arm."""
+    return (reliability_factor(float(numbers.limit(SHAFT_RELIABILITY))),)
+
+
+def _strength(judged: _JudgedSection, rest: Value) -> tuple[Value, ...]:
+    """Endurance strength of a section (...), Pa, and its factors of surface k_a and size k_b; all
+    NaN where the material has no tensile or fatigue strength.
 
     Parameters
     ----------
-    reliability : float   share of the arms that survive, 0.5 to 1
+    rest : float   factor of the reliability
     """
     card = judged.material
     tensile, endured = card.tensile_strength, card.fatigue_bending
     if tensile is None or endured is None:
-        return (np.nan,) * 4
-    finish, rest = surface_factor(judged.surface, tensile), reliability_factor(reliability)
+        return (np.nan,) * 3
+    finish = surface_factor(judged.surface, tensile)
     size = size_factor(judged.section.diameter)
-    return finish * size * rest * endured, finish, size, rest
+    return finish * size * rest * endured, finish, size
 
 
-class _ArmPlace(NamedTuple):
+def _used(judged: _JudgedSection, stresses: tuple[Array, Array], rest: Value) -> Array:
+    """Inverse (4, ...) of the fatigue safety factor at the corners of a section by Goodman's line;
+    NaN without a tensile strength.
+
+    Parameters
+    ----------
+    stresses : pair   amplitude and mean at the corners (4, ...), Pa
+    rest : float      factor of the reliability
+    """
+    amplitude, mean = stresses
+    tensile = judged.material.tensile_strength or np.nan
+    return np.asarray(amplitude / _strength(judged, rest)[0] + mean / tensile)
+
+
+def fatigue_use(cam: LoadedCam, at: ArmPlace, *, along: bool = False) -> Array:
+    """Inverse (..., 1) of the fatigue safety factor at a place of an arm over the turn of a loaded
+    cam (..., n); NaN without section, strength or notch factor.
+
+    Parameters
+    ----------
+    along : bool   that of each cam angle (n,), see `ArmSection.range_to`
+    """
+    sections = at.sections(cam.numbers)
+    if not sections:
+        return np.full_like(cam.normal[..., :1], np.nan)
+    ranged = ArmSection.range_to if along else ArmSection.amplitude_and_mean
+    (rest,) = cam.numbers.each(_reliability, (f"limits.{SHAFT_RELIABILITY.id}",))
+    uses = (_used(each, ranged(each.section, each.loads(cam)), rest) for each in sections)
+    return np.asarray(np.max([each.max(axis=0) for each in uses], axis=0))
+
+
+class ArmPlace(NamedTuple):
     """Place of an arm that is judged: its words, its part of the scope, keys and sections."""
 
     where: str
@@ -220,9 +255,9 @@ _CARD = {
 }
 
 
-def _at(place: Literal["pivot", "roller"], needs: Literal["arm", "roller"]) -> _ArmPlace:
+def _at(place: Literal["pivot", "roller"], needs: Literal["arm", "roller"]) -> ArmPlace:
     """The arm at its pivot or roller."""
-    return _ArmPlace(
+    return ArmPlace(
         *(f"arm at its {place}", "arm", needs, _ARM, f"{_METHOD}, by contact, spring and inertia"),
         *(_LOADS, _BREAKS, _CARD, _VALUES, _LEVERS),
         lambda numbers: _lacking(_arm_of(numbers), f"{place}_notch"),
@@ -230,7 +265,7 @@ def _at(place: Literal["pivot", "roller"], needs: Literal["arm", "roller"]) -> _
     )
 
 
-_OF_SECOND = _ArmPlace(
+_OF_SECOND = ArmPlace(
     *("second arm at its pivot", "rocker", "arm", Rocker.table),
     f"{_METHOD}, by its output and its own inertia",
     "M, F: moment in the plane of the cam and force along the second arm, by mass, force and spring"
@@ -244,7 +279,7 @@ _OF_SECOND = _ArmPlace(
 )
 
 
-def _fatigue(name: str, at: _ArmPlace) -> Declaration:
+def _fatigue(name: str, at: ArmPlace) -> Declaration:
     """Check of the fatigue of an arm at a place; name: its id."""
 
     @check(
@@ -253,6 +288,7 @@ def _fatigue(name: str, at: _ArmPlace) -> Declaration:
         title=f"Fatigue safety factor of the {at.where}",
         method=at.method,
         lift_can_help=True,
+        tier=Tier.SCREENING,
         needs=at.needs,
         part=at.part,
         kept_as=f"normal force at the fatigue of the {at.where}",
@@ -276,6 +312,7 @@ def _fatigue(name: str, at: _ArmPlace) -> Declaration:
         levers=at.levers,
         page="Follower",
         scales_with=(NORMAL_FORCE, 1.0),
+        along=lambda solution, cycle: fatigue_use(cam_of(solution, cycle), at, along=True),
     )
     def fatigue(solution: Solution) -> Demand:
         """Least fatigue safety factor over the sections at the place and the load cases."""
@@ -286,7 +323,7 @@ def _fatigue(name: str, at: _ArmPlace) -> Declaration:
             missing += lacking_of_card(card, "fatigue_bending", "tensile_strength")
         if not sections or missing:
             return Demand(None, limit, missing=missing)
-        tensile, rest = card.tensile_strength or np.nan, machine.limits[SHAFT_RELIABILITY]
+        (rest,) = _reliability(solution.numbers)
 
         @cache
         def stresses(judged: _JudgedSection, cycle: Cycle) -> tuple[Array, Array]:
@@ -294,13 +331,9 @@ def _fatigue(name: str, at: _ArmPlace) -> Declaration:
 
         def safety_of(judged: _JudgedSection) -> Callable[[Cycle], float]:
             """Function for the fatigue safety factor of a section over the turn of a load case."""
-            endured = np.array([_strength(judged, rest)[0]])
-
-            def safety(cycle: Cycle) -> float:
-                amplitude, mean = stresses(judged, cycle)
-                return float(fatigue_safety(amplitude[None], mean[None], endured, tensile)[0])
-
-            return safety
+            return lambda cycle: float(
+                rating_over(1.0, _used(judged, stresses(judged, cycle), rest).max(), np.inf)
+            )
 
         worst, judged = min(
             (
@@ -309,17 +342,17 @@ def _fatigue(name: str, at: _ArmPlace) -> Declaration:
             ),
             key=_nan_first,
         )
-        endured, finish, size, reliable = _strength(judged, rest)
-        amplitude, mean = stresses(judged, cycle_of(solution.cycles, worst))
-        k = first_greatest(amplitude / endured + mean / tensile)
+        _, finish, size = map(float, _strength(judged, rest))
+        amplitude, mean = map(np.ravel, stresses(judged, cycle_of(solution.cycles, worst)))
+        k = first_greatest(_used(judged, (amplitude, mean), rest))
         stated = {
             "s_a": float(amplitude[k]),
             "s_m": float(mean[k]),
             "k_a": finish,
             "k_b": size,
-            "k_e": reliable,
+            "k_e": rest,
             "S_e'": card.fatigue_bending or np.nan,
-            "R_m": tensile,
+            "R_m": card.tensile_strength or np.nan,
         }
         return Demand(
             worst.value,
@@ -333,7 +366,7 @@ def _fatigue(name: str, at: _ArmPlace) -> Declaration:
                 "Shigley, 10th ed., sec. 6-9 (to be confirmed)",
             ),
             method=f"{_METHOD}; fatigue notch factor {judged.section.notch:g}, k_a {finish:.3f}"
-            f" ({judged.surface}), k_b {size:.3f}, k_e {reliable:.3f}",
+            f" ({judged.surface}), k_b {size:.3f}, k_e {rest:.3f}",
             stated={
                 key: value for key, value in stated.items() if STATED in at.card.get(key, STATED)
             },
@@ -342,9 +375,15 @@ def _fatigue(name: str, at: _ArmPlace) -> Declaration:
     return fatigue
 
 
-arm_fatigue_pivot = _fatigue("arm_fatigue_pivot", _at("pivot", "arm"))
-arm_fatigue_roller = _fatigue("arm_fatigue_roller", _at("roller", "roller"))
-rocker_fatigue = _fatigue("rocker_fatigue", _OF_SECOND)
+JUDGED: Mapping[str, ArmPlace] = {
+    "arm_fatigue_pivot": _at("pivot", "arm"),
+    "arm_fatigue_roller": _at("roller", "roller"),
+    "rocker_fatigue": _OF_SECOND,
+}
+"""Places that are judged by their fatigue, by check."""
+arm_fatigue_pivot, arm_fatigue_roller, rocker_fatigue = (
+    _fatigue(name, at) for name, at in JUDGED.items()
+)
 
 
 def _yield_allowed(numbers: Numbers) -> Allowed:

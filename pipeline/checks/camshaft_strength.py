@@ -206,7 +206,7 @@ def shaft_fatigue(solution: Solution) -> Demand:
         key=_by_value,
     )
     section = shaft.sections[number]
-    size = size_factor(section.diameter)
+    size = float(size_factor(section.diameter))
     amplitude, mean = (each[number] for each in fibres(cycle_of(solution.cycles, worst)))
     most = first_greatest(amplitude / strength[number] + mean / tensile)
     return Demand(

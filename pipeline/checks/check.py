@@ -35,6 +35,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.case.scope_section import PartName, ScopeName
 from camwright.pipeline.checks.extremes import Extreme, Measure, Reduce, worst_measure
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
@@ -297,6 +298,10 @@ HELD = ("form", "groove", "conjugate", "yoke")
 """Of them those of a cam that pulls its follower."""
 
 
+Along = Callable[[Solution, Cycle], Array]
+"""Solution, one of its cycles -> values by cam angle (n,), see `Declaration.along`."""
+
+
 @dataclass(frozen=True)
 class Declaration:
     """Declaration of a check: title, limit, formula, sources; calling it checks a solution.
@@ -349,6 +354,10 @@ class Declaration:
     scales_with : tuple        group of the measure, `NORMAL_FORCE` or `PRESSURE`, and the power of
                                its greatest value with which the utilisation grows, about; ():
                                neither
+    along : callable           solution, one of its cycles -> values by cam angle (n,), of which the
+                               greatest of all load cases makes the demand of such a check: the
+                               synthesis keeps its limit at each angle; None: at the greatest value
+                               of the group alone
     demand : callable          solution -> demand; None where the check does not apply
     measured : Measured        how the demand follows from a measure of the loaded cam; None: it is
                                a demand of the whole solution
@@ -385,6 +394,7 @@ class Declaration:
     kept_as: str
     certified_by: str
     scales_with: tuple[str, float] | tuple[()]
+    along: Along | None = field(repr=False)
     demand: Callable[[Solution], Demand | None] = field(repr=False)
     measured: Measured | None = field(default=None, repr=False)
     measure: Measure | None = field(default=None, repr=False)
@@ -518,6 +528,7 @@ def check(
     kept_as: str = "",
     certified_by: str = "",
     scales_with: tuple[str, float] | tuple[()] = (),
+    along: Along | None = None,
 ) -> Declaring:
     """Decorator that declares a check of the demand that the decorated function returns; see
     `Declaration`.
@@ -566,6 +577,7 @@ def check(
             kept_as=kept_as,
             certified_by=certified_by,
             scales_with=scales_with,
+            along=along,
             demand=demand,
             measured=measured,
             measure=measure,

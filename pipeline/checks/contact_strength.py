@@ -10,7 +10,7 @@ import math
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -288,6 +288,11 @@ def line_pressure(cam: LoadedCam, allowed: Value) -> Array:
     return cam.motion.sharpness + cam.pressure_factor**2 * cam.flat_square / allowed**2
 
 
+def _weighted_pressure(cam: LoadedCam, allowed: float) -> Array:
+    """`line_pressure` with the weight of the checks that grow with the contact pressure."""
+    return line_pressure(cam, allowed / cam.pressure_weight)
+
+
 def _judged(
     worst: Extreme,
     limit: LeastLimit,
@@ -467,7 +472,7 @@ contact_pressure = check(
     remark=_pressure_in_words,
     deviation=0.001,
     bounded="crown",
-    kept=Kept(line_pressure, group=PRESSURE, unit="MPa"),
+    kept=Kept(_weighted_pressure, group=PRESSURE, unit="MPa"),
 )(contact_p0)
 
 
@@ -538,6 +543,21 @@ shakedown = check(
 )(contact_p0)
 
 
+def _signed(_: Solution, cycle: Cycle) -> Array:
+    """Signed contact pressure of a cycle (n,), Pa."""
+    return cycle.signed_pressure
+
+
+def _signed_in_operation(_: Solution, cycle: Cycle) -> Array:
+    """Signed contact pressure of a cycle (n,), Pa; zero without a share of the operating time."""
+    return cycle.signed_pressure * float(cycle.machine.duty != 0.0)
+
+
+def _signed_equivalent(_: Solution, cycle: Cycle) -> Array:
+    """Signed contact pressure of a cycle that is equivalent in shakedown with traction (n,), Pa."""
+    return cycle.signed_pressure * _traction_factor(cycle)
+
+
 @check(
     TARGET_LIFE,
     id="contact_pressure_at_life",
@@ -565,15 +585,14 @@ shakedown = check(
     page="Contact",
     certified_by="p0",
     scales_with=(PRESSURE, 1.0),
+    along=_signed_in_operation,
 )
 def contact_pressure_at_life(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the endurance at the target life."""
     machine = solution.machine
     operating = [each for each in solution.cycles if each.machine.duty != 0.0]
-    worst, lacks = (
-        greatest(operating, lambda cycle: cycle.signed_pressure),
-        lacking_along_line(machine),
-    )
+    worst = greatest(operating, partial(_signed_in_operation, solution))
+    lacks = lacking_along_line(machine)
     if machine.limits[TARGET_LIFE] is None:
         missing = unset(machine.limits, TARGET_LIFE)
         figures = tuple(f"{card.name}: {card.source}" for card in machine.bodies.values())
@@ -657,6 +676,7 @@ _SIGNED = (
     page="Contact",
     certified_by="p0",
     scales_with=(PRESSURE, 1.0),
+    along=_signed,
 ).measured(
     "angles",
     allowed=_endurance_allowed,
@@ -692,11 +712,12 @@ def edge_pressure(cam: LoadedCam) -> Array:
     page="Contact",
     certified_by="p0",
     scales_with=(PRESSURE, 1.0),
+    along=_signed_equivalent,
 )
 def edge_shakedown(solution: Solution) -> Demand:
     """Contact pressure with ends, tilt and traction equivalent in shakedown, Pa."""
     machine = solution.machine
-    worst = greatest(solution.cycles, lambda each: each.signed_pressure * _traction_factor(each))
+    worst = greatest(solution.cycles, partial(_signed_equivalent, solution))
     limit = _scaled(shear_yield(machine), SHAKEDOWN)
     missing = (*lacking_along_line(machine), *no_friction(machine))
     judged = _judged(worst, limit, missing=missing, note=signed_sentence(solution, worst))

@@ -57,6 +57,11 @@ def normal_force(cam: LoadedCam) -> Array:
     return cam.normal
 
 
+def force_over(cam: LoadedCam, limit: float) -> Array:
+    """Normal force over its limit, N, with the weight of the checks that grow with it."""
+    return cam.force_weight * cam.normal / limit
+
+
 def cam_torque(cam: LoadedCam) -> Array:
     """Magnitude of the cam torque, N m."""
     return magnitude(cam.torque)

@@ -524,6 +524,7 @@ def _guide_edge_pressure(side: Place) -> Declaration:
         levers=levers.guide(side, "pressure_limit"),
         page=seat.page,
         scales_with=(NORMAL_FORCE, 1.0) if side == "pivot" else (),
+        along=(lambda _, cycle: _edge(cycle.parts, side)) if side == "pivot" else None,
     )
     def edge(solution: Solution) -> Demand | None:
         """Maximum edge pressure, Pa; None of a pivot without a bush."""

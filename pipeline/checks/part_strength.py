@@ -26,7 +26,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check, of_key
-from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, normal_force
+from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, force_over, normal_force
 from camwright.pipeline.checks.extremes import Measure, cycle_of, worst_case
 from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.contact.tiers import Tier
@@ -698,7 +698,7 @@ bore_pressure = check(
     allowed=_bore_allowed,
     remark=_with_cards_of_bore,
     deviation=0.005,
-    kept=Kept(group=NORMAL_FORCE, unit="N", needs="face"),
+    kept=Kept(force_over, group=NORMAL_FORCE, unit="N", needs="face"),
 )(normal_force)
 
 

@@ -42,7 +42,7 @@ from camwright.pipeline.checks.check import (
     check,
     of_key,
 )
-from camwright.pipeline.checks.demands import NORMAL_FORCE, normal_force, rating_over
+from camwright.pipeline.checks.demands import NORMAL_FORCE, force_over, normal_force, rating_over
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
@@ -270,7 +270,7 @@ roller_static = check(
     needed=(_STATIC,),
     remark=_with_card,
     deviation=0.005,
-    kept=Kept(group=NORMAL_FORCE, unit="N"),
+    kept=Kept(force_over, group=NORMAL_FORCE, unit="N"),
 )(normal_force)
 
 

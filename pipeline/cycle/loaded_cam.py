@@ -640,6 +640,18 @@ class LoadedCam:
         """Contact pressure over that of plane-strain half-planes."""
         return 1.0
 
+    @property
+    def pressure_weight(self) -> Value:
+        """Share by which a limit of the pressure is used over that by the pressure in the middle of
+        the line, of a synthesis; here 1.
+        """
+        return 1.0
+
+    @property
+    def force_weight(self) -> Value:
+        """Share by which a limit of the normal force is used over that by the force, as above."""
+        return 1.0
+
     @cached_property
     def flat_square(self) -> Array:
         """p0^2 by half-planes at an undercut factor of 1, Pa^2."""

@@ -97,7 +97,7 @@ class ArmSection(NamedTuple):
         return bars * torsion_of_rectangle(self.width, (self.depth - self.hole) / bars)[1]
 
     @property
-    def diameter(self) -> float:
+    def diameter(self) -> Value:
         """Diameter of the round section of equal fatigue strength, m.
 
         References
@@ -105,7 +105,7 @@ class ArmSection(NamedTuple):
         Shigley's Mechanical Engineering Design, 10th ed., eq. 6-25: not rotating (recalled,
         verify).
         """
-        return float(_EQUAL_AREA * np.sqrt(self.area))
+        return _EQUAL_AREA * np.sqrt(self.area)
 
     def normal(self, loads: SectionLoads) -> Array:
         """Normal stress at the four corners of the section (4, ...), Pa, of bending in both planes
@@ -125,20 +125,31 @@ class ArmSection(NamedTuple):
         return np.asarray(self.notch * loads.twisting / self.torsion_modulus)
 
     def amplitude_and_mean(self, loads: SectionLoads) -> tuple[Array, Array]:
-        """Von Mises amplitude and mean stress at the four corners of the section, (4,) each, Pa,
-        from the ranges of normal and shear stress over a turn.
+        """Von Mises amplitude and mean stress at the four corners of the section, (4, ..., 1) each,
+        Pa, from the ranges of normal and shear stress over a turn.
+
+        Parameters
+        ----------
+        loads : SectionLoads   of the section over the turn (..., n)
+        """
+        normal, shear = self.normal(loads), self.shear(loads)
+        ends = (np.max(each, axis=-1, keepdims=True) for each in (normal, -normal, shear, -shear))
+        high, low, most, least = ends
+        return _in_range(high, -low, most, -least)
+
+    def range_to(self, loads: SectionLoads) -> tuple[Array, Array]:
+        """Von Mises amplitude and mean stress at the four corners, (4, n) each, Pa, were the loads
+        of a cam angle the greatest of the turn.
+
+        From the range of normal and shear stress between that angle and the least of the turn, in
+        the sense of the greater extreme.
 
         Parameters
         ----------
         loads : SectionLoads   of the section over the turn (n,)
         """
-        normal, shear = self.normal(loads), self.shear(loads)
-        high, low = normal.max(axis=-1), normal.min(axis=-1)
-        most, least = shear.max(), shear.min()
-        return (
-            equivalent_stress(0.5 * (high - low), 0.5 * (most - least)),
-            equivalent_stress(0.5 * (high + low), 0.5 * (most + least)),
-        )
+        normal, shear = (_upward(each) for each in (self.normal(loads), self.shear(loads)))
+        return _in_range(normal, normal.min(axis=-1, keepdims=True), shear, shear.min())
 
     def greatest(self, loads: SectionLoads) -> Array:
         """Greatest von Mises stress (...) of its corners, Pa; complex for a step."""
@@ -148,6 +159,22 @@ class ArmSection(NamedTuple):
             + magnitude(loads.sideways) / self.side_modulus
         )
         return equivalent_stress(self.notch * normal, self.shear(loads))
+
+
+def _in_range(high: Array, low: Array, most: Array, least: Array) -> tuple[Array, Array]:
+    """Von Mises amplitude and mean, Pa, of a normal stress from low to high and a shear from least
+    to most.
+    """
+    return (
+        equivalent_stress(0.5 * (high - low), 0.5 * (most - least)),
+        equivalent_stress(0.5 * (high + low), 0.5 * (most + least)),
+    )
+
+
+def _upward(stress: Array) -> Array:
+    """Stress (..., n) with the sign that makes its extreme of greater size over n positive."""
+    size = stress.max(axis=-1) >= -stress.min(axis=-1)
+    return np.where(size, 1.0, -1.0)[..., None] * stress
 
 
 class ArmForces(NamedTuple):

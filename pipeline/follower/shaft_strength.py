@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, distinct, finite, freeze, uniform_turn
+from camwright.geometry.arrays import Array, Value, distinct, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.units import from_unit, in_unit
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
     ShaftLoads,
@@ -150,15 +150,15 @@ def surface_factor(surface: Surface, tensile: float) -> float:
     return float(min(1.0, factor * in_unit(tensile, "MPa") ** exponent))
 
 
-def size_factor(diameter: float) -> float:
-    """Marin's size factor k_b of a rotating round section against 7.62 mm; diameter in m.
+def size_factor(diameter: Value) -> Value:
+    """Marin's size factor k_b (...) of a rotating round section against 7.62 mm; diameter in m.
 
     References
     ----------
     Shigley's Mechanical Engineering Design, 10th ed., eq. 6-20 (recalled, verify).
     """
-    d = in_unit(diameter, "mm")
-    return float(min(1.0, (d / 7.62) ** -0.107 if d <= 51.0 else 1.51 * d**-0.157))
+    d = np.asarray(diameter) / from_unit(1.0, "mm")
+    return np.minimum(1.0, np.where(d <= 51.0, (d / 7.62) ** -0.107, 1.51 * d**-0.157))[()]
 
 
 def reliability_factor(reliability: float) -> float:

@@ -17,6 +17,7 @@ from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.pipeline.base.counterweight_body import CounterweightBody
 from camwright.pipeline.base.units import celsius
 from camwright.pipeline.case.limits import (
+    ARM_SAFETY,
     ASSEMBLY_GAP,
     CROSSOVER_SLIP,
     FRICTION_POWER,
@@ -26,6 +27,7 @@ from camwright.pipeline.case.limits import (
     AnyLimit,
 )
 from camwright.pipeline.checks import (
+    arm_strength,
     assembly,
     contact_strength,
     demands,
@@ -35,7 +37,9 @@ from camwright.pipeline.checks import (
     spring_strength,
     torque_balance,
 )
+from camwright.pipeline.checks.arm_strength import ArmPlace
 from camwright.pipeline.checks.check import Bounded, Declaration, Measured
+from camwright.pipeline.checks.demands import rating_over
 from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.contact.flash_temperature import bulk_rise
@@ -302,6 +306,18 @@ def _counterweight_unbalance(designs: Designs) -> Judged | None:
     return _of_each(product, designs), _of_each(most, designs)
 
 
+def _arm_fatigue(at: ArmPlace) -> Callable[[Designs], Judged | None]:
+    """Screening of the fatigue of an arm at a place."""
+
+    def judged(designs: Designs) -> Judged | None:
+        """Least fatigue safety factor over the load cases and its limit (m,)."""
+        used = np.max([arm_strength.fatigue_use(cam, at) for cam in designs.cams], axis=0)
+        limit = designs.numbers.limit(ARM_SAFETY)
+        return _of_each(rating_over(1.0, used, np.inf), designs), _of_each(limit, designs)
+
+    return judged
+
+
 def _friction_power(designs: Designs) -> Judged | None:
     """Greatest friction power over the mean power of the machine, and its limit (m,), -; None where
     no load case has a power.
@@ -463,6 +479,9 @@ def _screened(declared: Declaration) -> Screened | None:
     if declared.id in _ARRAYS:
         is_bound = _pulled if declared.id in _WITHOUT_REVERSALS else never
         return Screened(declared.id, *_ARRAYS[declared.id], is_bound=is_bound)
+    if declared.id in arm_strength.JUDGED:
+        judged = _arm_fatigue(arm_strength.JUDGED[declared.id])
+        return Screened(declared.id, judged, 0.005, is_bound=has_many_shapes)
     how, measure = declared.measured, declared.measure
     return None if how is None or measure is None else _by_measure(declared, measure, how)
 

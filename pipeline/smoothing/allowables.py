@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -33,8 +34,9 @@ from camwright.pipeline.checks.guide_strength import pivot_temperature, power_at
 from camwright.pipeline.checks.guide_wear import pivot_expansion, seizure_temperature
 from camwright.pipeline.checks.jump_and_jamming import cam_speed_without_jump, jump_speed
 from camwright.pipeline.checks.key_strength import keyway_root, keyway_root_of
-from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.checks.registry import CHECKS, DECLARED
 from camwright.pipeline.checks.roller_bearing import grease_life, grease_of
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers, presses
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
@@ -244,9 +246,10 @@ def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
     check that grows with x^p, the limit is x / u^(1/p). These checks depend on the whole turn, on
     the unbalance or on the stress below the surface.
     """
-    force = max(float(cycle.loads.normal_force.max()) for cycle in solved.cycles)
-    pressure = max(float(cycle.surface.p0.max()) for cycle in solved.cycles)
-    greatest = {NORMAL_FORCE: force, PRESSURE: pressure}
+    greatest = {
+        group: max(float(of(cycle).max()) for cycle in solved.cycles)
+        for group, of in _GROUPS.items()
+    }
     limits: dict[str, dict[str, float]] = {name: {} for name in greatest}
     for declared in CHECKS:
         if not declared.scales_with:
@@ -261,14 +264,78 @@ def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
 
 def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
     """Ratings with the limits that follow from a solved cam: of the lift by its surge, and those of
-    `scaled_limits`.
+    `scaled_limits`, of which some are kept along the turn, see `weights_of`.
     """
     case = solved.case
     limits = limits_of(case)
     scaled = {
-        group: limits[group] | scaled_limit for group, scaled_limit in scaled_limits(solved).items()
+        group: {
+            name: value
+            for name, value in (limits[group] | scaled_limit).items()
+            if name not in scaled_limit or DECLARED[name].along is None
+        }
+        for group, scaled_limit in scaled_limits(solved).items()
     }
     return ratings.least({spring_travel.id: _travel_limit(case, surge_of(solved))} | scaled)
+
+
+class Weights(NamedTuple):
+    """Greatest utilisation of the checks that are judged along the turn over that of the limit of
+    their group, see `Correction`.
+
+    by: check with the greatest use of the limit of a group, where the weight makes it; values: by
+    group and load case, (n,).
+    """
+
+    by: Mapping[str, str]
+    values: Mapping[str, Mapping[str, Array]]
+
+
+def weights_of(solved: Solution, ratings: Ratings) -> Weights:
+    """Weights of the contact pressure and of the normal force at the angles of a solved cam.
+
+    With x of the group, its limit X and the utilisation u of a check, which grows with x^p and is
+    distributed over the turn as its declaration says: u^(1/p) X/x, at least 1. The place of the
+    greatest u is not that of the greatest x: a limit of the greatest x would press on other angles
+    than the check.
+
+    Parameters
+    ----------
+    ratings : Ratings   with the limits of the groups, see `corrected_ratings`
+    """
+    by, weighted = dict[str, str](), dict[str, Mapping[str, Array]]()
+    for group, of in _GROUPS.items():
+        loads = {cycle.load_case: of(cycle) for cycle in solved.cycles}
+        most, limit = max(float(each.max()) for each in loads.values()), ratings.bounds.get(group)
+        weights = {name: np.ones(each.size) for name, each in loads.items()}
+        greatest = most
+        for declared in CHECKS:
+            if limit is None or declared.along is None or not declared.scales_with:
+                continue
+            grows_with, power = declared.scales_with
+            check = declared(solved) if grows_with == group else None
+            use = None if check is None else check.utilisation
+            if use is None or not 0.0 < use < np.inf:
+                continue
+            along = {each.load_case: declared.along(solved, each) for each in solved.cycles}
+            top = max(float(each.max()) for each in along.values())
+            for name, load in loads.items():
+                counts = load > LOADED_SHARE * most
+                used = np.where(counts, use * along[name] / top, 0.0)
+                equal = limit * used ** (1.0 / power)
+                weights[name] = np.maximum(weights[name], equal / np.where(counts, load, 1.0))
+                if equal.max() > greatest:
+                    greatest, by[group] = float(equal.max()), declared.id
+        weighted[group] = weights
+    return Weights(by, weighted)
+
+
+LOADED_SHARE = 0.05  # of the maximum: least load of a meaningful ratio
+_GROUPS: Mapping[str, Callable[[Cycle], Array]] = {
+    NORMAL_FORCE: lambda cycle: cycle.loads.normal_force,
+    PRESSURE: lambda cycle: cycle.surface.p0,
+}
+"""Load of a group at each cam angle of a cycle (n,), N or Pa."""
 
 
 def _travel_limit(case: Case, surge: Surge | None = None) -> dict[str, float]:

@@ -158,6 +158,18 @@ class ScenarioCam(LoadedCam):
     def pressure_factor(self) -> Array:
         return self.fix.contact
 
+    @property
+    def pressure_weight(self) -> Array:
+        return self.fix.pressure_weight
+
+    @property
+    def force_weight(self) -> Array:
+        return self.fix.force_weight
+
+    @cached_property
+    def follower_moment(self) -> Array:
+        return self.fix.lever * not_negative(self.normal)
+
     def _corrected(self, fix_a: Array, fix_b: Array) -> OfGuides:
         """Loads of the guides over the axial force with corrections."""
         on_a, on_b = self.reactions

@@ -15,6 +15,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import within_depth
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check, depends_on_lift
+from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
 from camwright.pipeline.checks.guide_strength import GUIDES, Side, hottest
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -22,7 +23,12 @@ from camwright.pipeline.cycle.speed_sweep import SpeedSweep, SweptForces, swept_
 from camwright.pipeline.follower.follower_forces import Loads, levers
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.records.trial_contents import SynthesisRecord
-from camwright.pipeline.smoothing.allowables import corrected_ratings, softening
+from camwright.pipeline.smoothing.allowables import (
+    LOADED_SHARE,
+    corrected_ratings,
+    softening,
+    weights_of,
+)
 from camwright.pipeline.smoothing.multistart import NEGLIGIBLE, Explored
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction, Ratings
@@ -31,7 +37,6 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Prob
 
 SETTLED = 5e-3  # of a limit: maximum change of a utilisation at convergence
 SETTLED_RIPPLE = 2e-3  # of the residual ripple: maximum change by a further trial at convergence
-_LOADED_SHARE = 0.05  # of the maximum: least load of a meaningful ratio
 _GUIDED_SHARE = 1e-6
 """Least load of the guides over its maximum for a ratio: little is needed to rub and to tilt."""
 _COUNTED_USE = 0.5  # utilisation below which a limit does not count
@@ -95,6 +100,11 @@ class Comparison:
         if not self.used:
             return "finite elements change no utilisation above one half"
         return self.used[0].sentence
+
+    @property
+    def excess(self) -> float:
+        """Greatest excess of a utilisation of the solved cam over its limit; 0 within all."""
+        return max(0.0, *(each.after - 1.0 for each in self.used))
 
     @property
     def agree(self) -> bool:
@@ -163,13 +173,22 @@ def compared(
     checks : sequence   of the solved cam, judged at the tolerance corners; none: the synthesis is
                         not corrected for corners and error bars
     """
-    by_load_case = corrections_of(solved)
+    ratings = corrected_ratings(problem.ratings, solved)
+    weights = weights_of(solved, ratings)
+    ratings = replace(ratings, by={**ratings.by, **weights.by})
+    by_load_case = {
+        name: replace(
+            each,
+            pressure_weight=weights.values[PRESSURE][name],
+            force_weight=weights.values[NORMAL_FORCE][name],
+        )
+        for name, each in corrections_of(solved).items()
+    }
     applied = tuple(each.correction for each in problem.scenarios)
     # A tolerance corner takes the correction of its load case.
     corrections = tuple(
         by_load_case.get(each.name.split(",")[0], each.correction) for each in problem.scenarios
     )
-    ratings = corrected_ratings(problem.ratings, solved)
     after = replace(_with_corrections(problem, corrections), ratings=ratings, judged={})
     uses = [_utilisation(each, design) for each in (problem, after)]
     judged = judged_over(uses[1], checks, problem.judged if design.feasible else None)
@@ -365,6 +384,7 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
     return replace(
         swept,
         contact=_ratio(contact.p0, contact.p0_hertz),
+        lever=_lever(cycle),
         guide_a=of_guides.correction(0, push_a / left[0][0]),
         guide_b=of_guides.correction(1, push_b / left[1][0]),
         rubbing_a=of_guides.correction(0, guides.rubbing_load_a),
@@ -408,12 +428,21 @@ class _Statics(NamedTuple):
         return _ratio(np.abs(solved) + load - self.both[place], load, _GUIDED_SHARE)
 
 
+def _lever(cycle: Cycle) -> Array:
+    """Moment of the contact about the middle of the follower over its force (n,), m; 0 where
+    unloaded.
+    """
+    force, moment = cycle.loads.normal_force, cycle.follower_moment
+    loaded = np.isfinite(moment) & (force > _GUIDED_SHARE * force.max())
+    return np.where(loaded, moment, 0.0) / np.where(loaded, force, 1.0)
+
+
 def _over(force: Array, friction: float) -> Array:
     """Normal load of a friction force (n,), N; 0 without friction."""
     return force / friction if friction > 0.0 else np.zeros_like(force)
 
 
-def _ratio(solved: Array, closed: Array, least: float = _LOADED_SHARE) -> Array:
+def _ratio(solved: Array, closed: Array, least: float = LOADED_SHARE) -> Array:
     """Solved over closed-form result (n,), 1 where unloaded."""
     solved, closed = np.abs(solved), np.abs(closed)
     loaded = np.isfinite(solved) & (closed > least * closed.max())

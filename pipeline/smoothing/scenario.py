@@ -124,8 +124,8 @@ class Ratings:
 
 
 _FACTORS = (
-    "contact", "guide_a", "guide_b", "rubbing_a", "rubbing_b", "jam", "edge_a", "edge_b", "hot_a",
-    "hot_b",
+    "contact", "pressure_weight", "force_weight", "guide_a", "guide_b", "rubbing_a", "rubbing_b",
+    "jam", "edge_a", "edge_b", "hot_a", "hot_b",
 )  # fmt: skip
 
 
@@ -139,6 +139,11 @@ class Correction:
 
     Parameters
     ----------
+    pressure_weight, force_weight : array   greatest utilisation of the checks that grow with the
+                                contact pressure or normal force, where each has it along the turn,
+                                over that of pressure or force alone; at least 1
+    lever : array               distance of the contact force from the middle of the follower along
+                                the cam axis, m
     guide_a, guide_b : array    of the bearing loads, over the share of the pressure limit left at
                                 the temperature of the guide
     edge_a, edge_b : array      greatest over mean line load of the guides, over the share of the
@@ -153,6 +158,9 @@ class Correction:
     """
 
     contact: Array
+    pressure_weight: Array
+    force_weight: Array
+    lever: Array
     guide_a: Array
     guide_b: Array
     rubbing_a: Array
@@ -175,9 +183,10 @@ class Correction:
         """Correction without effect at n cam angles."""
         one, zero = readonly(np.ones(count)), readonly(np.zeros(count))
         return cls(
-            contact=one, guide_a=one, guide_b=one, rubbing_a=one, rubbing_b=one, jam=one,
-            edge_a=one, edge_b=one, hot_a=one, hot_b=one, surge=zero, swept_surge=zero,
-            elastic=zero, swept_speed=zero, elastic_speed=zero, rolling=zero, least_lift=zero,
+            contact=one, pressure_weight=one, force_weight=one, guide_a=one, guide_b=one,
+            rubbing_a=one, rubbing_b=one, jam=one, edge_a=one, edge_b=one, hot_a=one, hot_b=one,
+            lever=zero, surge=zero, swept_surge=zero, elastic=zero, swept_speed=zero,
+            elastic_speed=zero, rolling=zero, least_lift=zero,
         )  # fmt: skip
 
     def enlarged(self, margin: float) -> Correction:

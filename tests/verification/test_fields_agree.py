@@ -22,6 +22,7 @@ from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.extremes import worst_measure
 from camwright.pipeline.checks.guide_strength import GUIDES, hottest
 from camwright.pipeline.checks.registry import CHECKS
@@ -30,8 +31,14 @@ from camwright.pipeline.cycle.cycle import BETWEEN
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.cycle.solved_cam import SolvedCam
-from camwright.pipeline.smoothing.allowables import softening
+from camwright.pipeline.smoothing.allowables import (
+    corrected_ratings,
+    ratings_of,
+    softening,
+    weights_of,
+)
 from camwright.pipeline.smoothing.cam_state import ScenarioCam, loaded
+from camwright.pipeline.smoothing.constraints import LOADS
 from camwright.pipeline.smoothing.fe_correction import corrections_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.scenario import DesignVariables
@@ -74,6 +81,7 @@ FIELDS: dict[str, Callable[[LoadedCam], Array]] = {
     "sharpness": lambda cam: cam.motion.sharpness,
     "side": lambda cam: cam.motion.side,
     "sliding": lambda cam: np.atleast_1d(cam.motion.sliding),
+    "moment": lambda cam: cam.follower_moment,
 }
 OF_GUIDES = ("jam", "jam_worst", *(f"{name}_{side}" for name in ("rubbing", "bearing", "heat")
                                    for side in "ab"))  # fmt: skip
@@ -218,3 +226,30 @@ def test_a_measure_is_reduced_over_turn_and_load_cases_as_its_word_says(solved) 
     assert np.max(sampled) < peak < 1.01 * np.max(sampled)
     least = worst_measure(state, power, "mean", float, at_least=True, order=2)
     assert least.value == pytest.approx(means.min(), rel=1e-12)
+
+
+@pytest.mark.parametrize("follower", WORDS)
+@pytest.mark.parametrize("group", [demands.NORMAL_FORCE, demands.PRESSURE])
+def test_a_weighted_limit_is_used_as_the_checks_along_the_turn(solved, both, group, follower):
+    """Fatigue and edges of arm and contact, each at its own angles: the greatest of all checks."""
+    state = solved[follower]
+    # wide, so that the checks of the group, not the limit itself, make the weight
+    wide = corrected_ratings(ratings_of(state.case), state).times(group, 1e4)
+    along = [one for one in CHECKS if one.along and one.scales_with[:1] == (group,)]
+    uses = {one.id: made.utilisation for one in along if (made := one(state)) is not None}
+    if not uses:
+        pytest.skip("no check of this follower is kept along the turn")
+    weights = weights_of(state, wide)
+    assert weights.by[group] == max(uses, key=uses.__getitem__)
+    kept = next(each for each in LOADS if each.key == group and each.value(wide) is not None)
+    names = {demands.NORMAL_FORCE: "force_weight", demands.PRESSURE: "pressure_weight"}
+    most = 0.0
+    for _, cam in both[follower]:
+        values = {names[group]: weights.values[group][cam.scenario.name]}
+        correction = replace(cam.scenario.correction, **values)
+        weighted = replace(cam, scenario=replace(cam.scenario, correction=correction))
+        use = kept.utilisation(weighted, wide.bounds[group])
+        if group == demands.PRESSURE:  # sharpness + (1 - sharpness) u^2
+            use = np.sqrt((use - cam.motion.sharpness) / (1.0 - cam.motion.sharpness))
+        most = max(most, float(np.max(use)))
+    assert most == pytest.approx(max(uses.values()), rel=1e-9)
