@@ -1,6 +1,6 @@
 """Redesign: bounds, dominance, what parts bring along, the order of trying, what is kept."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -20,11 +20,24 @@ from camwright.pipeline.case.cards.catalogue import (
     undominated,
 )
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
-from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_of, variant
-from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.cards.substitution import (
+    AS_GIVEN,
+    OF_USE_OF_SPRING,
+    OWN_OF_BEARING,
+    OWN_OF_BUSH,
+    OWN_OF_ROLLER,
+    Choice,
+    travel_of,
+    variant,
+    with_bush,
+    with_cam_material,
+    with_roller,
+)
+from camwright.pipeline.case.case_file import parse_case, read_case, with_values
 from camwright.pipeline.case.case_writer import tables_text
 from camwright.pipeline.case.limits import CAM_RADIUS
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.search import figures
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.figures import verdict_of
@@ -183,22 +196,107 @@ def test_bushes_as_given_stay(case, parts):
 
 
 def test_parts_of_an_arm_bring_along_what_hangs_on_them(parts):
-    """The roller at the arm's end adds to the mass about its pivot; its bush is another."""
+    """The roller at the arm's end adds to the mass about its pivot, and widens it; its bush is
+    another.
+    """
     case = read_case(CASES / "gx120-arm.toml")
     found = variant(case, parts, Choice("track_roller_52x21", "80 x 50", "bronze"), None)
     old, pivot = case.follower.pivot, found.follower.pivot
     disc = 7830.0 * np.pi * (0.026**2 * 0.0206 - 0.0235**2 * 0.0175)
-    assert pivot.swinging_mass == pytest.approx(old.swinging_mass + disc, rel=1e-9)
-    moment = old.swinging_mass * old.mass_distance + disc * case.follower.arm.length
+    arm = case.follower.arm
+    wider = 0.0206 - 0.0175
+    bar = arm.material.density * wider * arm.depth * arm.length
+    assert pivot.swinging_mass == pytest.approx(old.swinging_mass + disc + bar, rel=1e-9)
+    moment = old.swinging_mass * old.mass_distance + (disc + 0.5 * bar) * arm.length
     assert pivot.swinging_mass * pivot.mass_distance == pytest.approx(moment, rel=1e-9)
     springs = 0.5 * (parts.springs["80 x 50"].mass - case.spring.design.mass)
-    assert found.follower.mass == pytest.approx(case.follower.mass + disc + springs, rel=1e-9)
+    mass = case.follower.mass + disc + springs + bar / 3.0
+    assert found.follower.mass == pytest.approx(mass, rel=1e-9)
     assert (pivot.bush.friction_max, pivot.bush.length) == (0.15, old.bush.length)
     assert found.guides == case.guides  # which stand in for none
-    assert found.follower.arm == case.follower.arm
+    thicker = parts.rollers["track_roller_52x21"].bore - case.roller.pin.diameter
+    hub = None if arm.roller_hub is None else arm.roller_hub + thicker
+    assert found.follower.arm == replace(arm, width=arm.width + wider, roller_hub=hub)
+    narrow = variant(case, parts, Choice("track_roller_35x16", AS_GIVEN, AS_GIVEN), None)
+    assert narrow.follower.arm.width == arm.width
     low, high = found.smoothing.prime_radius_range
     assert 10e-3 < low < high < 190e-3  # which the arm reaches
     assert parse_case(found.to_toml()).sha256 == found.sha256
+
+
+EXCHANGES = {
+    "roller": lambda case, parts: variant(
+        case, parts, Choice("track_roller_52x21", AS_GIVEN, AS_GIVEN), None
+    ),
+    "same base circle": lambda case, parts: with_roller(
+        case, "track_roller_52x21", parts.rollers["track_roller_52x21"], None
+    ),
+    "spring": lambda case, parts: variant(case, parts, Choice(AS_GIVEN, "80 x 50", AS_GIVEN), None),
+    "bush": lambda case, _: with_bush(case, next(iter(case.bushes)), "bronze", None),
+    "bushes": lambda case, parts: variant(case, parts, Choice(AS_GIVEN, AS_GIVEN, "bronze"), None),
+    "cam": lambda case, _: with_cam_material(case, "c45", None),
+}
+OWN = {
+    "roller": OWN_OF_ROLLER, "roller.bearing": OWN_OF_BEARING, "guides.a": OWN_OF_BUSH,
+    "guides.b": OWN_OF_BUSH, "follower.pivot.bush": OWN_OF_BUSH, "cam": {"material"},
+    "spring": {"rate", "travel_max", "source"},
+    "spring.design": {each.name for each in fields(HelicalSpring)} - OF_USE_OF_SPRING | {"card"},
+}  # fmt: skip
+FOLLOWS = {
+    "roller.pin.diameter", "roller.pin.span", "roller.fork.cheek_length", "roller.end.size",
+    "roller.fork.cheek_height", "cam.width", "cam.prime_radius", "follower.mass",
+    "follower.overhang_at_max_lift", "follower.arm.width", "follower.arm.roller_hub",
+    "follower.pivot.swinging_mass", "follower.pivot.mass_distance", "follower.pivot.mass_angle",
+}  # fmt: skip
+USE = {
+    "roller.bearing.temperature": "60 degC", "roller.bearing.lubrication": "oil",
+    "roller.bearing.contamination": "slight_contamination", "spring.design.temperature": "70 degC",
+    "spring.design.relaxation": 0.004,
+}  # fmt: skip
+
+
+_OF_PART = (".source", ".source.text", ".source.confirmed")
+
+
+def entries(tables, path=""):
+    """Keys and values of nested tables, by their dotted names."""
+    for key, value in tables.items():
+        if isinstance(value, dict):
+            yield from entries(value, f"{path}{key}.")
+        else:
+            yield f"{path}{key}", value
+
+
+@pytest.mark.parametrize("exchange", EXCHANGES)
+@pytest.mark.parametrize("name", ["gx120-redesign", "gx120-arm"])
+def test_an_exchanged_part_leaves_all_that_is_not_its_own(parts, name, exchange):
+    """Every key of its tables stays, but those of the part and those that follow from its size."""
+    case = read_case(CASES / f"{name}.toml")
+    rubs = {f"{table}.wear_rate": "2e-7 mm^3/N/m" for table in case.bushes}
+    case = with_values(case, USE | rubs | {f"{t}.housing_resistance": "2 K/W" for t in case.bushes})
+    after = dict(entries(EXCHANGES[exchange](case, parts).tables()))
+    kept = 0
+    for key, value in entries(case.tables()):
+        table, _, last = key.rpartition(".")
+        if (
+            not any(key.startswith(f"{each}.") for each in OWN)
+            or key in FOLLOWS
+            or last in OWN.get(table, ())
+            or ".ring." in key
+            or key.endswith(_OF_PART)
+        ):
+            continue
+        assert after.get(key) == value, key
+        kept += 1
+    assert kept > 20
+
+
+def test_what_stays_of_an_exchanged_bush_keeps_its_source(parts):
+    case = read_case(CASES / "gx120-arm.toml")
+    text = case.follower.pivot.bush.source
+    found = variant(case, parts, Choice(AS_GIVEN, AS_GIVEN, "bronze"), None)
+    assert str(found.sources["follower.pivot.bush.wear_rate"].text) in str(text)
+    assert "SKF" in str(found.sources["follower.pivot.bush.friction"].text)
 
 
 @pytest.mark.parametrize(("spring", "kept"), [("", 2), (TORSION, 3)], ids=["coil", "torsion"])

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 from camwright.pipeline.base import units
 from camwright.pipeline.base.crossing import first_passing
+from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of, nearest_spring
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
@@ -20,7 +22,7 @@ from camwright.pipeline.case.limits import (
     SPRING_FATIGUE,
     SPRING_SOLID,
 )
-from camwright.pipeline.case.toml_text import Tables, table_in, tables_of
+from camwright.pipeline.case.toml_text import Tables, TomlValue, table_in, tables_of
 from camwright.pipeline.case.value_sources import forget_sources
 from camwright.pipeline.follower.spring import HelicalSpring
 
@@ -30,6 +32,25 @@ _WALL_MARGIN = 1.002  # on the least prime radius, for the wall at the contour
 _END_MOST = 0.05  # of the roller's width
 _HALVINGS = 40  # of a travel
 _FORK = 2e-3  # m between roller and fork if the case has no pin
+OWN_OF_BUSH = frozenset(
+    {
+        *("card", "material", "friction", "friction_min", "friction_max", "lubrication"),
+        *("pressure_limit", "pressure_limit_temperature", "speed_limit", "pv_limit", "source"),
+    }
+)
+"""Keys of a bush that another one brings; the others are of its place and use."""
+OWN_OF_BEARING = frozenset(
+    {
+        *("card", "name", "C", "C0", "fatigue_load_limit", "radial_limit", "static_radial_limit"),
+        *("speed_limit", "pitch_diameter", "ring", "source"),
+        *("drag_torque", "friction", "grease_life"),  # measured, or of its maker
+    }
+)
+"""Keys of the bearing of a roller that another one brings, or leaves open; likewise."""
+OWN_OF_ROLLER = frozenset({"radius", "width", "hub_radius", "inertia", "mass"})
+"""Keys of a roller that another one brings, or leaves open; likewise."""
+OF_USE_OF_SPRING = frozenset({"temperature", "relaxation", "damping_ratio"})
+"""Keys of a wound spring that stay where another one is put in; all others are its own."""
 
 
 @dataclass(frozen=True)
@@ -99,9 +120,10 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
     """Case with the parts of a choice and all dependent values.
 
     The roller sets its radius, width, bore and ratings, and with them the cam width, the pin, the
-    overhang and the mass of the follower; the spring sets rate, travel and mass; the bush friction
-    and limits of both guides, or of the pivot of an arm. The prime radius is a variable between the
-    minimum wall and the limit of the cam radius. Waivers and confirmations of the replaced parts
+    fork, the width of an arm, the overhang and the mass of the follower; the spring sets rate,
+    travel and mass; the bush friction and limits of both guides, or of the pivot of an arm. All
+    else in their tables stays. The prime radius is a variable between the minimum wall and the
+    limit of the cam radius. Waivers and confirmations of the replaced parts
     are left out, as they are not signed for this design.
 
     Parameters
@@ -118,16 +140,18 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
     data["name"] = f"{case.name[:31]}-redesign"
     data["title"] = f"{case.title or case.name}: {choice.words}"
     radius, roller_mass, spring_mass = case.facing.contact_radius or 0.0, 0.0, 0.0
+    arm_mass = 0.0
     if choice.roller != AS_GIVEN:
         card = parts.rollers[choice.roller]
         _put_roller(data, case, card, choice.roller)
         radius, roller_mass = 0.5 * card.outer_diameter, _heavier(case, card)
+        arm_mass = _heavier_arm(case, card)
     if choice.spring != AS_GIVEN:
         spring = parts.springs[choice.spring]
         _put_spring(data, case, spring)
         old = case.spring.design or nearest_spring([*parts.springs.values()], case.spring.rate)
         spring_mass = 0.5 * (spring.mass - old.mass)
-    _put_mass(data, case, roller_mass, spring_mass)
+    _put_mass(data, case, roller_mass, spring_mass, arm_mass)
     if choice.bush != AS_GIVEN:
         for table in case.bushes:
             _put_bush(data, table, choice.bush)
@@ -153,7 +177,7 @@ def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -
     """
     data = tables_of(case)
     _put_roller(data, case, card, name)
-    _put_mass(data, case, _heavier(case, card), 0.0)
+    _put_mass(data, case, _heavier(case, card), 0.0, _heavier_arm(case, card))
     base = case.cam.prime_radius + 0.5 * card.outer_diameter - case.roller.radius
     table_in(data, "cam")["prime_radius"] = _mm(base)
     return completed(case_of(data, folder), case.folder)
@@ -188,7 +212,7 @@ def with_cam_material(case: Case, name: str, folder: Path | None) -> Case:
 
 def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
     """Write another roller into the tables of a case, in place: bearing, radius, pin, fork and end,
-    scaled from those of the old one; width of cam and overhang with it.
+    scaled from those of the old one; width of cam and arm, and overhang, with it.
 
     Parameters
     ----------
@@ -199,16 +223,15 @@ def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
     """
     old, radius = case.roller, 0.5 * card.outer_diameter
     roller = table_in(data, "roller")
-    for replaced in ("roller.bearing", "roller.inertia"):
-        forget_sources(data, replaced)
+    bearing = _emptied(data, "roller.bearing", OWN_OF_BEARING)
+    _emptied(data, "roller", OWN_OF_ROLLER)
     inside = card.bore if card.pitch_diameter is None else card.pitch_diameter
     roller |= {
         "radius": _mm(radius),
         "width": _mm(card.width),
         "hub_radius": _mm(0.25 * (card.bore + inside)),
-        "bearing": {"card": name},
+        "bearing": bearing | {"card": name},
     }
-    roller.pop("inertia", None)
     if old.end is not None and old.end.size:
         size = min(old.end.size, _END_MOST * card.width)
         roller["end"] = {"kind": old.end.kind, "size": _mm(size)}
@@ -221,46 +244,90 @@ def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
         pin = table_in(roller, "pin")
         span = card.width + max(old.pin.span - old.width, 0.0)
     roller["pin"] = pin | {"diameter": _mm(card.bore), "span": _mm(span)}
-    fork = old.fork
-    if fork is not None and fork.cheek_length is not None:
-        length = fork.cheek_length + radius - old.radius
-        table_in(roller, "fork")["cheek_length"] = _mm(length)
+    fork, arm = old.fork, case.follower.arm
+    thicker = 0.0 if old.pin is None else card.bore - old.pin.diameter
+    if fork is not None:
+        grown = {"cheek_length": radius - old.radius, "cheek_height": thicker}
+        table_in(roller, "fork").update(_grown(fork, grown))
     table_in(data, "cam")["width"] = _mm(card.width - old.width + case.cam.width)
-    if case.follower.arm is None:
+    if arm is not None:
+        grown = {"width": _wider(case, card), "roller_hub": thicker}
+        table_in(table_in(data, "follower"), "arm").update(_grown(arm, grown))
+    else:
         overhang = case.follower.overhang_at_max_lift + radius - old.radius
         table_in(data, "follower")["overhang_at_max_lift"] = _mm(overhang)
 
 
+def _grown(part: Part, changes: Mapping[str, float]) -> Tables:
+    """Entries of a part whose lengths change by as much, m; those that it does not state are left
+    out.
+    """
+    stated = {name: getattr(part, name) for name in changes}
+    return {name: _mm(value + changes[name]) for name, value in stated.items() if value is not None}
+
+
+def _wider(case: Case, card: BearingCard) -> float:
+    """Width that a wider roller adds to the arm which holds it, m."""
+    return max(card.width - case.roller.width, 0.0)
+
+
+def _emptied(data: Tables, table: str, own: Collection[str]) -> Tables:
+    """Table of a part that is replaced, in the tables of a case, without its own keys and their
+    sources, changed in place; an empty one where there is none.
+
+    Parameters
+    ----------
+    table : str        dotted name
+    own : collection   keys that belong to the part
+    """
+    node: TomlValue | None = data
+    for step in table.split("."):
+        node = node.get(step) if isinstance(node, dict) else None
+    emptied = node if isinstance(node, dict) else {}
+    if "source" in own and "source" in emptied:  # which holds for what stays, too
+        data.setdefault("sources", {})
+        sources = table_in(data, "sources")
+        for key in sorted(emptied.keys() - own):
+            sources.setdefault(f"{table}.{key}", emptied["source"])
+    for key in own:
+        emptied.pop(key, None)
+        forget_sources(data, f"{table}.{key}")
+    return emptied
+
+
 def _put_spring(data: Tables, case: Case, spring: HelicalSpring) -> None:
     """Write a catalogue spring into the tables of a case, in place, with the preload as it was."""
-    forget_sources(data, "spring.design")
+    stated = {each.name for each in fields(HelicalSpring)} | {"card", "name"}
+    design = _emptied(data, "spring.design", stated - OF_USE_OF_SPRING)
     table_in(data, "spring").update(
         {
             "rate": units.format(spring.rate, "kN/m"),
             "travel_max": _mm(travel_of(spring, case)),
             "source": f"catalogue: {spring.name}; preload as it was",
-            "design": tables_of(spring),
+            "design": tables_of(spring) | design,
         }
     )
 
 
-def _put_mass(data: Tables, case: Case, roller: float, spring: float) -> None:
+def _put_mass(data: Tables, case: Case, roller: float, spring: float, arm_mass: float) -> None:
     """Set the mass of the follower in `data` to that of `case` plus what the new roller and spring
     add; of an arm with a stated mass about the pivot this one, too.
 
     Parameters
     ----------
-    roller : float   mass of the new roller less that of the old one, kg; on an arm at its end
-    spring : float   half of the mass of the new spring less that of the old one, kg
+    roller : float     mass of the new roller less that of the old one, kg; on an arm at its end
+    spring : float     half of the mass of the new spring less that of the old one, kg
+    arm_mass : float   that a wider roller adds to the arm, kg, evenly along it
     """
     follower, table = case.follower, table_in(data, "follower")
-    table["mass"] = units.format(follower.mass + roller + spring, "g")
+    table["mass"] = units.format(follower.mass + roller + spring + arm_mass / 3.0, "g")
     arm, pivot = follower.arm, follower.pivot
     if arm is None or pivot is None or pivot.swinging_mass is None:
         return
     distance = arm.length if pivot.mass_distance is None else pivot.mass_distance
-    mass = pivot.swinging_mass + roller
-    moment = pivot.swinging_mass * cmath.rect(distance, pivot.mass_angle) + roller * arm.length
+    mass = pivot.swinging_mass + roller + arm_mass
+    moment = pivot.swinging_mass * cmath.rect(distance, pivot.mass_angle)
+    moment += (roller + 0.5 * arm_mass) * arm.length
     table_in(table, "pivot").update(
         {
             "swinging_mass": units.format(mass, "g"),
@@ -277,18 +344,21 @@ def _heavier(case: Case, card: BearingCard) -> float:
     return math.pi * roller.material.density * disc
 
 
-def _put_bush(data: Tables, table: str, name: str) -> None:
-    """Write the card of a bush into its table of a case, by its dotted name, in place; its
-    dimensions are kept.
+def _heavier_arm(case: Case, card: BearingCard) -> float:
+    """Mass that a wider roller adds to its arm, kg; 0 of a stem, and of an arm without section and
+    material.
     """
-    place = ("length", "diameter", "wall", "clearance", "stiffness", "housing_resistance")
-    *path, last = table.split(".")
-    parent = data
-    for step in path:
-        parent = table_in(parent, step)
-    kept = {key: value for key, value in table_in(parent, last).items() if key in place}
-    parent[last] = kept | {"card": name}
-    forget_sources(data, table)
+    arm = case.follower.arm
+    if arm is None or arm.width is None or arm.depth is None or arm.material is None:
+        return 0.0
+    return arm.material.density * _wider(case, card) * arm.depth * arm.length
+
+
+def _put_bush(data: Tables, table: str, name: str) -> None:
+    """Write the card of a bush into its table of a case, by its dotted name, in place; what is of
+    its place and use is kept.
+    """
+    _emptied(data, table, OWN_OF_BUSH)["card"] = name
 
 
 def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None:
