@@ -46,6 +46,16 @@ class SecondFollower(ABC):
     def seen_from(self, first: Contour) -> SecondFollower:
         """The first roller or face as that fixed to this one, from its contour."""
 
+    @abstractmethod
+    def moved(self, first: Motion, highest: Value) -> SecondMotion:
+        """Motion of the second roller or face from that of the first, of one cam or many.
+
+        Parameters
+        ----------
+        first : Motion            on the unloaded cam at equal cam angles of the turn
+        highest : float or array  maximum lift of the first, m
+        """
+
     def track(self, first: FollowerPath) -> SecondTrack:
         """`of`, computed once for a path."""
         return _kept(self, first)
@@ -89,6 +99,14 @@ class OppositeRoller(SecondFollower):
             raise InputError("cam.conjugate.distance", "stated", "left out without a stem")
         contour = RollerContour(self.path(first), self.radius)
         return SecondTrack(first, contour, _HALF_TURN, 1.0, self.distance)
+
+    def moved(self, first: Motion, highest: Value) -> SecondMotion:
+        if not isinstance(first, RollerMotion):
+            raise InputError("cam.conjugate.distance", "stated", "left out without a stem")
+        height = self.distance - first.base_height - highest
+        jet = _sunk(first.jet, highest, 1.0)
+        motion = RollerMotion(jet, height, -np.asarray(first.offset), self.radius)
+        return SecondMotion(motion, np.full(jet.lift.shape, _HALF_TURN), 1.0, self.distance)
 
     def seen_from(self, first: Contour) -> OppositeRoller:
         return replace(self, radius=first.require_roller().roller_radius)
@@ -141,6 +159,15 @@ class ConjugateArm(SecondFollower):
         contour = ArmContour(self.path(first), self.radius)
         return SecondTrack(first, contour, 0.0, float(first.arm.length / self.length), 0.0)
 
+    def moved(self, first: Motion, highest: Value) -> SecondMotion:
+        if not isinstance(first, ArmMotion):
+            raise InputError("cam.conjugate.arm_length", "stated", "left out without an arm")
+        linkage, leverage = first.linkage, first.linkage.length / self.length
+        start = self.angle - (first.start + highest / linkage.length)
+        arm = Arm(linkage.centre_distance, self.length, -linkage.sense)
+        motion = ArmMotion(_sunk(first.jet, highest, 1.0 / leverage), arm, start, self.radius)
+        return SecondMotion(motion, np.asarray(motion.travel - first.travel), leverage, 0.0)
+
     def seen_from(self, first: Contour) -> ConjugateArm:
         if not isinstance(first.pitch, ArmPath):
             raise InputError("cam.conjugate.arm_length", "stated", "left out without an arm")
@@ -166,8 +193,26 @@ class OppositeFace(SecondFollower):
         breadth = 2.0 * first.base_radius + first.lift.highest.value
         return SecondTrack(first, contour, _HALF_TURN, 1.0, breadth)
 
+    def moved(self, first: Motion, highest: Value) -> SecondMotion:
+        if not isinstance(first, FaceMotion):
+            raise InputError("cam.yoke", "a table", "left out without a flat face on a stem")
+        count = first.jet.lift.shape[-1]
+        if count % 2:
+            raise InputError("positions", count, "even: a yoke has faces half a turn apart")
+        jet = first.jet.at(lambda values: np.roll(values, count // 2, axis=-1))
+        base = np.asarray(first.base_height)
+        motion = FaceMotion(jet, base, -np.asarray(first.offset), first.friction)
+        turned = np.full(jet.lift.shape, _HALF_TURN)
+        return SecondMotion(motion, turned, 1.0, 2.0 * base + highest)
+
     def seen_from(self, first: Contour) -> OppositeFace:  # noqa: ARG002
         return self
+
+
+def _sunk(jet: Jet, highest: Value, ratio: Value) -> Jet:
+    """Lift of a roller that goes down as another goes up, times a ratio; at the same places."""
+    sunk = jet.at(lambda values: -ratio * values)
+    return sunk._replace(lift=ratio * highest + sunk.lift)
 
 
 class Touch(NamedTuple):
@@ -216,16 +261,7 @@ class SecondTrack:
         friction : of a face
         """
         touch = touch_of(self.contour.pitch, theta + self.turn, friction)
-        turned = self.turned(theta)
-        cos, sin = np.cos(turned), np.sin(turned)
-        side, along, scale = touch.slide.side, touch.slide.pressing, -self.leverage
-        slide = touch.slide._replace(
-            side=scale * (side * cos - along * sin),
-            torque=scale * touch.slide.torque,
-            lever=touch.slide.lever / self.leverage,
-            pressing=scale * (along * cos + side * sin),
-        )
-        return Touch(slide, scale * touch.push_arm, touch.pressure_angle, turned)
+        return _from_first(touch, self.turned(theta), self.leverage)
 
     def turned(self, theta: Array) -> Array:
         """Direction of travel of the second roller from that of the first, rad."""
@@ -249,8 +285,60 @@ class SecondTrack:
         jet = self.contour.lift.jet(theta + self.turn, 2)
         second, touch = self.contour.motion(jet, friction), self.touch(theta, friction)
         if isinstance(first, FaceMotion):
-            return CarriedFaceMotion.of(first, self.contour.pitch, jet, pulls)
+            base = self.contour.pitch.height_base
+            return CarriedFaceMotion.of(first, base, jet, pulls)
         return CarriedMotion.of(first, second, pulls, touch)
+
+
+def _from_first(touch: Touch, turned: Array, leverage: Value) -> Touch:
+    """Contact of a second roller or face in its own travel, over the axial force at the first.
+
+    Parameters
+    ----------
+    turned : array (...)   direction of its travel from that of the first, rad
+    leverage : float       force along it over that along the travel of the first
+    """
+    cos, sin = np.cos(turned), np.sin(turned)
+    side, along, scale = touch.slide.side, touch.slide.pressing, -leverage
+    slide = touch.slide._replace(
+        side=scale * (side * cos - along * sin),
+        torque=scale * touch.slide.torque,
+        lever=touch.slide.lever / leverage,
+        pressing=scale * (along * cos + side * sin),
+    )
+    return Touch(slide, scale * touch.push_arm, touch.pressure_angle, turned)
+
+
+class SecondMotion(NamedTuple):
+    """Motion of a second roller or face, of one cam or many, at the cam angles of the first.
+
+    Parameters
+    ----------
+    motion : Motion       of its own travel
+    turned : array (...)  direction of its travel from that of the first, rad
+    leverage : float      force along its travel over that along the travel of the first
+    reach : float         by which it is farther from the guides of a stem, m
+    """
+
+    motion: Motion
+    turned: Array
+    leverage: Value
+    reach: Value
+
+    @property
+    def touch(self) -> Touch:
+        """Contact of a roller over the axial force at the first one."""
+        motion = self.motion
+        slide = Slide(motion.side, np.asarray(motion.sliding), 1.0, motion.pressing)
+        contact = Touch(slide, motion.arm, motion.pressure_angle, self.turned)
+        return _from_first(contact, self.turned, self.leverage)
+
+    def carried(self, first: Motion, pulls: NDArray[np.bool_]) -> Motion:
+        """Motion (...) of the track that carries: this one where it pulls."""
+        if isinstance(first, FaceMotion):
+            base = first.base_height
+            return CarriedFaceMotion.of(first, base, self.motion.jet, pulls)
+        return CarriedMotion.of(first, self.motion, pulls, self.touch)
 
 
 class CamDisc(NamedTuple):
@@ -310,13 +398,15 @@ class CarriedFaceMotion(FaceMotion):
 
     @classmethod
     def of(
-        cls, first: FaceMotion, path: FollowerPath, jet: Jet, pulls: NDArray[np.bool_]
+        cls, first: FaceMotion, base: Value, jet: Jet, pulls: NDArray[np.bool_]
     ) -> CarriedFaceMotion:
-        """From the motion of the first face, and path and lift of the second at its cam angles."""
+        """From the motion of the first face, height at zero lift and lift of the second at its cam
+        angles.
+        """
         mixed = Jet(*(np.where(pulls, *pair) for pair in zip(jet[:3], first.jet[:3], strict=True)))
         sense = np.where(pulls, -1.0, 1.0)
         offset = sense * first.offset
-        return cls(mixed, path.height_base, offset, first.friction, sense)
+        return cls(mixed, base, offset, first.friction, sense)
 
     @cached_property
     def arm(self) -> Array:

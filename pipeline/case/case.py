@@ -375,18 +375,6 @@ class Case(Displayed, Section):
         if self.cam.pulls:
             raise InputError("cam.closure", self.cam.closure, f'"spring" for {use}')
 
-    def require_one_disc(self, use: str) -> None:
-        """Refuse a conjugate pair and a yoke for a use, in words, that is made for one contact.
-
-        Raises
-        ------
-        InputError
-        """
-        if self.cam.second is not None:
-            raise InputError(
-                "cam.closure", self.cam.closure, f'"spring", "gravity" or "groove" for {use}'
-            )
-
     @property
     def base_circle(self) -> float:
         """Radius of the base circle, m: of the cam surface at zero lift."""

@@ -245,6 +245,7 @@ def _breadths(solution: Solution) -> Array:
         "c": "cam.yoke.clearance",
     },
     reason="Only a cam of constant breadth keeps its clearance between two faces.",
+    tier=Tier.SCREENING,
     method="breadth of the nominal cam at equal angles, and the width of the profile tolerance",
     lift_can_help=True,
     moved_by_tolerance=False,
@@ -309,6 +310,7 @@ def _of_turns(
         "c": f"limits.{CONTACT_FORCE_MARGIN.id}",
     },
     reason="A roller without load stops and lands with a blow.",
+    tier=Tier.SCREENING,
     method="axial force shared by the compliances of both rollers with their arms, the interference"
     " less by the width of the profile tolerance",
     lift_can_help=True,
@@ -373,6 +375,7 @@ def _preload_words(solution: Solution) -> str:
         "S": "limits.contact_safety",
     },
     reason="The preload presses at every angle, on the disc that bears less, too.",
+    tier=Tier.SCREENING,
     method="pressure of Hertz on both discs, the interference greater by the width of the profile"
     " tolerance",
     lift_can_help=True,

@@ -208,6 +208,16 @@ class LoadedCam:
         return motion_of(self.jet, self.numbers)
 
     @property
+    def travel(self) -> Value:
+        """Direction of travel of the first roller or face from the follower axis, rad."""
+        return self.motion.travel
+
+    @property
+    def turned(self) -> Value:
+        """Travel of the roller or face that carries from that of the first, rad."""
+        return 0.0
+
+    @property
     def pulls(self) -> bool:
         """Whether the cam pulls the follower, too, as the outer wall of a groove does."""
         case = self.numbers.case
@@ -361,7 +371,7 @@ class LoadedCam:
     def closing(self) -> Array:
         """Spring, weight and external force, N."""
         if self.pivot is not None:
-            return self.spring_force + self.pivot.applied(self.external, self.motion.travel)
+            return self.spring_force + self.pivot.applied(self.external, self.travel)
         return self.spring_force + (self.numbers["follower.mass"] * self.gravity + self.external)
 
     @cached_property
@@ -377,11 +387,15 @@ class LoadedCam:
         ----------
         added : float or array   force of the spring besides that of its travel, such as surge, N
         """
-        speed, motion = self.speed, self.motion
-        acceleration = speed**2 * self.jet.lift_d2
+        return self._balanced(pivot, self.required + added, self._pull(pivot, added))
+
+    def _pull(self, pivot: ArmPivot, added: Value = 0.0) -> Pull:
+        """All forces on an arm but those of contact and pivot, see `ArmPivot.pull`; `added` as in
+        `_about`.
+        """
+        acceleration = self.speed**2 * self.jet.lift_d2
         spring = self.spring_force + added
-        pull = pivot.pull(spring, self.external, motion.travel, self.velocity, acceleration)
-        return self._balanced(pivot, self.required + added, pull)
+        return pivot.pull(spring, self.external, self.travel, self.velocity, acceleration)
 
     def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
         outward = np.asarray(np.sign(np.real(self.slope)))
@@ -620,7 +634,7 @@ class LoadedCam:
         along, across = self.axial * self.motion.pressing, self.axial * self.motion.side
         pushed = -np.stack([along * cos + across * sin, across * cos - along * sin])
         bent = slope.under(pushed + on_cam, gear_force(self.torque, shaft), held)
-        return in_the_normal(bent, self.motion.pressure_angle - travel)
+        return in_the_normal(bent, self.motion.pressure_angle - travel - self.turned)
 
     @property
     def contact_radius(self) -> Value:

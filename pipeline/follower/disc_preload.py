@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
-from camwright.geometry.second_track import SecondTrack
+from camwright.geometry.second_track import SecondTrack, Touch
 from camwright.geometry.track_deviation import EXACT, TrackDeviation
 from camwright.pipeline.base import units
 
@@ -27,7 +27,7 @@ class Squeezed(NamedTuple):
     """
 
     preload: Array
-    share: float
+    share: Value
 
     def forces(self, axial: Array) -> tuple[Array, Array]:
         """Forces (n,) of the first and of the second track at axial forces (n,), N, >= 0."""
@@ -42,6 +42,17 @@ class Squeezed(NamedTuple):
         """Whether both tracks are pressed at axial forces (n,), N; bool (n,)."""
         first, second = self.forces(axial)
         return np.asarray((first > 0.0) & (second > 0.0))
+
+
+def squeezed(interference: Value, compliance: Value, touch: Touch, leverage: Value) -> Squeezed:
+    """Preload (...) of an interference, m, on the compliance of each roller, m/N.
+
+    touch : Touch      of the second track
+    leverage : float   force along the travel of the second over that of the first roller
+    """
+    closed = interference / (touch.slide.lever * np.cos(touch.pressure_angle))
+    first, second = compliance, compliance * leverage**2
+    return Squeezed(closed / (first + second), second / (first + second))
 
 
 @dataclass(frozen=True)
@@ -71,11 +82,8 @@ class DiscPreload:
         InputError
             If deviations leave no interference.
         """
-        touch = track.touch(theta)
         left = self.interference - self.deviation.on(track, theta)
         if not float(np.min(left)) > 0.0:
             shown = units.shown(float(np.min(left)), "mm")
             raise InputError("cam.conjugate.interference", shown, "> 0 mm at every angle")
-        closed = left / (touch.slide.lever * np.cos(touch.pressure_angle))
-        first, second = self.compliance, self.compliance * track.leverage**2
-        return Squeezed(closed / (first + second), second / (first + second))
+        return squeezed(left, self.compliance, track.touch(theta), track.leverage)

@@ -16,6 +16,7 @@ from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
 from camwright.geometry.pitch_curve import magnitude
+from camwright.geometry.second_track import SecondMotion
 from camwright.pipeline.base.kept_results import KeptResult
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced, value_of
@@ -36,11 +37,19 @@ from camwright.pipeline.cycle.loaded_cam import (
 )
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import keyway_cut, rotating_force
+from camwright.pipeline.follower.disc_preload import Squeezed, squeezed
 from camwright.pipeline.follower.follower_forces import Push
 from camwright.pipeline.follower.follower_tilt import FollowerTilt, arm_tilt
 from camwright.pipeline.follower.guide_table import SupportOfMany
 from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.screening.screened_cam import ScreenedCam, ScreenedState
+
+
+def _moment(ring: Array) -> Array:
+    """First moment of the area within closed curves of complex points (m, N), (m, 1), m3."""
+    beside = np.roll(ring, -1, axis=-1)
+    swept = np.imag(np.conj(ring) * beside)
+    return np.asarray(np.sum((ring + beside) * swept, axis=-1, keepdims=True) / 6.0)
 
 
 def _in_cam_axes(motion: Motion) -> Array:
@@ -141,9 +150,12 @@ class Designs:
             "cam.fastest": self.fastest[:, None] / self.case.mechanism.gear_ratio,
         }
         numbers = Numbers({**self.columns, **self.of_springs, **known}, self.case)
-        if not self.machine.spring.absent:
+        if self.case.cam.second is None and not self.machine.spring.absent:
             return numbers
-        widest = sampled_greatest(motion_of(Jet(*self.jets), numbers).contour_radius)
+        first = motion_of(Jet(*self.jets), numbers)
+        second = self.second_of(first) if self.case.cam.conjugate is not None else None
+        discs = (first,) if second is None else (first, second.motion)
+        widest = np.max([sampled_greatest(each.contour_radius) for each in discs], axis=0)
         return numbers | {"cam.greatest_radius": widest[:, None]}
 
     def limit(self, row: AnyLimit) -> Array:
@@ -207,6 +219,18 @@ class Designs:
         jerk = np.broadcast_to(knot_derivatives(self.lift, order)[order], self.jets.shape[1:])
         return replace(self.whole, jet=self.whole.jet._replace(jerk=jerk))
 
+    def discs_to(self, order: int) -> tuple[LoadedCam, ...]:
+        """As `whole_to`, of each disc, as that of a second roller."""
+        first = self.whole_to(order)
+        if self.case.cam.conjugate is None:
+            return (first,)
+        motion = roller_of(first.motion)
+        second = self.second_of(motion)
+        if second is None:
+            return (first,)
+        other = roller_of(second.motion)
+        return first, _DiscCam(other.jet, self.numbers, first.highest, track=other)
+
     @property
     def top(self) -> LoadedCam:
         """The unloaded cams at their maximum lift, (m, 1); with the greatest preload of the load
@@ -221,7 +245,23 @@ class Designs:
         """Motion (m, n) of the roller or face that carries, by that of the first on the unloaded
         cams; wall (m, n) as of `LoadedCam.wall`.
         """
-        return on_wall(motion, wall) if self.case.cam.pulls else motion
+        if not self.case.cam.pulls:
+            return motion
+        second = self.second_of(motion)
+        return on_wall(motion, wall) if second is None else second.carried(motion, wall < 0.0)
+
+    def second_of(self, motion: Motion) -> SecondMotion | None:
+        """Motion of the second roller or face by that of the first (m, n); None without one."""
+        cam = self.case.cam
+        second = cam.second
+        if cam.conjugate is not None:
+            second = Numbers(self.columns, self.case).of_part(cam.conjugate).roller
+        return None if second is None else second.moved(motion, self.highest[:, None])
+
+    @KeptResult
+    def second(self) -> SecondMotion | None:
+        """That at the cam angles of the loads."""
+        return self.second_of(self.motion)
 
     @KeptResult
     def tracks(self) -> tuple[Motion, ...]:
@@ -376,9 +416,13 @@ class Designs:
         """Guides and overhang of the stem of each design over the turn, for the loads of the
         guides.
         """
-        motion, known = self.motion, self.machine
-        lift = motion.jet.lift
+        return self.supports_of(self.motion, 0.0)
+
+    def supports_of(self, motion: Motion, reach: Value) -> SupportOfMany:
+        """As `supports`, of the roller or face of a motion, farther from the guides by `reach`."""
+        known, lift = self.machine, self.motion.jet.lift
         overhang = self.value("follower.overhang_at_max_lift") + (self.highest[:, None] - lift)
+        overhang = overhang + reach
         push = Push(motion.side, motion.arm, self.value("guides.spacing"))
         return SupportOfMany.of(known.stem, known.guides, push, np.asarray(overhang))
 
@@ -390,20 +434,26 @@ class Designs:
         cam = self.machine.cam
         if cam.counter_hole is not None:
             return np.zeros((self.count, 1)), np.zeros((self.count, 1))
-        moment = self._moment_of_plate if cam.groove is None else self._moment_of_groove
+        moment = self._moment_of_plates if cam.groove is None else self._moment_of_groove
         if cam.keyway is not None:
             cut = keyway_cut(self.value("cam.bore_radius"), cam.keyway.width, cam.keyway.depth)
-            moment = moment - cut.moment * np.exp(1j * cam.keyway.angle)
+            discs = 1 if cam.conjugate is None else 2
+            moment = moment - discs * cut.moment * np.exp(1j * cam.keyway.angle)
         product = cam.material.density * self.value("cam.width") * moment
         return np.abs(product), np.angle(product)
 
     @property
-    def _moment_of_plate(self) -> Array:
-        """First moment of the plane of the cams about their axis (m, 1), m3."""
-        ring = _in_cam_axes(self.whole.motion)
-        beside = np.roll(ring, -1, axis=-1)
-        swept = np.imag(np.conj(ring) * beside)
-        return np.asarray(np.sum((ring + beside) * swept, axis=-1, keepdims=True) / 6.0)
+    def _moment_of_plates(self) -> Array:
+        """First moment of the plane of the cams about their axis (m, 1), m3; of both discs of a
+        pair, in one plane.
+        """
+        first = self.whole.motion
+        second = self.second_of(first) if self.case.cam.conjugate is not None else None
+        moment = _moment(_in_cam_axes(first))
+        if second is None:
+            return moment
+        ahead = second.turned + first.travel - second.motion.travel
+        return moment + _moment(_in_cam_axes(second.motion) * np.exp(1j * ahead))
 
     @property
     def _moment_of_groove(self) -> Array:
@@ -431,13 +481,36 @@ class Designs:
         if not self.case.cam.clearance > 0.0:
             return ((),) * self.count
         theta = uniform_turn(self.lift.shape[-1])
-        return tuple(self._flown(k, theta) for k in range(self.count))
+        return tuple(
+            tuple(one for state in machines(case) for one in impacts(state, contour))
+            for k, case in enumerate(self.cases)
+            for contour in (case.contour(Lift(theta, self.lift[k % len(self.lift)])),)
+        )
 
-    def _flown(self, number: int, theta: Array) -> tuple[WallImpact, ...]:
-        """Landings of a design, by its number; theta (N,): cam angles of its lift, rad."""
-        case = replaced(self.case, {k: float(each[number, 0]) for k, each in self.columns.items()})
-        contour = case.contour(Lift(theta, self.lift[number % len(self.lift)]))
-        return tuple(one for state in machines(case) for one in impacts(state, contour))
+    @KeptResult
+    def cases(self) -> tuple[Case, ...]:
+        """Case of each design."""
+        numbers = (
+            {key: float(each[k, 0]) for key, each in self.columns.items()}
+            for k in range(self.count)
+        )
+        return tuple(replaced(self.case, each) for each in numbers)
+
+    @KeptResult
+    def compliance(self) -> Array:
+        """Compliance of each roller with its arm (m, 1), m/N; see `DiscPreload`."""
+        each = [machine(case, case.load_cases[0]).axial_stiffness for case in self.cases]
+        return 1.0 / np.array(each)[:, None]
+
+    def squeezed(self, narrower: Value = 0.0) -> Squeezed | None:
+        """Preload of both discs (m, n) with an interference larger by a length (m, 1), m; None
+        without an interference.
+        """
+        if self.second is None or self.case.cam.clearance > 0.0:
+            return None
+        interference = self.value("cam.conjugate.interference") + narrower
+        second = self.second
+        return squeezed(interference, self.compliance, second.touch, second.leverage)
 
     def thrown(self, speed: Value) -> tuple[Array, Array]:
         """Centrifugal forces on cam and counterweight (2, m, n), N, at cam speeds (m, 1), rad/s."""
@@ -489,6 +562,17 @@ class Designs:
         """Crank speed (m,) of over-speed, at least of the fastest load case, rad/s."""
         speeds = np.stack([np.maximum(each.speed, CREEP)[:, 0] for each in self.states])
         return np.asarray(np.nanmax(speeds, axis=0))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _DiscCam(LoadedCam):
+    """Unloaded cams of which the motion on a disc is known."""
+
+    track: Motion
+
+    @property
+    def motion(self) -> Motion:
+        return self.track
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,6 +34,10 @@ ARRAYS: tuple[str, ...] = (
     *(f"spring.design.{name}" for name in WIRE),
     "cam.prime_radius", "cam.offset", "cam.width", "cam.bore_radius", "cam.profile_tolerance",
     *(f"cam.groove.{name}" for name in ("clearance", "depth", "corner_radius", "outer_radius")),
+    *(f"cam.conjugate.{name}" for name in (
+        "roller_radius", "distance", "arm_length", "arm_angle", "clearance", "interference",
+        "spacing")),
+    "cam.yoke.clearance",
     "roller.radius", "roller.width", "roller.crown.radius", "roller.bearing.C", "roller.bearing.C0",
     "roller.bearing.speed_limit", "roller.bearing.radial_limit",
     "roller.bearing.static_radial_limit",

@@ -78,10 +78,10 @@ def screen_designs(
     offset, widths, bore, bearing ratings, sizes, friction and PV limit of a flat face, follower
     mass, overhang and damping, spacing and friction of the guides, dimensions of an arm, of its
     pivot and the link of its spring, inertia, share of compensation, width of a smoother and every
-    limit, clearance, depth, fillet and outer radius of a groove. Others are grouped by their
-    values, with one case each. The rate is `spring.rate`, not that of the winding: a check compares
-    them. The lift of a constrained synthesis is that of the case: every design keeps its stored
-    energy.
+    limit, dimensions of a groove, of a second roller and its place, clearance and interference.
+    Others are grouped by their values, with one case each. The rate is `spring.rate`, not that of
+    the winding: a check compares them. The lift of a constrained synthesis is that of the case:
+    every design keeps its stored energy.
 
     Parameters
     ----------
@@ -106,7 +106,6 @@ def screen_designs(
     """
     if not 36 <= positions <= 7200:
         raise InputError("positions", positions, "36 to 7200")
-    case.require_one_disc("a screening")
     count = count_of(factors)
     columns = ScreenedDesigns(
         {name: np.full(count, "", dtype=object) for name in ("screen", "governing", "message")}

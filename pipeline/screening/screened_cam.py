@@ -10,11 +10,15 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.follower_path import Motion
+from camwright.geometry.second_track import SecondMotion
+from camwright.pipeline.contact.conforming_line import concave_line
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.oil_film import LineFilm, lambda_ratio, minimum_film
 from camwright.pipeline.cycle.contact_heat import flash_rise
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, face_of
+from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
     REST,
@@ -69,6 +73,10 @@ class Block(DesignValues, Protocol):
     def relative_radius_of(self, motion: Motion) -> Array: ...
     def carried(self, motion: Motion, wall: Array) -> Motion: ...
     @property
+    def second(self) -> SecondMotion | None: ...
+    def squeezed(self, narrower: Value = 0.0) -> Squeezed | None: ...
+    def supports_of(self, motion: Motion, reach: Value) -> SupportOfMany: ...
+    @property
     def least_radius(self) -> Array: ...
     def thrown(self, speed: Value) -> tuple[Array, Array]: ...
 
@@ -89,6 +97,33 @@ class ScreenedCam(LoadedCam):
     @cached_property
     def motion(self) -> Motion:
         return self.block.carried(self.block.motion, self.wall) if self.pulls else self.block.motion
+
+    @property
+    def travel(self) -> Value:
+        return self.block.motion.travel
+
+    @property
+    def turned(self) -> Value:
+        second = self.block.second
+        return 0.0 if second is None else np.where(self.wall < 0.0, second.turned, 0.0)
+
+    @property
+    def reach(self) -> Value:
+        second = self.block.second
+        return 0.0 if second is None else np.asarray(second.reach * (self.wall < 0.0))
+
+    @cached_property
+    def supports(self) -> SupportOfMany:
+        """Guides of the stem under the roller or face that carries."""
+        if self.block.second is None:
+            return self.block.supports
+        return self.block.supports_of(self.motion, self.reach)
+
+    @cached_property
+    def wall(self) -> Array:
+        if self.pivot is None or not self.pulls:
+            return super().wall
+        return self._swung(self.pivot, self.required, self._pull(self.pivot))[1]
 
     @cached_property
     def relative_radius(self) -> Array:
@@ -128,7 +163,32 @@ class ScreenedCam(LoadedCam):
         return self._free * self.wall / self.share
 
     def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
+        if self.pulls:
+            return self._swung(pivot, required, pull)[0]
         return pivot.clipped(required, Pressed.of(self.motion), pull, self.direction, JAM_FLOOR)
+
+    def _swung(self, pivot: ArmPivot, required: Array, pull: Pull) -> tuple[PivotBalance, Array]:
+        """Equilibrium of arms between two tracks, and the track that carries (m, n)."""
+        first = self.block.motion
+        one = np.ones(first.jet.lift.shape)
+        push, pulled = (Pressed.of(self.block.carried(first, wall)) for wall in (one, -one))
+        pressed, direction = (push, pulled), np.sign(self.slope)
+        squeeze = self.block.squeezed()
+        if squeeze is None:
+            return pivot.between(required, pressed, pull, direction)
+        return pivot.squeezed(required, pressed, squeeze, pull, direction)
+
+    @cached_property
+    def normal(self) -> Array:
+        squeeze = self.block.squeezed() if self.pulls else None
+        if squeeze is None:
+            return super().normal
+        first, second = squeeze.forces(self.axial)
+        return np.asarray(np.where(self.wall > 0.0, first, second) * self.motion.gain)
+
+    @cached_property
+    def surged(self) -> Array:
+        return self.normal if self.pulls and self.block.squeezed() is not None else super().surged
 
     @cached_property
     def rubbing_share(self) -> OfGuides:
@@ -160,7 +220,7 @@ class ScreenedCam(LoadedCam):
         ----------
         friction : OfGuides   friction coefficients of guides A and B, each broadcast to (m, n)
         """
-        supports, shape = self.block.supports, self._free.shape
+        supports, shape = self.supports, self._free.shape
         load = np.broadcast_to(supports.load, shape).ravel()
         rubs = tuple(
             np.broadcast_to(one * share * supports.factor, shape).ravel()
@@ -183,7 +243,7 @@ class ScreenedCam(LoadedCam):
     @cached_property
     def guides(self) -> GuideLoads:
         """Loads of the guides by their tables, N."""
-        return self.block.supports.loads(self.axial * self.wall)
+        return self.supports.loads(self.axial * self.wall)
 
     @cached_property
     def rubbing(self) -> OfGuides:
@@ -241,10 +301,24 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def p0_line(self) -> Array:
-        """Contact pressure of plane strain, Pa; NaN where the contour bounds no body."""
-        load = self.normal / self.numbers["contact.width"]
-        modulus = self.numbers["contact.modulus"]
-        return np.sqrt(peak_pressure_square(load, 1.0 / self.relative_radius, modulus))
+        """Contact pressure of plane strain, Pa, of a conforming contact on a concave wall; NaN
+        where the contour bounds no body.
+        """
+        load = np.asarray(self.normal / self.numbers["contact.width"])
+        modulus, radius = self.numbers["contact.modulus"], self.relative_radius
+        pressure = np.sqrt(peak_pressure_square(load, 1.0 / radius, modulus))
+        closed, machine = np.isfinite(radius), self.block.machine
+        if machine.follower.slides or not (self.pulls and closed.any()):
+            return pressure
+        roller = np.broadcast_to(self.contact_radius, load.shape)
+        cards = machine.follower.material, machine.cam.material
+        bodies = (Elastic(card.E, card.nu) for card in cards)
+        full, line = concave_line(load[closed], radius[closed], roller[closed], *bodies)
+        if line is not None:
+            solved = pressure[closed]
+            solved[full] = line.p0
+            pressure[closed] = solved
+        return pressure
 
     @cached_property
     def _factors(self) -> LineFactors | None:

@@ -19,6 +19,7 @@ from camwright.pipeline.base.units import celsius
 from camwright.pipeline.case.limits import (
     ARM_SAFETY,
     ASSEMBLY_GAP,
+    CONTACT_FORCE_MARGIN,
     CROSSOVER_SLIP,
     FRICTION_POWER,
     LANDING_SPEED,
@@ -43,6 +44,7 @@ from camwright.pipeline.checks.demands import rating_over
 from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.contact.flash_temperature import bulk_rise
+from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.cycle.arm_bodies import with_swing
 from camwright.pipeline.cycle.crossover_history import WallImpact
 from camwright.pipeline.cycle.machine_envelope import counterweight_body
@@ -138,9 +140,11 @@ def _known(measure: Measure, how: Measured, designs: Designs, numbers: Numbers) 
     if how.reduce in ("case", "top"):
         return np.asarray(how.value(measure(designs.top), numbers))
     if how.reduce == "contour":
-        extreme = sampled_least if how.worst == "least" else sampled_greatest
-        cams = designs.whole_to(how.order)
-        return np.asarray(how.value(extreme(measure(cams))[:, None], numbers))
+        extreme, worst = (
+            (sampled_least, np.min) if how.worst == "least" else (sampled_greatest, np.max)
+        )
+        each = [extreme(measure(disc)) for disc in designs.discs_to(how.order)]
+        return np.asarray(how.value(worst(each, axis=0)[:, None], numbers))
     if how.reduce in BY_DUTY:
         return _by_duty(measure, how, designs, numbers)
     each = [_of_turn(measure, how, cam) for cam in designs.cams]
@@ -412,6 +416,54 @@ def _landing_pressure(designs: Designs) -> Judged | None:
     return demand, np.where(demand > allowed, allowed, np.nan) if limit.if_exceeded else allowed
 
 
+def _preload_least(designs: Designs) -> Judged | None:
+    """Least force on either disc over the preload, with the narrowest interference, and its limit
+    (m,); None without an interference.
+    """
+    squeeze = designs.squeezed()
+    if squeeze is None:
+        return None
+    interference = designs.value("cam.conjugate.interference")
+    narrower = designs.value("cam.profile_tolerance") / interference
+    left = [np.minimum(*squeeze.forces(cam.axial)) / squeeze.preload for cam in designs.cams]
+    least = np.min(left, axis=(0, 2)) - narrower[:, 0]
+    return least, designs.limit(CONTACT_FORCE_MARGIN)
+
+
+def _preload_pressure(designs: Designs) -> Judged | None:
+    """Greatest pressure of Hertz on either disc at the greatest preload, and its limit (m,), Pa;
+    None without an interference.
+    """
+    squeeze = designs.squeezed(designs.value("cam.profile_tolerance"))
+    how = contact_strength.contact_pressure.measured
+    if squeeze is None or how is None:
+        return None
+    first = designs.motion
+    one = np.ones(first.jet.lift.shape)
+    tracks = [designs.carried(first, wall) for wall in (one, -one)]
+    numbers, every = designs.numbers, []
+    for cam in designs.cams:
+        for force, track in zip(squeeze.forces(cam.axial), tracks, strict=True):
+            load = force * track.gain / numbers["contact.width"]
+            curved = 1.0 / designs.relative_radius_of(track)
+            every.append(peak_pressure_square(load, curved, numbers["contact.modulus"]))
+    demand, limit = np.sqrt(np.max(every, axis=(0, 2))), how.allowed(numbers)
+    allowed = _of_each(np.nan if limit.value is None else limit.value, designs)
+    return demand, np.where(demand > allowed, allowed, np.nan) if limit.if_exceeded else allowed
+
+
+def _yoke_breadth(designs: Designs) -> Judged | None:
+    """Change of the breadth with the profile tolerance over the clearance of a yoke (m,), and its
+    limit; None without one.
+    """
+    if designs.case.cam.yoke is None:
+        return None
+    height = designs.whole.motion.height
+    breadth = height + np.roll(height, height.shape[-1] // 2, axis=-1)
+    change = np.ptp(breadth, axis=-1)[:, None] + designs.value("cam.profile_tolerance")
+    return _of_each(change / designs.value("cam.yoke.clearance"), designs), 1.0
+
+
 def _gas_stroke_rate(designs: Designs) -> Judged | None:
     rate = _strokes(designs) * designs.numbers["cam.fastest"] / FULL_TURN
     limit = spring_strength.gas_of(designs.case).stroke_rate_limit
@@ -459,6 +511,9 @@ _ARRAYS: Mapping[str, tuple[Callable[[Designs], Judged | None], float]] = {
         1e-4,
     ),
     form_closure.landing_pressure.id: (_landing_pressure, 1e-4),
+    form_closure.preload_least.id: (_preload_least, 1e-3),
+    form_closure.preload_pressure.id: (_preload_pressure, 1e-3),
+    form_closure.yoke_breadth.id: (_yoke_breadth, 1e-3),
 }
 """Screening of checks without a measure, by id, with its deviation; see `Screened`."""
 

@@ -23,7 +23,6 @@ from camwright.pipeline.cycle.crossover_history import impacts
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.screening.design_screening import screen_designs
 
 DATA = Path(__file__).parents[1] / "data"
 STEM, ARM = DATA / "conjugate_feeder.toml", DATA / "conjugate_arm.toml"
@@ -440,12 +439,6 @@ def test_the_cases_pass_by_check(file):
     made = {each.id for each in checks}
     assert not made & {"jump", "contact_force_margin", "groove_wall", "traction_demand"}
     assert {"landing_speed", "second_disc_gap", "cam_radius", "tool_gouge"} <= made
-
-
-def test_a_screening_is_refused():
-    """In one line."""
-    with pytest.raises(InputError, match='"gravity" or "groove" for a screening'):
-        screen_designs(read_case(STEM), {"cam.prime_radius": np.array([0.06, 0.07])})
 
 
 @pytest.mark.parametrize(

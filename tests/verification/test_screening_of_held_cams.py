@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_groove_cam import soft_roller
 from test_screening import compared, exceeded
 
 from camwright.pipeline.case.case_file import parse_case
@@ -17,6 +18,10 @@ ROOT = Path(__file__).parents[2]
 FILES = {
     "groove": ROOT / "cases" / "motions" / "feeder-groove.toml",
     "gravity": ROOT / "tests" / "data" / "gravity_lift.toml",
+    "stem": ROOT / "tests" / "data" / "conjugate_feeder.toml",
+    "arm": ROOT / "tests" / "data" / "conjugate_arm.toml",
+    "pressed": ROOT / "tests" / "data" / "preloaded_arm.toml",
+    "yoke": ROOT / "tests" / "data" / "yoke_pump.toml",
 }
 RANGES = {
     "groove": {
@@ -26,8 +31,30 @@ RANGES = {
         "roller.radius": (0.0235, 0.0242), "limits.landing_speed": (0.01, 0.05),
     },
     "gravity": {
-        "cam.prime_radius": (0.066, 0.07), "follower.mass": (0.9, 1.1),
+        "cam.prime_radius": (0.066, 0.07), "follower.mass": (7.5, 8.5),
         "roller.radius": (0.0235, 0.0242),
+    },
+    "stem": {
+        "cam.prime_radius": (0.067, 0.069), "cam.offset": (-3e-3, 3e-3),
+        "cam.conjugate.distance": (0.153, 0.157), "cam.conjugate.clearance": (12e-6, 28e-6),
+        "cam.conjugate.roller_radius": (0.0228, 0.024), "cam.conjugate.spacing": (0.033, 0.036),
+        "follower.mass": (2.7, 3.3),
+    },
+    "arm": {
+        "cam.prime_radius": (0.061, 0.063), "follower.arm.length": (0.089, 0.091),
+        "cam.conjugate.arm_length": (0.084, 0.086), "cam.conjugate.arm_angle": (1.37, 1.39),
+        "cam.conjugate.roller_radius": (0.0215, 0.0225), "follower.pivot.swinging_mass": (1.7, 2.0),
+        "follower.pivot.bush.friction": (0.04, 0.07),
+    },
+    "pressed": {
+        "cam.prime_radius": (0.061, 0.063), "follower.arm.width": (0.03, 0.034),
+        "cam.conjugate.interference": (18e-6, 24e-6), "cam.conjugate.arm_length": (0.084, 0.086),
+        "follower.pivot.bush.friction": (0.04, 0.07),
+    },
+    "yoke": {
+        "cam.prime_radius": (0.034, 0.036), "cam.offset": (-2e-3, 2e-3),
+        "cam.yoke.clearance": (0.04e-3, 0.06e-3), "follower.mass": (1.8, 2.2),
+        "follower.face.friction": (0.03, 0.07),
     },
 }  # fmt: skip
 LIFT = """[lift]
@@ -40,30 +67,42 @@ segment = [
 ]
 
 """
+_LANDS = {"landing_speed", "landing_pressure", "crossover_slip"}
 OF_FORM = {
-    "groove": {"landing_speed", "landing_pressure", "crossover_slip", "outer_undercut",
-               "groove_wall", "groove_clearance", "groove_radius"},
+    "groove": _LANDS | {"outer_undercut", "groove_wall", "groove_clearance", "groove_radius"},
     "gravity": {"contact_force_margin", "jump"},
+    "stem": _LANDS | {"second_disc_gap", "cam_radius"},
+    "arm": _LANDS | {"second_disc_gap", "pivot_pressure"},
+    "pressed": {"preload_least", "preload_pressure", "second_disc_gap", "pivot_pressure"},
+    "yoke": {"landing_speed", "landing_pressure", "yoke_breadth"},
 }  # fmt: skip
 
 
 def case_without_rest(name):
     text = FILES[name].read_text(encoding="utf-8")
-    if name == "gravity":
+    if name in ("gravity", "yoke"):
         return parse_case(text)
     begin, end = text.index("[lift]"), text.index("[mechanism]")
-    return parse_case(text[:begin] + LIFT + text[end:])
+    lift = LIFT
+    if name in ("arm", "pressed"):
+        lift = LIFT.replace("12 mm", "5.5 deg").replace("10 mm", "5 deg")
+    return parse_case(text[:begin] + lift + text[end:])
 
 
 def designs(name, count):
     case, draw = case_without_rest(name), np.random.default_rng(7)
     factors = {key: draw.uniform(*ends, count) for key, ends in RANGES[name].items()}
-    if name == "gravity":
-        factors["follower.mass"] *= case.follower.mass
     return case, factors
 
 
-@pytest.mark.parametrize("name", RANGES)
+THOROUGH = "stem", "gravity", "pressed"
+"""Cams of which a slow test alone compares the previews."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] * (name in THOROUGH)) for name in RANGES],
+)
 def test_designs_agree_with_their_previews(name):
     """Within the deviations that the checks declare; `compared` holds status and screen, too.
 
@@ -91,6 +130,12 @@ def test_a_row_is_the_single_design(name):
                 assert values[k] == wanted, column
     judged = {each.check for each in SCREENED if f"{each.check}.demand" in rows}
     assert OF_FORM[name] <= judged
+
+
+def test_a_soft_roller_conforms_in_the_screening_too():
+    case = soft_roller()
+    worst = compared(case, {"follower.mass": np.array([case.follower.mass])}, positions=720)
+    assert worst["contact_pressure"] < 1e-3 and worst["p0"] < 1e-3
 
 
 def test_a_bound_decides_only_where_it_fails():
