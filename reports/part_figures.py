@@ -264,7 +264,9 @@ def _pivot(turn: SheetTurn) -> Figure | None:
     if load is None:
         return None
     sizes = [turn.length("follower", "pivot", "bush", key) for key in ("length", "diameter")]
-    pressures = [*curves_of(turn, ("pivot_edge_pressure_MPa", "greatest, at the edge"))]
+    by_slices = ("pivot_edge_pressure_foundation_MPa", "the same by a rigid pin in slices")
+    names = ("pivot_edge_pressure_MPa", "greatest, at the edge"), by_slices
+    pressures = [*curves_of(turn, *names, dashed=(1,))]
     if sizes[0] and sizes[1]:
         mean = load / (sizes[0] * sizes[1])
         pressures.append(Curve(turn.crank, mean, "mean over the projected area", "green"))

@@ -191,14 +191,18 @@ def pivot_pictures(material: ReportMaterial) -> Sequence[Picture]:
         f"{report_tables.quantity(bush.peak, 'MPa')} at cam angle "
         f"{report_tables.quantity(bush.worst_angle, 'deg')} of load case {bush.worst_case}"
     )
+    zero = "0 deg where the pin presses"
+    model = "The pin is rigid along its axis, each slice of the bush an independent pin in a hole."
+    if "pivot_edge_pressure_foundation_MPa" in material.turn.columns:
+        zero = "0 deg in the plane of the couple of the contact"
+        model = "Pin and bush by finite elements; at a sharp end the pressure grows with the mesh."
     return (
         Picture(
             title,
             "Left: line load on the pin over the turn. Middle: pressure around the bore at the cam "
-            "angle of its maximum (dashed on the left), 0 deg where the pin presses; upwards the "
+            f"angle of its maximum (dashed on the left), {zero}; upwards the "
             "end that the couple of the contact presses. Right: slice of maximum pressure, drawn "
-            f"outwards from the bore. Maximum: {peak}. The pin is rigid along its axis, each slice "
-            "of the bush an independent pin in a hole.",
+            f"outwards from the bore. Maximum: {peak}. {model}",
             f"Maps of the pressure in the bush of the pivot; maximum {peak}.",
             "pivot-pressure",
             pressure_figures.drawn([bush]),

@@ -42,7 +42,7 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.records.check_record import CheckRecord
 from camwright.pipeline.records.forms import Depth
 
-Error = Literal["sampling", "contact", "ends", "guides", "guide_edges", "bore", "unknown"]
+Error = Literal["sampling", "contact", "ends", "guides", "guide_edges", "pivot", "bore", "unknown"]
 Bounded = Literal["", "crown", "line", "surge"]
 RestsOn = Literal["", "contact", "loads"]
 Page = Literal[

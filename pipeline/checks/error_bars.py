@@ -28,8 +28,8 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
     edges `GUIDE_EDGE_ERROR` besides. One on the contact has the greatest sum of difference and grid
     convergence index of its certified quantity, the sampling error, and that of the pressure in the
     middle of a crowned line over plane strain; one on the line of contact that of its factor
-    instead; one on the bore the change with a finer mesh. Without a certificate its error is not
-    known.
+    instead; one on the pin of a pivot or on the bore the change with a finer mesh. Without a
+    certificate the error of the contact is not known.
     """
     checks = tuple(checks)
     beam = [each.demand for each in checks if each.id == mesh_reaction.id]
@@ -45,6 +45,7 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
             "ends": None if plane is None else plane + length_error(solution),
             "guides": guides,
             "guide_edges": None if guides is None else guides + GUIDE_EDGE_ERROR,
+            "pivot": pivot_error(solution),
             "bore": solution.bore_error,
         }
         return _share(one, meshes)
@@ -97,6 +98,14 @@ def length_error(solution: Solution) -> float:
             if not cycle.signed_pressure[index] <= most * (1.0 + TIE):
                 error, most = float(cycle.length.error[index]), cycle.signed_pressure[index]
     return error
+
+
+def pivot_error(solution: Solution) -> float:
+    """Greatest relative discretisation error of the pin in the bush of a pivot over the load cases;
+    0 where it is not by finite elements.
+    """
+    solved = (cycle.pivot for cycle in solution.cycles)
+    return max((each.error for each in solved if each is not None), default=0.0)
 
 
 def _share(one: Check, meshes: Mapping[Error, float | None]) -> float | None:

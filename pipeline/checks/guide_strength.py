@@ -501,13 +501,13 @@ def _guide_edge_pressure(side: Place) -> Declaration:
         " the beam, with that of a forced tilt at right angles; modulus at 20 degC, an upper bound;"
         " yield strength at the temperature of the guide"
         if side != "pivot"
-        else "rigid pin in a bush with clearance in a rigid housing, tilted by the greatest moment"
-        " of the contact; modulus at 20 degC, an upper bound; yield strength at the temperature of"
-        " the bush; against elements in three dimensions 0 to 8 % more with the pin on one side of"
-        " the bush, a third more between both edges",
+        else "rigid pin in slices of a bush with clearance in a rigid housing, tilted by the"
+        " greatest moment of the contact; pin and bush by finite elements where the contact of the"
+        " cam is; modulus at 20 degC, an upper bound; yield strength at the temperature of the"
+        " bush",
         lift_can_help=True,
         tier=Tier.PREVIEW,
-        error="sampling" if side == "pivot" else "guide_edges",
+        error="pivot" if side == "pivot" else "guide_edges",
         part=seat.part,
         kept_as=f"line load of {seat.words} at the yield strength",
         formula="p <= R(T); p: greatest pressure between pin or stem and bore, where the line load"
@@ -536,7 +536,7 @@ def _guide_edge_pressure(side: Place) -> Declaration:
             return Demand(None, card.yield_strength, missing=missing)
         worst = greatest(solution.cycles, lambda cycle: _edge(cycle.parts, side))
         limit = _at_temperature(solution, side, worst.value, card.yield_strength_at)
-        return Demand(
+        demand = Demand(
             worst.value,
             limit.value,
             worst,
@@ -544,8 +544,33 @@ def _guide_edge_pressure(side: Place) -> Declaration:
             note="; ".join(limit.notes),
             source=card.source.of(f"yield strength of {card.name}"),
         )
+        return _by_elements(demand, solution) if side == "pivot" else demand
 
     return edge
+
+
+def _by_elements(demand: Demand, solution: Solution) -> Demand:
+    """Demand on the edge of the bush of a pivot with the method and figures of the finite elements
+    where it is one of them.
+    """
+    cycle, row = row_of(solution.cycles, demand.at or NOWHERE)
+    if cycle.pivot is None:
+        return demand
+    pivot = cycle.pivot
+    notes = (
+        f"{shown(float(pivot.foundation[row]), 'MPa', 3)} by a rigid pin in slices",
+        f"the pin tilts by {shown(float(pivot.tilt[row]), 'mrad', 3)}, its clearance included",
+        f"error bar {100.0 * pivot.error:.2g} % of two meshes",
+        f"solved at {pivot.solved} angles, between every second of which"
+        f" {100.0 * pivot.difference:.2g} % of the greatest are missed",
+    )
+    method = (
+        "pin and bush by finite elements along their axis and harmonics around it, in contact with"
+        " clearance under force and couple; bush bonded into a rigid housing, pin held along its"
+        " axis; at an end the mean over limits.end_mean_length; modulus at 20 degC, an upper bound;"
+        " yield strength at the temperature of the bush"
+    )
+    return replace(demand, method=method, note="; ".join(filter(None, (demand.note, *notes))))
 
 
 def _lacking_pin(machine: Machine, place: Place) -> tuple[str, ...]:

@@ -242,9 +242,19 @@ def _residual(
         worst = greatest(solution.cycles, measure)
         limit = CONTACT_EQUILIBRIUM if row is None else solution.machine.limits[row]
         at = Extreme(worst.value) if worst.value <= limit else worst
-        return Demand(worst.value, limit, at, stated={"d": worst.value})
+        pins = row is not EQUILIBRIUM and any(each.pivot is not None for each in solution.cycles)
+        note = "of the pin in the bush of the pivot, too" if pins else ""
+        return Demand(worst.value, limit, at, note=note, stated={"d": worst.value})
 
     return residual
+
+
+def _with_pivot(
+    residual: Array, cycle: Cycle, name: Literal["equilibrium", "complementarity"]
+) -> Array:
+    """Residual (n,) of the contact, at least that of the pin in the bush of a pivot."""
+    of_pin = 0.0 if cycle.pivot is None else float(getattr(cycle.pivot, name))
+    return np.maximum(np.abs(residual), of_pin)
 
 
 guide_equilibrium_force = _residual(
@@ -271,7 +281,7 @@ guide_equilibrium_moment = _residual(
 )
 contact_equilibrium = _residual(
     "contact_equilibrium",
-    lambda cycle: np.abs(cycle.contact.residual_equilibrium),
+    lambda cycle: _with_pivot(cycle.contact.residual_equilibrium, cycle, "equilibrium"),
     title="Force equilibrium residual of the contact",
     formula="d <= 1e-6; d: greatest |integral of p - P| / P of the solved angles, p: contact"
     " pressure, P: line load",
@@ -279,7 +289,7 @@ contact_equilibrium = _residual(
 )
 contact_complementarity = _residual(
     "contact_complementarity",
-    lambda cycle: np.abs(cycle.contact.residual_complementarity),
+    lambda cycle: _with_pivot(cycle.contact.residual_complementarity, cycle, "complementarity"),
     COMPLEMENTARITY,
     title="Complementarity residual of the contact",
     formula="d <= c; d: greatest of -p/p0, -g/h and p g/(p0 h) of the solved angles, p: pressure,"

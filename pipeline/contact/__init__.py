@@ -22,6 +22,7 @@ In the order of the calculation:
 | `contact_benchmarks` | benchmarks: NAFEMS R0094 and Hertz             | -                    |
 | `ring_body`          | outer ring of a bearing on balls               | N/m                  |
 | `pin_in_hole`        | conforming contact: Persson, complementarity   | p, Pa; phi, rad      |
+| `pin_in_bush`        | tilted pin in a bush of finite length, FE      | p, Pa; tilt, rad     |
 | `conforming_line`    | roller in a concave wall, over positions       | p0, Pa; a, m         |
 | `traction`           | stick zone, creepage, slip of a driven roller  | F_t, N; slip, m/s    |
 | `tangential_patch`   | finite-element template under tractions        | -                    |

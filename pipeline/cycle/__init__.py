@@ -14,6 +14,7 @@ In the order of the calculation:
 | `turn`               | loads and guide reactions of a load case        | F_n, N; T, N m         |
 | `elastic_response`   | follower on its elastic stem, loss of contact   | F, N; delta, m         |
 | `part_loads`         | guides, stem, spring, pin, ring, key, camshaft  | p, sigma, Pa; F, N     |
+| `pivot_history`      | pin in the bush of a pivot by finite elements   | p, Pa; tilt, rad       |
 | `oil_film_history`   | film thickness and its ratio to roughness       | h, m; lambda           |
 | `line_tilt`          | tilt of the line of contact, its parts          | rad                    |
 | `length_history`     | pressure along the line: ends, crown, tilt      | K, -; M, N m           |

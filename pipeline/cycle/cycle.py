@@ -12,6 +12,7 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.geometry.errors import ContactError
 from camwright.pipeline.base.kept_results import KeptResult
 from camwright.pipeline.base.tables import (
     CAM_ANGLE,
@@ -23,6 +24,7 @@ from camwright.pipeline.base.tables import (
     Tabled,
     table,
 )
+from camwright.pipeline.case.limits import END_MEAN_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
@@ -32,7 +34,14 @@ from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.crossover_history import WallImpact, impacts
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
 from camwright.pipeline.cycle.length_history import LengthHistory, TurnOfLine, length_histories
-from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, shaft_of, spring_surge
+from camwright.pipeline.cycle.part_loads import (
+    PartLoads,
+    PivotPush,
+    part_loads,
+    shaft_of,
+    spring_surge,
+)
+from camwright.pipeline.cycle.pivot_history import PivotHistory, pin_slopes, pivot_history
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.camshaft_loads import ShaftLoads
@@ -95,6 +104,8 @@ class Cycle(Tabled):
         cycle = replace(self, ends=correction)
         unchanged = (
             "parts",
+            "pin_slope",
+            "pivot",
             "shaft",
             "sideways",
             "elastic",
@@ -275,9 +286,42 @@ class Cycle(Tabled):
         return rolling_history(self.machine, self.pair, self.bodies, self.loads, self.surface)
 
     @KeptResult
+    def pin_slope(self) -> Array | None:
+        """Slope of the pin of a pivot in its bush per couple (n,), rad/(N m), by finite elements.
+
+        None in a preview, without a bush or load there, and where the loads end.
+        """
+        push = self._push(np.zeros(self.theta.size))
+        return None if push is None else pin_slopes(push, self._end_mean)
+
+    @KeptResult
+    def pivot(self) -> PivotHistory | None:
+        """Pin in the bush of a pivot by finite elements; None as for `pin_slope`, and where its
+        contact is not found.
+        """
+        push = self._push(self.follower_moment)
+        try:
+            return None if push is None else pivot_history(push, self._end_mean, self.theta)
+        except ContactError:
+            return None
+
+    def _push(self, moment: Array) -> PivotPush | None:
+        """Load of the pin of a pivot to be solved by finite elements, None where it is not; moment
+        (n,) of the contact about the middle of the follower, N m.
+        """
+        if self.contact.tier is not Tier.CYCLE or self.end is not None:
+            return None
+        return PivotPush.of(self.machine, self.loads, moment)
+
+    @property
+    def _end_mean(self) -> float:
+        """Length of a mean pressure at an end with a corner, m."""
+        return self.machine.limits[END_MEAN_LENGTH]
+
+    @KeptResult
     def parts(self) -> PartLoads:
         """Loads of guides, stem, spring, pin, key and shaft over the turn."""
-        return part_loads(
+        parts = part_loads(
             self.turn,
             self.contour,
             self.pair.width,
@@ -285,6 +329,9 @@ class Cycle(Tabled):
             self.guide_lines,
             self.follower_moment,
         )
+        if self.pivot is None:
+            return parts
+        return replace(parts, pivot_edge_pressure=self.pivot.edge_pressure)
 
     @KeptResult
     def shaft(self) -> ShaftLoads | None:
@@ -542,6 +589,8 @@ class Cycle(Tabled):
             load = Column("pivot_load", "N", "Load of the arm on its pivot")
             rubs = Column("pivot_friction", "N", "Friction of the pivot, at the reference point")
             columns |= {load: np.hypot(*loads.pivot_load), rubs: loads.pivot_friction}
+        if self.pivot is not None:
+            columns |= self.pivot.columns()
         if self.machine.arm is None:
             return columns
         return {each: v for each, v in columns.items() if not each.name.startswith(_OF_GUIDES)}
@@ -551,7 +600,7 @@ def turn_of_line(cycle: Cycle) -> TurnOfLine:
     """Inputs of the pressure along the line of contact of a cycle."""
     force = cycle.loads.normal_force
     turn = cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt
-    return TurnOfLine(*turn, np.hypot(*cycle.loads.pivot_load))
+    return TurnOfLine(*turn, np.hypot(*cycle.loads.pivot_load), cycle.pin_slope)
 
 
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:
@@ -596,6 +645,11 @@ class _ThinnedCycle(Cycle):
     @KeptResult
     def sideways(self) -> GuideReactions | None:
         return _at_every(self.whole.sideways, self.whole.theta.size, self.step)
+
+    @KeptResult
+    def pin_slope(self) -> Array | None:
+        slope = self.whole.pin_slope
+        return None if slope is None else slope[:: self.step]
 
     @KeptResult
     def rolling(self) -> RollingHistory:

@@ -83,8 +83,13 @@ PIVOT_ARRAYS = (
     *GUIDE_ARRAYS[:2],
     Column("position", "mm", "(k,) from the middle of the bush, towards the end that is pressed"),
     Column("line_load", "N/mm", "(n, k) on the pin there, negative on its other side"),
-    Column("worst_row", "", "row of the maximum line load"),
-    Column("bore_angle", "deg", "(m,) from the line of action of the line load"),
+    Column("worst_row", "", "row of the maximum line load; by finite elements of the pressure"),
+    Column(
+        "bore_angle",
+        "deg",
+        "(m,) from the line of action of the line load; by finite elements from the plane of the"
+        " couple",
+    ),
     Column("bore_pressure", "MPa", "(k, m) in the bore in that row"),
 )
 """Arrays of ``5_pivot.npz``."""
@@ -93,8 +98,27 @@ PIVOT_ARRAYS = (
 def pivot_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
     """Arrays of ``5_pivot.npz`` by the headers of `PIVOT_ARRAYS`; None without a bush.
 
-    Each slice of the bush is an independent pin in a hole.
+    By finite elements where every cycle has them; else each slice of the bush is an independent pin
+    in a hole.
     """
+    turned = {
+        "load_case": np.repeat([c.load_case for c in cycles], [c.theta.size for c in cycles]),
+        "cam_angle_deg": np.degrees(np.concatenate([c.theta for c in cycles])),
+    }
+    solved = [each.pivot for each in cycles if each.pivot is not None]
+    if len(solved) == len(cycles):
+        index = first_greatest([each.edge_pressure.max() for each in solved])
+        worst = solved[index]
+        row = worst.worst + sum(each.tilt.size for each in solved[:index])
+        half = worst.angles.size // 2
+        around = np.roll(worst.pressure, half, axis=0)
+        return turned | {
+            "position_mm": _MM * worst.places,
+            "line_load_N_per_mm": _N_PER_MM * np.concatenate([each.line for each in solved]),
+            "worst_row": np.array(row),
+            "bore_angle_deg": np.degrees(worst.angles[1] * np.arange(-half, half + 1)),
+            "bore_pressure_MPa": _MPA * np.concatenate([around, around[:1]]).T,
+        }
     pushes = [PivotPush.of(c.machine, c.loads, c.follower_moment) for c in cycles]
     pressed = [each for each in pushes if each is not None]
     if not pressed:
@@ -103,9 +127,7 @@ def pivot_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
     places = 0.5 * bush.length * np.linspace(-1.0, 1.0, SLICES)
     lines = np.concatenate([each.lines(places) for each in pressed], axis=1)
     row = first_greatest(np.abs(lines).max(axis=0))
-    return {
-        "load_case": np.repeat([c.load_case for c in cycles], [c.theta.size for c in cycles]),
-        "cam_angle_deg": np.degrees(np.concatenate([c.theta for c in cycles])),
+    return turned | {
         "position_mm": _MM * places,
         "line_load_N_per_mm": _N_PER_MM * lines.T,
         "worst_row": np.array(row),

@@ -43,7 +43,7 @@ from camwright.pipeline.cycle.line_tilt import (
     line_tilt,
     rigid_moment,
 )
-from camwright.pipeline.follower.follower_tilt import TiltingLoads
+from camwright.pipeline.follower.follower_tilt import FollowerTilt, TiltingLoads
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 from camwright.pipeline.follower.shaft_strength import slope_of
 from camwright.pipeline.follower.spring import NO_FORCE
@@ -201,7 +201,8 @@ class TurnOfLine(NamedTuple):
     """Inputs of the pressure along the line over one turn.
 
     force (n,): normal force, N; shaft (n,): slope of the camshaft at the cam, rad, as of
-    `Cycle.shaft_tilt`; pivot (n,): load of an arm on its pivot, N, 0 without one.
+    `Cycle.shaft_tilt`; pivot (n,): load of an arm on its pivot, N, 0 without one; pin (n,): slope
+    of its pin per couple, rad/(N m), by finite elements; None: on a foundation.
     """
 
     machine: Machine
@@ -210,6 +211,13 @@ class TurnOfLine(NamedTuple):
     guides: GuideReactions
     shaft: Array
     pivot: Array
+    pin: Array | None = None
+
+    @property
+    def tilting(self) -> FollowerTilt:
+        """Compliance and clearance by which the follower tilts; see `Machine.tilting`."""
+        tilting = self.machine.tilting
+        return tilting if self.pin is None else tilting.on_pin(self.pin)
 
     @property
     def rows(self) -> NDArray[np.intp]:
@@ -228,8 +236,8 @@ class TurnOfLine(NamedTuple):
             base_radius=machine.base_radius,
             clearance=machine.limits[ROLLER_CLEARANCE],
             bearing_length=None if follower.slides else follower.line_width,
-            guides=machine.tilting.within(machine.guides.spacing),
-            twist=machine.tilting.turned(self.pressed, machine.stem_offset),
+            guides=self.tilting.within(machine.guides.spacing),
+            twist=self.tilting.turned(self.pressed, machine.stem_offset),
         )
 
     @property
@@ -240,14 +248,14 @@ class TurnOfLine(NamedTuple):
         radius = self.contact.relative_radius[rows]
         return ContactLoads(
             1.0 / radius, force, tilt.greatest[rows], tilt.forced[rows],
-            np.full(rows.size, self.tilt_compliance), self.couple[rows],
+            np.broadcast_to(self.tilt_compliance, self.force.shape)[rows], self.couple[rows],
             raised_load(force),
         )  # fmt: skip
 
     @property
     def held(self) -> Array:
         """Couple (n,), N m, that friction of the guides or the load of a pivot holds."""
-        return self.machine.tilting.held(self.pressed)
+        return self.tilting.held(self.pressed)
 
     @property
     def pressed(self) -> TiltingLoads:
@@ -282,11 +290,13 @@ class TurnOfLine(NamedTuple):
         return follower_moment(line, forced, held, self.aside)
 
     @property
-    def tilt_compliance(self) -> float:
-        """Slope of stem or arm and camshaft together under the moment of the contact, rad/(N m)."""
-        machine, guides = self.machine, self.machine.guides
-        reach = machine.overhang_at_max_lift
-        return float(moment_compliance(machine, reach, guides.spacing))
+    def tilt_compliance(self) -> Value:
+        """Slope of stem or arm and camshaft together under the moment of the contact, rad/(N m); of
+        a pin by finite elements at each angle (n,).
+        """
+        machine = self.machine
+        follower = self.tilting.compliance(machine.overhang_at_max_lift, machine.guides.spacing)
+        return follower + camshaft_compliance(machine)
 
     def history(self, solved: FactorRange | None) -> LengthHistory:
         """Pressure along the line over the turn from the factors at the angles with contact; None:
@@ -368,7 +378,7 @@ class ContactLoads(NamedTuple):
     """Curvature, force and moment of contacts, all (count,).
 
     curvature, 1/m, > 0; force, N, > 0; tilt, forced: greatest and forced, rad, see `LineTilt`;
-    compliance: of stem and shaft, see `moment_compliance`; couple: greatest that friction and axial
+    compliance: of follower and shaft, see `TurnOfLine`; couple: greatest that friction and axial
     offset can hold, N m; raised: factor that raises vanishing loads, see `raised_load`.
     """
 
@@ -413,17 +423,6 @@ def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> F
     corner = np.where(worse, tilts[0].at_corner, tilts[-1].at_corner)
     at_corner = np.where(level.value > tilted, level.at_corner, corner)
     return FactorRange(level.centre, level.value, tilted, moment / raised, at_corner)
-
-
-def moment_compliance(machine: Machine, overhang: Value, spacing: Value) -> Value:
-    """Slope of stem or arm and camshaft per moment of the contact (...), rad/(N m).
-
-    Parameters
-    ----------
-    overhang : float or array   of the stem at maximum lift, m: where it is shortest
-    spacing : float or array    of the guides, m
-    """
-    return machine.tilting.compliance(overhang, spacing) + camshaft_compliance(machine)
 
 
 def camshaft_compliance(machine: Machine) -> float:

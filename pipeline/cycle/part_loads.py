@@ -227,8 +227,13 @@ class PivotPush(NamedTuple):
         return cls(bush, pin, np.abs(pressed), couple, aside / bush.length)
 
     @property
+    def size(self) -> Array:
+        """Load of the pin (n,), N."""
+        return np.hypot(self.force, self.beside * self.bush.length)
+
+    @property
     def edge_pressure(self) -> Array:
-        """Greatest pressure (n,) between pin and bush, Pa."""
+        """Greatest pressure (n,) between pin and bush, Pa, by the slices of a rigid pin."""
         pressed = pressed_bush(self.bush, self.force, self.couple)
         load = np.hypot(pressed.line_load, self.beside)
         return _in_bore(self.pin, self.bush, self.bush.diameter)(load)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -52,6 +52,10 @@ class FollowerTilt(Protocol):
         """Tilt (...), rad, by the contact force at an offset from the follower's middle, m."""
         ...
 
+    def on_pin(self, slope: Value) -> FollowerTilt:
+        """The same with a slope of the pin of a pivot in its bush per couple, rad/(N m)."""
+        ...
+
 
 @dataclass(frozen=True)
 class StemTilt:
@@ -78,6 +82,10 @@ class StemTilt:
         """Zero: it turns back within the clearances; see `FollowerTilt`."""
         return np.zeros(loads.force.shape)
 
+    def on_pin(self, slope: Value) -> StemTilt:  # noqa: ARG002
+        """Unchanged: it has no pivot."""
+        return self
+
 
 @dataclass(frozen=True)
 class ArmTilt:
@@ -91,11 +99,13 @@ class ArmTilt:
     twist : float    slope of its end per couple there, rad/(N m)
     offset : float   of its middle from that of the roller, m
     bush : Guide     of its pivot; None: of needles, or not described
+    pin : float      slope of the pin in its bush per couple, rad/(N m); None: on its foundation
     """
 
     twist: Value
     offset: Value
     bush: Guide | None
+    pin: Value | None = None
 
     def within(self, spacing: Value) -> Value:
         """Clearance over the length of the bush; see `FollowerTilt`."""
@@ -107,6 +117,8 @@ class ArmTilt:
         """Twist of the arm and of the pin on its bush per couple, rad/(N m)."""
         if self.bush is None:
             return self.twist
+        if self.pin is not None:
+            return self.twist + self.pin
         return self.twist + 12.0 / (self.bush.foundation_modulus * self.bush.length**3)
 
     def compliance(self, overhang: Value, spacing: Value) -> Value:
@@ -124,6 +136,10 @@ class ArmTilt:
     def turned(self, loads: TiltingLoads, offset: Value) -> Array:
         """Elastic part alone: the clearance is in `within`; see `FollowerTilt`."""
         return np.asarray(self.slope * np.maximum(loads.force, 0.0) * (offset + self.offset))
+
+    def on_pin(self, slope: Value) -> ArmTilt:
+        """See `FollowerTilt`."""
+        return replace(self, pin=slope)
 
 
 def arm_tilt(arm: FollowerArm, bar: ArmBar | None, bush: Guide | None) -> ArmTilt | None:

@@ -260,7 +260,7 @@ def put(result: Any, **values: Any) -> Any:
     )
 
 
-RESULTS = ("length", "rolling", "parts", "elastic")
+RESULTS = ("length", "rolling", "parts", "pin_slope", "pivot", "elastic")
 
 
 def with_results(cycle: Cycle, **results: Any) -> Cycle:
@@ -332,6 +332,8 @@ def cycle(
         "length": _length(),
         "rolling": _rolling(base),
         "parts": _parts(base),
+        "pin_slope": None,
+        "pivot": None,
         "elastic": _elastic(base),
     }
     return changed_cycle(base, **(plain | values))

@@ -4,6 +4,7 @@ The balance takes nothing from the formulas of a pivot: the contact force is at 
 contour, accelerations are differences of positions.
 """
 
+from dataclasses import replace
 from functools import cache, partial
 
 import made_trial as made
@@ -12,9 +13,12 @@ import pytest
 
 from camwright.geometry.lift import Jet
 from camwright.pipeline.checks import guide_strength, guide_wear, pivot_bearing
+from camwright.pipeline.checks.error_bars import with_error_bars
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.guide_pressure import pivot_arrays
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.pivot_history import PivotHistory
 from camwright.pipeline.cycle.solution import solution as solve
 
 LENGTH, PIN = 0.060, 0.010  # of the made-up arm and diameter of its pin, m
@@ -151,3 +155,57 @@ def test_measures_are_differentiated_by_a_complex_step(name):
     near, far = (measured(k * h) - measured(-k * h) for k in (1.0, 2.0))
     difference = (8.0 * near - far) / (12.0 * h)
     np.testing.assert_allclose(exact, difference, rtol=0, atol=1e-8 * np.abs(difference).max())
+
+
+def by_elements(**values):
+    """The made-up solution with a pin in its bush by made-up finite elements."""
+    base = made.cycle(made.arm_contour())
+    wave = 1.0 + made.WAVE
+    pressure = np.zeros((8, 3))
+    pressure[0, 2] = 1.0
+    figures = {
+        "edge_pressure": 10e6 * wave, "foundation": 14e6 * wave, "tilt": 1e-3 * wave,
+        "line": 1e3 * wave[:, None] * np.array([-1.0, 0.0, 2.0]), "places": np.linspace(-1, 1, 3),
+        "angles": 0.25 * np.pi * np.arange(8), "pressure": 20e6 * pressure,
+        "worst": int(np.argmax(wave)), "coarse": 19e6, "solved": 30, "difference": 0.004,
+        "equilibrium": 1e-12, "complementarity": 1e-13,
+    }  # fmt: skip
+    pivot = PivotHistory(**(figures | values))
+    parts = replace(base.parts, pivot_edge_pressure=pivot.edge_pressure)
+    cycle = made.changed_cycle(base, pivot=pivot, parts=parts)
+    return made.arm_solution(cycles=(cycle,))
+
+
+def test_edge_pressure_by_elements_has_the_foundation_and_two_meshes_beside_it():
+    """19 MPa on the coarse mesh and 20 on the fine one: 3/20 of error."""
+    solution = by_elements()
+    demand = guide_strength.pivot_edge_pressure(solution).demand
+    check = DECLARED["pivot_edge_pressure"](solution)
+    assert check.demand == demand == pytest.approx(20e6)
+    assert "28 MPa by a rigid pin in slices" in check.note
+    assert "tilts by 2 mrad" in check.note and "15 % of two meshes" in check.note
+    assert "finite elements along their axis" in check.method
+    (barred,) = with_error_bars(solution, [check])
+    assert barred.error_share == pytest.approx(0.15, abs=2e-3)
+    assert "finite elements" not in DECLARED["pivot_edge_pressure"](made.arm_solution()).note
+
+
+@pytest.mark.parametrize("name", ["equilibrium", "complementarity"])
+def test_residuals_of_the_contact_are_those_of_the_pin_too(name):
+    plain = DECLARED[f"contact_{name}"](by_elements())
+    assert plain.demand < 1e-8
+    assert DECLARED[f"contact_{name}"](by_elements(**{name: 1e-3})).demand == 1e-3
+
+
+def test_file_of_the_pivot_by_elements():
+    """Around the bore from -180 to 180 deg, the row of the greatest pressure, sizes with signs."""
+    (cycle,) = by_elements().cycles
+    arrays = pivot_arrays([cycle])
+    assert arrays["bore_angle_deg"].tolist() == pytest.approx([45.0 * k for k in range(-4, 5)])
+    assert arrays["bore_pressure_MPa"].shape == (3, 9)
+    assert arrays["bore_pressure_MPa"][2, 4] == pytest.approx(20.0)
+    row = int(arrays["worst_row"])
+    assert arrays["line_load_N_per_mm"][row].tolist() == pytest.approx([-2.0, 0.0, 4.0])
+    columns = {each.name: values for each, values in cycle.columns().items()}
+    assert columns["pivot_edge_pressure_foundation"].max() == pytest.approx(28e6)
+    assert columns["pivot_tilt"].max() == pytest.approx(2e-3)

@@ -29,6 +29,7 @@ from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.part_loads import PivotPush
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.arm_beam import ArmBar, torsion_of_rectangle
+from camwright.pipeline.follower.follower_tilt import StemTilt
 from camwright.pipeline.follower.guide_contact import BearingLine, settle
 from camwright.pipeline.follower.guide_reactions import Guide, lobatto
 from camwright.pipeline.follower.pivot_bush import bush_lines, pressed_bush
@@ -419,6 +420,21 @@ def test_an_arm_tilts_in_the_bush_of_its_pivot():
     assert turn.tilt_compliance == pytest.approx(yields, rel=1e-6)
     stiff = trial().solution.cycles[0]
     assert (turn.tilt.greatest > turn_of_line(stiff).tilt.greatest).all()
+
+
+def test_a_pin_by_finite_elements_tilts_the_line_in_place_of_its_foundation():
+    """Its slope per couple at each angle, in the twist and in what yields to a forced tilt."""
+    solution = trial("with", "0 mm", PIVOT).solution
+    cycle, bar = solution.cycles[0], bar_of(solution.numbers)
+    pin = 1e-5 * (2.0 + np.cos(cycle.theta))
+    turn = turn_of_line(cycle)._replace(pin=pin)
+    beside = cycle.loads.normal_force * (0.004 + solution.machine.stem_offset)
+    np.testing.assert_allclose(turn.tilt.twist, (bar.couple_compliance + pin) * beside, rtol=1e-12)
+    yields = bar.couple_compliance + pin + slope_of(solution.machine.camshaft).couple
+    np.testing.assert_allclose(turn.tilt_compliance, yields, rtol=1e-12)
+    np.testing.assert_allclose(turn.loads.compliance, yields[turn.rows], rtol=1e-12)
+    stem = StemTilt(solution.machine.stem, solution.machine.guides)
+    assert stem.on_pin(pin) is stem
 
 
 @pytest.mark.parametrize("swing", ["with", "against"])

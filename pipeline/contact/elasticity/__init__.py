@@ -8,6 +8,7 @@ In the order of the calculation:
 | `halfplane`             | half-plane under point force and pressure | u E'/P, -; sigma/P, 1/m |
 | `radial_compliance`     | pin and bush under harmonic pressures     | w_n, 1/Pa               |
 | `sparse_factor`         | factorisation of sparse matrices          |                         |
+| `round_body`            | round body under harmonics, FE along it   | u E/p, -                |
 | `elastic_body`          | finite-element body, condensation, stress | u, m; sigma, Pa         |
 | `fitted_stress`         | stress fitted to displacements    | sigma, Pa               |
 | `pressure_distribution` | pressure shapes, fitted ellipse           | p, Pa; p0, Pa; a, m     |
