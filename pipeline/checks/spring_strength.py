@@ -63,6 +63,7 @@ from camwright.pipeline.follower.spring import (
 from camwright.pipeline.follower.spring_kinds import (
     ATMOSPHERE,
     CHARGED_AT,
+    HOOKED_SHARES,
     ExtensionSpring,
     GasSpring,
     SpringPart,
@@ -995,16 +996,23 @@ def _of_extension(demand: Demand, solution: Solution) -> Demand:
 
 
 _HOOKED = "spring.extension"
+_HOOKED_TABLE = Source(
+    "shares of R_m, body 45 to 50 %, ends 40 % in torsion and 75 % in bending, of austenitic wire"
+    " 35, 30 and 55 %: amesweb.info, Maximum allowable stresses for coil extension springs, as"
+    " Shigley, table 10-7, p. 529; hooks 40 to 45 and 75 %: a maker, tinmy.cn, Custom extension"
+    " springs",
+    confirmed=True,
+)
 _LOOSE = "A hook or coil that breaks or sets releases the follower."
 _F = "F: force of the spring at maximum lift, preload and rate high"
 
 
 def _extension_check(
-    name: str, measure: Measure, share: float, *needed: str, title: str, source: Source,
+    name: str, measure: Measure, share: str, *needed: str, title: str, source: Source,
     formula: str,
 ) -> Declaration:  # fmt: skip
     """Check of a stress of an extension spring against a `share` of the tensile strength of its
-    wire; needed: other keys without which it is not known.
+    wire, by its name in `HookedShares`; needed: other keys without which it is not known.
     """
 
     def allowed(numbers: Numbers) -> Allowed:
@@ -1012,7 +1020,10 @@ def _extension_check(
         strength = numbers.get(f"{_HOOKED}.tensile_strength")
         keys = (f"{_HOOKED}.{each}" for each in ("tensile_strength", *needed))
         missing = tuple(each for each in keys if numbers.get(each) is None)
-        return Allowed(None if strength is None else share * strength, missing)
+        hooked = numbers.known_case.spring.extension
+        if strength is None or hooked is None:
+            return Allowed(None, missing)
+        return Allowed(getattr(HOOKED_SHARES[hooked.wire_kind], share) * strength, missing)
 
     return _shaped_check(
         name, measure, allowed, _of_extension, part="extension_spring", title=title, source=source,
@@ -1024,37 +1035,30 @@ def _extension_check(
 extension_stress = _extension_check(
     "extension_stress",
     lambda cam: _extension(cam).body_stress(cam.hardest.greatest),
-    0.45,
+    "body",
     title="Maximum shear stress of the coils of the extension spring",
-    source=Source(
-        "0.45 R_m: EN 13906-2, and Shigley, table 10-7: 45 to 50 % in the body, both recalled",
-        confirmed=False,
-    ),
-    formula="K_w 8 D F / (pi d^3) <= 0.45 R_m; K_w = (4 C - 1)/(4 C - 4) + 0.615/C, C = D/d,"
-    f" R_m: tensile strength of the wire, {_F}",
+    source=_HOOKED_TABLE,
+    formula="K_w 8 D F / (pi d^3) <= c R_m; K_w = (4 C - 1)/(4 C - 4) + 0.615/C, C = D/d, c = 0.45,"
+    f" 0.35 of austenitic wire, R_m: tensile strength of the wire, {_F}",
 )
 extension_hook_bending = _extension_check(
     "extension_hook_bending",
     lambda cam: _extension(cam).hook_bending(cam.hardest.greatest),
-    0.75,
+    "bending",
     title="Maximum normal stress of the hook of the extension spring",
-    source=Source(
-        "0.75 R_m in bending of the ends: Shigley, table 10-7, recalled", confirmed=False
-    ),
-    formula="F (K_A 16 D/(pi d^3) + 4/(pi d^2)) <= 0.75 R_m; K_A = (4 C^2 - C - 1)/(4 C (C - 1)),"
-    f" C = 2 r_1/d, r_1: mean radius of the hook, {_F}",
+    source=_HOOKED_TABLE,
+    formula="F (K_A 16 D/(pi d^3) + 4/(pi d^2)) <= c R_m; K_A = (4 C^2 - C - 1)/(4 C (C - 1)), C ="
+    f" 2 r_1/d, r_1: mean radius of the hook, c = 0.75, 0.55 of austenitic wire, {_F}",
 )
 extension_hook_torsion = _extension_check(
     "extension_hook_torsion",
     lambda cam: _extension(cam).hook_torsion(cam.hardest.greatest),
-    0.40,
+    "torsion",
     "side_radius",
     title="Maximum shear stress of the bend from the coils to the hook",
-    source=Source(
-        "0.40 R_m in torsion of the ends: Shigley, table 10-7, recalled", confirmed=False
-    ),
-    formula="K_B 8 D F/(pi d^3) <= 0.40 R_m; K_B = (4 C - 1)/(4 C - 4), C = 2 r_2/d, r_2: mean"
-    f" radius of the bend, {_F}",
+    source=_HOOKED_TABLE,
+    formula="K_B 8 D F/(pi d^3) <= c R_m; K_B = (4 C - 1)/(4 C - 4), C = 2 r_2/d, r_2: mean radius"
+    f" of the bend, c = 0.40, 0.30 of austenitic wire, {_F}",
 )
 extension_fatigue = check(
     SPRING_FATIGUE,
@@ -1069,7 +1073,8 @@ extension_fatigue = check(
     formula="1 / max(tau_a/S_e + tau_m/(0.67 R_m), 0.577 s_a/S_e + s_m/R_m) >="
     " limits.spring_fatigue; tau: shear stress with the greater of K_w and K_B, s: normal stress of"
     " the hook, _a and _m amplitude and mean, S_e: endurance by Zimmerli's point of a wire that is"
-    " not peened; as of `spring_fatigue`, `extension_hook_bending`, `extension_hook_torsion`",
+    " not peened, of the hook at most 0.577 of that of 0.45 R_m from zero at 1e7 strokes; as of"
+    " `spring_fatigue`, `extension_hook_bending`, `extension_hook_torsion`",
     reason=_LOOSE,
     load_cases=NONE,
     values=given.SPRING,
@@ -1106,7 +1111,8 @@ extension_initial_tension = check(
     title="Initial tension of the extension spring",
     unit="N",
     source=Source(
-        "range of the initial stress of coiling: Shigley, eq. 10-41, recalled", confirmed=False
+        "upper end of what a maker winds in routinely: Shigley, eq. 10-41, read second-hand",
+        confirmed=False,
     ),
     method="stated value against the preload with its tolerance low, and what coiling gives",
     lift_can_help=False,

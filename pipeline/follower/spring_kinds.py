@@ -44,6 +44,9 @@ STROKE_SHARE = 0.995
 """Share of the lift to the singularity of a force up to which the law holds; tangent beyond."""
 DISTORTION_ENERGY = 0.577
 """Shear strength over tensile strength by the distortion energy."""
+_PULSATING_HOOK = 0.45
+"""Greatest bending stress of a hook over the tensile strength for 1e7 strokes from zero, of music
+and stainless wire, not peened."""
 _ANY_TRAVEL = 100.0  # m, beyond that of the end of any arm
 _NEWTON_ROUNDS = 100  # of the lift from its energy, at most
 _LIFT_CONVERGED = 1e-13
@@ -584,6 +587,22 @@ class HookedWire(WoundWire[float]):
     treatment: Treatment = "plain"
 
 
+class HookedShares(NamedTuple):
+    """Permissible stresses of an extension spring over the tensile strength of its wire: torsion of
+    the coils and of the bend to the hook, bending of the hook.
+    """
+
+    body: float
+    torsion: float
+    bending: float
+
+
+HOOKED_SHARES: Mapping[str, HookedShares] = MappingProxyType(
+    {"steel": HookedShares(0.45, 0.40, 0.75), "austenitic": HookedShares(0.35, 0.30, 0.55)}
+)
+"""By the kind of wire."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class ExtensionSpring(SpringShape):
     """Extension spring of round wire with hooks, wound with an initial tension.
@@ -597,8 +616,10 @@ class ExtensionSpring(SpringShape):
 
     References
     ----------
-    EN 13906-2 (rate, body); Shigley's Mechanical Engineering Design, sec. 10-11 (hooks, initial
-    tension), both recalled.
+    EN 13906-2 (rate, body), recalled; Shigley's Mechanical Engineering Design, eqs 10-34 to 10-37
+    (hooks) and 10-41 (initial tension), read second-hand. Fatigue of the hook: amesweb.info,
+    Maximum allowable stresses for coil extension springs, after Standard Handbook of Machine
+    Design, p. 24.34.
     """
 
     table: ClassVar[str] = "spring.extension"
@@ -627,6 +648,9 @@ class ExtensionSpring(SpringShape):
     tensile_strength: Annotated[
         WireStrength | None, Known("EN 10270-1 for the wire diameter", "1700 MPa")
     ] = None
+    wire_kind: Annotated[Literal["steel", "austenitic"], Known("spring drawing", "steel")] = "steel"
+    """carbon or low-alloy steel; or austenitic stainless steel or a nonferrous alloy, which bears
+    less of its tensile strength"""
     source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
@@ -709,7 +733,7 @@ class ExtensionSpring(SpringShape):
         radius of the bend.
 
         The torsion of coils and bend has the line of the wire; the bending of the hook has the
-        endurance of torsion over 0.577 and the tensile strength.
+        tensile strength and the endurance of torsion over 0.577, or that of hooks, the lower.
 
         Parameters
         ----------
@@ -721,7 +745,11 @@ class ExtensionSpring(SpringShape):
         twist = max(twist, 1.0)
         torsion = wire.fatigue_use(twist * least, twist * greatest)
         low, high = self.hook_bending(least), self.hook_bending(greatest)
-        endurance = wire.fatigue_strengths[0] / DISTORTION_ENERGY
+        pulsating = 0.5 * _PULSATING_HOOK
+        endurance = np.minimum(
+            wire.fatigue_strengths[0] / DISTORTION_ENERGY,
+            wire.tensile_strength * pulsating / (1.0 - pulsating),
+        )
         bending = 0.5 * (high - low) / endurance + 0.5 * (high + low) / wire.tensile_strength
         worse = np.real(bending) > np.real(torsion)
         return np.asarray(np.where(worse, bending, torsion))

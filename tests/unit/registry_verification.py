@@ -244,9 +244,7 @@ by_limit(
     1.0
     / max(
         COILED * (0.5 * (PULLED - LOW) / ENDURANCE + 0.5 * (PULLED + LOW) / (0.67 * 1600.0)),
-        BENT_HOOK
-        / PULLED
-        * (0.5 * (PULLED - LOW) * 0.577 / ENDURANCE + 0.5 * (PULLED + LOW) / 1600.0),
+        BENT_HOOK / PULLED * (0.5 * (PULLED - LOW) * 0.775 / 0.225 + 0.5 * (PULLED + LOW)) / 1600.0,
     ),
     "Goodman of coils, bend and hook",
     base=with_extension_spring,
