@@ -325,11 +325,16 @@ def describes(mark: object) -> bool:
 
 @dataclass(frozen=True)
 class Resolved:
-    """Key of a table without a field, such as ``card``, replaced on reading by what it names."""
+    """Key of a table without a field, such as ``card``, replaced on reading by what it names.
+
+    A number has the quantity, and in `follows` the dotted key of the value that follows from it.
+    """
 
     accepted: str
     meaning: str
     known: Known
+    quantity: In | None = None
+    follows: str = ""
 
 
 def card_of(meaning: str, file: str, example: str) -> Mapping[str, Resolved]:

@@ -21,7 +21,12 @@ from camwright.pipeline.case.arm_tables import with_arm
 from camwright.pipeline.case.cards.card_filling import fill_cards
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
-from camwright.pipeline.case.case_values import quantity_of, refused_as_written, steps_of
+from camwright.pipeline.case.case_values import (
+    following,
+    quantity_of,
+    refused_as_written,
+    steps_of,
+)
 from camwright.pipeline.case.closure_tables import with_closure
 from camwright.pipeline.case.consistency import check_sections
 from camwright.pipeline.case.error_text import MissingKeysError, Written, refusal_of
@@ -146,6 +151,9 @@ def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
         If a key is unknown, or the case is refused; by its dotted name.
     """
     tables = tables_of(case)
+    for key in following(values):
+        if key not in values:
+            leave_out(tables, key)
     for key, value in values.items():
         quantity = quantity_of(key)
         if isinstance(value, float) and isinstance(quantity, In) and quantity.unit:
@@ -169,6 +177,15 @@ def enter(tables: Tables, key: str, value: TomlValue) -> None:
     if not isinstance(table, dict) or isinstance(last, int):
         raise InputError("factor", key, "a value in a table of the case")
     table[last] = value
+
+
+def leave_out(tables: Tables, key: str) -> None:
+    """Remove the value of a dotted key from the tables of a case, in place, where it is there."""
+    *path, last = steps_of(key)
+    table: Any = tables
+    for step in path:
+        table = table.get(step, {})
+    table.pop(last, None)
 
 
 def _cards(tables: TomlValue | None) -> dict[str, Material]:

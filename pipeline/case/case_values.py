@@ -67,7 +67,15 @@ def unit_at(key: str) -> str:
 
 
 def _fields_at(path: str) -> tuple[Key, ...]:
-    return tuple(each for each in keys_at(path) if each.is_field)
+    return tuple(each for each in keys_at(path) if each.is_field or each.mark is not None)
+
+
+def following(keys: Iterable[str]) -> list[str]:
+    """Keys whose values follow from others of the case file, such as a prime radius from a start
+    angle.
+    """
+    every = (each for key in keys for each in keys_at(key))
+    return [each.follows for each in every if each.follows]
 
 
 def _fields_along(key: str, names: Iterable[str]) -> tuple[Key, ...]:

@@ -82,7 +82,14 @@ class Key:
     @cached_property
     def mark(self) -> In | Count | None:
         """Unit and bounds of its number; None for other values."""
-        return number_in(self._info) if self.is_field and not self.is_table else None
+        if not self.is_field:
+            return self._resolved.quantity
+        return None if self.is_table else number_in(self._info)
+
+    @property
+    def follows(self) -> str:
+        """Key that follows from it, which a case with it leaves out; "": none."""
+        return "" if self.is_field else self._resolved.follows
 
     @cached_property
     def accepted(self) -> str:

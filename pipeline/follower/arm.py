@@ -46,12 +46,16 @@ class FollowerArm(Part):
             "angle at the pivot from the line to the cam axis to the arm at zero lift, in place of"
             " `cam.prime_radius`, which follows from it",
             Known("drawing", "35 deg"),
+            In("deg", above=0, below=180),
+            "cam.prime_radius",
         ),
         "inertia": Resolved(
             "> 0 kg m^2",
             "moment of inertia of all that swings about the pivot, in place of `follower.mass`,"
             " which follows from it",
             Known("drawing, or measured", "0.005 kg m^2"),
+            In("kg m^2", above=0),
+            "follower.mass",
         ),
     }
 

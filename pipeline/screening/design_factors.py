@@ -19,7 +19,14 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import with_values
-from camwright.pipeline.case.case_values import WIRE, quantity_of, replaced, value_of, wound_spring
+from camwright.pipeline.case.case_values import (
+    WIRE,
+    following,
+    quantity_of,
+    replaced,
+    value_of,
+    wound_spring,
+)
 from camwright.pipeline.case.consistency import At, check_numbers, rules
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.machine import machine
@@ -156,7 +163,12 @@ def groups(case: Case, factors: Mapping[str, Factor]) -> Iterator[Group]:
     """
     count = count_of(factors)
     quantities = {key: quantity_of(key) for key in factors}
-    shared = [key for key, values in factors.items() if not is_array(case, key, values)]
+    follows = following(factors)
+    # what follows, of the distances from which it follows
+    tied = {*_OF_ARC, *follows} if follows else set()
+    shared = [
+        key for key, values in factors.items() if key in tied or not is_array(case, key, values)
+    ]
     together: dict[tuple[TomlValue, ...], list[int]] = {}
     for row in range(count):
         together.setdefault(tuple(_plain(factors[key][row]) for key in shared), []).append(row)

@@ -24,10 +24,13 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import drawn_angles, lift_columns
 from camwright.pipeline.results.verdict_summary import missing_keys
 from camwright.pipeline.results.workshop_files import dimensions_record, notes_of
+from camwright.pipeline.screening.design_factors import groups
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.screening.screened_checks import SCREENED
 from camwright.pipeline.smoothing.infeasibility import _candidates
 from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.studies.batch.factor_axes import axis_of
+from camwright.pipeline.studies.batch.study_file import Factor
 from camwright.reports.drawing.arrangement import (
     DrawnArm,
     DrawnMechanism,
@@ -97,6 +100,27 @@ def test_the_mass_follows_from_the_moment_of_inertia():
     for wrong in ("0 kg m^2", "1 kg"):
         with pytest.raises(InputError, match=r"follower\.arm\.inertia"):
             parse_case(whole.replace("0.011 kg m^2", wrong))
+
+
+def test_start_angle_and_inertia_are_factors():
+    """With the distances of which prime radius and mass follow: the cosine rule, J/l^2."""
+    case = parse_case(text())
+    start, inertia = np.radians([33.0, 35.0]), np.array([0.012, 0.013])
+    distance, length = np.array([0.115, 0.112]), np.array([0.095, 0.102])
+    factors = {
+        "follower.arm.start_angle": start, "follower.arm.inertia": inertia,
+        "follower.arm.centre_distance": distance, "follower.arm.length": length,
+    }  # fmt: skip
+    prime = np.sqrt(distance**2 + length**2 - 2.0 * distance * length * np.cos(start))
+    for group in groups(case, factors):
+        (row,) = group.rows
+        assert not group.values
+        assert group.case.cam.prime_radius == pytest.approx(prime[row], rel=1e-12)
+        assert group.case.follower.mass == pytest.approx((inertia / length**2)[row], rel=1e-12)
+    (both,) = groups(case, {"follower.arm.start_angle": start[:1], "cam.prime_radius": prime[:1]})
+    assert "left out with cam.prime_radius" in both.refused
+    swept = Factor(key="follower.arm.start_angle", list=["33 deg", "0.6 rad"])
+    np.testing.assert_allclose(axis_of(swept, case).levels, [33.0, np.degrees(0.6)])
 
 
 def test_angles_of_swing_are_arcs():
