@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -248,18 +249,41 @@ def _bush_findings(case: Case) -> Iterator[Implied | None]:
 def _balance_finding(case: Case) -> Implied | None:
     """Finding on the unbalance that a balancing bench leaves on the camshaft, as a balance grade,
     residual over rotor mass times cam speed; None where it is usual, zero or not stated.
+
+    Without a stated mass that of the cam up to its base circle and of the shaft between its
+    bearings, above which the grade is finer still: a coarse one is not told then.
     """
     key, other = "camshaft.counterweight.residual", "camshaft.rotor_mass"
     residual, mass = value_of(case, key), value_of(case, other)
-    if residual is None or mass is None:
+    if residual is None:
         return None
+    least = _least_rotor_mass(case)
+    words = (
+        f"{other} = {text_of(case, other)}"
+        if mass is not None
+        else (f"{shown(least, 'g')} of cam and shaft alone")
+    )
     fastest = max(state.speed for state in case.load_cases) / case.mechanism.gear_ratio
-    grade = residual / mass * fastest
+    grade = residual / (least if mass is None else mass) * fastest
     if not grade > 0.0:
         return None
-    text = f"{key} = {text_of(case, key)}: at {other} = {text_of(case, other)} and"
+    text = f"{key} = {text_of(case, key)}: at {words} and"
     text += f" {shown(fastest, 'rpm')} of the cam a grade of G {in_unit(grade, 'mm/s'):.2g}"
-    return _usual("balance_grade").finding(key, grade, text)
+    usual = _usual("balance_grade")
+    if mass is None and in_unit(grade, usual.unit) > usual.low:
+        return None
+    return usual.finding(key, grade, text)
+
+
+def _least_rotor_mass(case: Case) -> float:
+    """Mass of the cam up to its base circle and of the shaft between its bearings, kg."""
+    cam, shaft = case.cam, case.camshaft
+    ring = max(case.base_circle, cam.bore_radius) ** 2 - cam.bore_radius**2
+    mass = pi * cam.material.density * ring * cam.width
+    if shaft is None or shaft.diameter is None:
+        return mass
+    card = cam.material if shaft.material is None else shaft.material
+    return mass + 0.25 * pi * card.density * shaft.diameter**2 * shaft.bearing_spacing
 
 
 _OIL_DENSITY = 870.0  # kg/m^3, of mineral oil, 850 to 900

@@ -140,6 +140,23 @@ def test_an_unbalance_finer_than_any_grade_is_told() -> None:
     assert "a grade of G 0.021, usually 0.4 to 4000 mm/s" in one
 
 
+def test_an_unbalance_finer_than_any_grade_is_told_without_the_mass_of_the_rotor() -> None:
+    """By cam and shaft alone, at least; a coarse one is not, as the rotor may be heavier."""
+    (line,) = (each for each in REDESIGN.splitlines() if each.startswith("rotor_mass"))
+    bare = changed(REDESIGN, line, "")
+    assert warnings(parse_case(bare)) == []
+    fine, case = changed(bare, '"20 g mm"', '"0.2 g mm"'), parse_case(bare)
+    (one,) = warnings(parse_case(fine))
+    base, bore = case.cam.prime_radius - case.roller.radius, case.cam.bore_radius
+    mass = np.pi * case.cam.material.density * (base**2 - bore**2) * case.cam.width
+    shaft = case.camshaft
+    mass += np.pi / 4.0 * shaft.material.density * shaft.diameter**2 * shaft.bearing_spacing
+    speed = max(each.speed for each in case.load_cases) / case.mechanism.gear_ratio
+    assert f"at {1e3 * mass:.4g} g of cam and shaft alone" in one
+    assert f"a grade of G {1e3 * 2e-7 / mass * speed:.2g}, usually 0.4" in one
+    assert warnings(parse_case(changed(bare, '"20 g mm"', '"90000000 g mm"'))) == []
+
+
 def test_a_rate_a_thousand_times_too_low_contradicts_the_torque() -> None:
     text = changed(REDESIGN, 'rate = "180 kN/m"', 'rate = "180 N/m"')
     text = text[: text.index("[spring.design]")] + text[text.index("[cam]") :]
