@@ -92,6 +92,7 @@ NO_TORQUES: Mapping[str, Torque] = MappingProxyType({})
 _DEPTH_OVER_LENGTH = 2.0
 # Crank speed of a load case at rest, rad/s: inertia, film and heat are negligible.
 CREEP = 1e-3
+_MOST_REBOUND = 0.999  # of a follower without damping, which else never came to rest
 
 
 @dataclass(frozen=True)
@@ -147,6 +148,7 @@ class Machine(Displayed):
     overhang_at_max_lift : float    guide A to roller centre or face, m
     stiffness : float          from cam to follower mass, N/m; None: of the members described
     damping_ratio : float      of the elastic stem
+    restitution : float        of a landing between two tracks; None: by the damping ratio
     guides : GuidePair
     friction : FrictionRange   of both guides
     spring : Spring            with the preload of this load case
@@ -196,6 +198,18 @@ class Machine(Displayed):
     output: RockerOutput | None = None
     deviation: TrackDeviation = EXACT
     rocker: Rocker | None = None
+    restitution: float | None = None
+
+    @property
+    def rebound_share(self) -> float:
+        """Speed of the follower off a track over that of its landing, < 1.
+
+        Of an elastic follower the half-period of its damped oscillation, exp(-pi z/sqrt(1 - z^2)).
+        """
+        if self.restitution is not None:
+            return self.restitution
+        damped = self.damping_ratio / np.sqrt(1.0 - self.damping_ratio**2)
+        return float(min(np.exp(-np.pi * damped), _MOST_REBOUND))
 
     @property
     def crank_speed(self) -> float:
@@ -623,6 +637,7 @@ def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machin
         pivot=follower.pivot,
         output=case.output,
         rocker=case.rocker,
+        restitution=follower.restitution,
     )
 
 

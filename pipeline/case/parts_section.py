@@ -47,6 +47,7 @@ class Follower(Section):
         "external_force": "0 N, without a file",
         "external_force_file": "the external force is constant",
         "gravity_angle": "the weight is left out",
+        "restitution": "that of the damped elastic follower in half of its natural period",
     }
 
     kind: Annotated[Literal["roller", "flat", "oscillating"], Known("own choice")] = "roller"
@@ -77,6 +78,8 @@ class Follower(Section):
     """stiffness from cam to follower mass"""
     damping_ratio: Annotated[float, In(at_least=0, below=1), Known("measured; 0.03 to 0.1")] = 0.05
     """damping of the elastic follower"""
+    restitution: Annotated[float | None, In(at_least=0, below=1), Known("measured", "0.5")] = None
+    """of a cam that pulls: speed of the follower off a track after a landing over that before"""
     anti_rotation: Annotated[
         Literal["flat", "key", "square", "guided_fork", "not_needed"] | None,
         Known("drawing", "guided_fork"),

@@ -290,13 +290,13 @@ def bulk_allowed(machine: Machine, limit: Value) -> Value:
 
 
 def heat_missing(machine: Machine, *of_oil: str) -> tuple[str, ...]:
-    """Keys that the case lacks for the temperature of the sliding flat face.
+    """Keys that the case lacks for the temperature of a sliding face, or of a roller that slips.
 
     of_oil : keys of the lubricant that are needed; without a lubricant its table is named.
     """
     missing = [*no_friction(machine)]
     oil = machine.lubricant
     missing += lacking(Lubricant.table, oil, *of_oil) if oil else [Lubricant.table]
-    for each in (machine.cam.material, machine.face.material):
+    for each in machine.bodies.values():
         missing += (key for key in lacking_of_card(each, *_HEAT_PATH) if key not in missing)
     return tuple(missing)

@@ -14,7 +14,7 @@ from camwright.geometry.pitch_curve import magnitude
 from camwright.geometry.second_track import relative_radius
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.source import Source
-from camwright.pipeline.base.units import shown
+from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import (
     ASSEMBLY_GAP,
     CAM_RADIUS,
@@ -22,16 +22,20 @@ from camwright.pipeline.case.limits import (
     CONTACT_SAFETY,
     CROSSOVER_SLIP,
     FATIGUE_SAFETY,
+    FRICTION_BALANCE,
     LANDING_SPEED,
     SECOND_CONTACT_DEPTH,
+    SURFACE_TEMPERATURE,
     UNDERCUT_FACTOR,
     WORN_CLEARANCE,
 )
 from camwright.pipeline.checks import contact_strength
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
-from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.checks.extremes import Extreme, cycle_of, worst_case
+from camwright.pipeline.checks.flat_face_sliding import bulk_allowed, heat_missing
 from camwright.pipeline.checks.missing_keys import lacking_of_card
+from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import groove_of
@@ -494,7 +498,7 @@ def worn_clearance(solution: Solution) -> Demand | None:
 
 _FLIGHT = (
     "flight of the rigid mass under inertia, weight, external and spring force through the"
-    " clearance, without rebound"
+    " clearance, with rebounds by follower.restitution, else by the damping of the elastic follower"
 )
 _CLEARANCE = (*(levers.one(each, -1) for each in _CLEARANCES), *levers.GENTLER)
 
@@ -577,6 +581,48 @@ def landing_pressure(solution: Solution) -> Demand | None:
 
 
 @check(
+    FRICTION_BALANCE,
+    id="landing_balance",
+    title="Work of the tracks vs. energy lost at the landings",
+    formula="|W - S - L - K|/E <= c; W: work of both tracks over a turn with the impulses of the"
+    " landings, S: that against spring, weight, external and viscous force, L: energy lost at the"
+    " landings, K: kinetic energy gained, 0 where the follower comes to rest on a track, E: half of"
+    " the integral of |F s'|, F: axial force without friction, s': slope of the lift, c:"
+    " limits.friction_balance",
+    symbols=dict.fromkeys("WSLKE", f"{STATED} [J]"),
+    reason="Energy that the landings do not take would be an error of the flights.",
+    method=f"{_FLIGHT}; forces of the tracks times their velocity, without friction",
+    evidence=True,
+    moved_by_tolerance=False,
+    closed_by="form",
+)
+def landing_balance(solution: Solution) -> Demand | None:
+    """Energy of a turn with landings that the works leave unexplained over that exchanged; None
+    without a landing.
+    """
+    every = {cycle.load_case: cycle.flights for cycle in solution.cycles}
+    flown = {name: one.energy for name, one in every.items() if one is not None and one.landings}
+    if not flown:
+        return None
+    running = [cycle for cycle in solution.cycles if cycle.load_case in flown]
+    worst = worst_case(running, lambda cycle: flown[cycle.load_case].left, integral=False)
+    energy = flown[worst.load_case]
+    words = [
+        f"{cycle.load_case}: {shown(cycle.landing_power, 'W', 3)}, {len(cycle.impacts)} landings a"
+        " turn"
+        for cycle in running
+    ]
+    limit = solution.machine.limits[FRICTION_BALANCE]
+    return Demand(
+        worst.value,
+        limit,
+        worst,
+        note=f"lost at the landings: {'; '.join(words)}",
+        stated=dict(zip("WSLKE", energy, strict=True)),
+    )
+
+
+@check(
     CROSSOVER_SLIP,
     title="Maximum slip of the roller at a crossover",
     tier=Tier.SCREENING,
@@ -604,3 +650,51 @@ def crossover_slip(solution: Solution) -> Demand:
     speed = worst.cycle.cam_speed
     stated = {"w": speed, "v": 0.5 * worst.value / speed}
     return Demand(worst.value, limit, worst.at, note=worst.words, stated=stated)
+
+
+@check(
+    SURFACE_TEMPERATURE,
+    id="slip_temperature",
+    title="Temperature of the contact of the roller while it slips",
+    unit="degC",
+    method="oil, bulk by the mean flash temperature of the turn, and flash temperature of a band"
+    " source, of the friction by which cam or wall turns the roller the other way",
+    lift_can_help=True,
+    needs="roller",
+    closed_by="form",
+    formula="T_oil + 0.47 1.2 T_m + T_f <= limits.surface_temperature, and that of the cards of cam"
+    " and roller where they state one; T_oil: lubricant.temperature, T_m: mean of T_f over the"
+    " turn, T_f: greatest 1.11 F v/(b (B_1 sqrt|u| + B_2 sqrt|u - v|) sqrt(2 a)), F: friction on"
+    " the roller, v: its slip, b: width of the contact, u: speed of the contact along the track, B:"
+    " root of conductivity times density times specific heat of cam and roller, a: half-width",
+    symbols={
+        "T_oil": "lubricant.temperature - 273.15 [degC]",
+        **dict.fromkeys(("T_m", "T_f"), f"{STATED} [K]"),
+    },
+    reason="A roller that changes between two tracks turns the wrong way at first: above it the"
+    " layer that keeps the steels apart is lost, and hardened surfaces are tempered.",
+    values=(*given.LOADS, *given.CONTACT, "roller.friction", "lubricant.temperature"),
+    levers=(levers.one("cam.prime_radius", -1, 2.0),),
+    page="Contact",
+)
+def slip_temperature(solution: Solution) -> Demand | None:
+    """Greatest temperature of the contact of a slipping roller over the load cases, degC."""
+    machine = solution.machine
+    oil, allowed = machine.lubricant, machine.limits[SURFACE_TEMPERATURE]
+    limit = float(bulk_allowed(machine, allowed))
+    missing = heat_missing(machine, "temperature")
+    if missing or oil is None or oil.temperature is None:
+        return Demand(None, limit, missing=missing)
+    cold = oil.temperature
+
+    def rises(cycle: Cycle) -> Array:
+        flash = cycle.rolling.flash
+        return np.full(cycle.theta.size, np.nan) if flash is None else flash
+
+    def hot(cycle: Cycle) -> float:
+        return float(celsius(cold + bulk_rise(rises(cycle)) + rises(cycle).max()))
+
+    worst = worst_case(solution.cycles, hot, integral=False)
+    rise = rises(cycle_of(solution.cycles, worst))
+    stated = {"T_m": float(rise.mean()), "T_f": float(rise.max())}
+    return Demand(worst.value, limit, worst, figures=(oil.source,), stated=stated)

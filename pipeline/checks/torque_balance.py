@@ -501,10 +501,11 @@ def box_area(across: Value, numbers: Numbers) -> Value:
 
 
 def _friction_power(solution: Solution, cycle: Cycle) -> float:
-    """Mean friction power of guides, contact and roller bearing, W."""
+    """Mean friction power of guides, contact and roller bearing, and that of landings, W."""
     rolling = cycle.rolling.contact
     micro_slip = 0.0 if rolling is None else rolling.loss / FULL_TURN
-    return (float(np.mean(cam_of(solution, cycle).friction_work)) + micro_slip) * cycle.cam_speed
+    rubbed = float(np.mean(cam_of(solution, cycle).friction_work)) + micro_slip
+    return rubbed * cycle.cam_speed + cycle.landing_power
 
 
 def _power(cycle: Cycle, stated: float | None) -> float:

@@ -1,4 +1,4 @@
-"""Flash temperature of a flat face over a turn."""
+"""Flash temperature of a flat face, and of a roller that slips, over a turn."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.flash_temperature import effusivity, flash_temperature
+from camwright.pipeline.contact.traction import RollingContact
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
+from camwright.pipeline.follower.roller_motion import RollingRoller
 
 
 def flash_history(
@@ -70,6 +72,35 @@ def flash_rise(
     before = np.where(nearer, 0.0, cusp)
     behind = np.roll(np.where(nearer, cusp, 0.0), 1, axis=-1)
     return np.asarray(np.maximum(rise, np.maximum(before, behind)))
+
+
+def slip_flash(
+    machine: Machine,
+    width: float,
+    rolling: RollingRoller,
+    driven: RollingContact,
+    contact: ContactHistory,
+) -> Array | None:
+    """Flash temperature rise of a roller that slips (n,), K; None without thermal data.
+
+    Its surface runs through the contact at the speed of the cam less the slip: backwards while it
+    still turns as on the other track.
+
+    Parameters
+    ----------
+    width : float              of the contact, m
+    rolling : RollingRoller    without slip
+    driven : RollingContact    traction and slip
+    contact : ContactHistory   half-widths
+    """
+    taken = _effusivity(machine.cam.material), _effusivity(machine.roller.material)
+    if np.isnan(taken).any():
+        return None
+    heat = np.abs(driven.force * driven.slip) / width
+    of_cam = np.abs(rolling.rolling_speed)
+    of_roller = of_cam - np.sign(rolling.spin) * driven.slip
+    half_width = np.where(heat > 0.0, contact.half_width, 1.0)
+    return flash_temperature(heat, (of_cam, of_roller), taken, half_width)
 
 
 def _effusivity(card: Material) -> float:

@@ -31,7 +31,7 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.finite_length.length_certificate import EndCorrection
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
-from camwright.pipeline.cycle.crossover_history import WallImpact, impacts
+from camwright.pipeline.cycle.crossover_history import Flights, WallImpact, flights, landed
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
 from camwright.pipeline.cycle.length_history import LengthHistory, TurnOfLine, length_histories
 from camwright.pipeline.cycle.part_loads import (
@@ -61,6 +61,8 @@ _ALONG = (
     *("spring_force", "applied_force", "inertia_force", "viscous_force"),
     *("normal_force", "lift_slope", "jam_index"),
 )
+_OF_CLEARANCE = ("flights", "impacts")
+"""Results that change with the clearance between two tracks."""
 _OF_GUIDES = (
     *("guide_", "jam_index_", "stem_slope", "stem_end", "residual_guide", "residual_friction"),
     *("normal_force_statics", "normal_force_by_", "normal_force_friction"),
@@ -120,7 +122,7 @@ class Cycle(Tabled):
         """
         same = self.machine.deviation == other.machine.deviation
         results = other.results.items()
-        self.results.update({k: each for k, each in results if same or k != "impacts"})
+        self.results.update({k: each for k, each in results if same or k not in _OF_CLEARANCE})
 
     @property
     def facts(self) -> Mapping[str, object]:
@@ -364,9 +366,24 @@ class Cycle(Tabled):
         )
 
     @KeptResult
+    def flights(self) -> Flights | None:
+        """Flights of the rigid follower between its tracks; None of a cam that does not pull."""
+        return flights(self.machine, self.contour)
+
+    @KeptResult
     def impacts(self) -> tuple[WallImpact, ...]:
-        """Landings of the roller in its groove; none of a cam that does not pull."""
-        return impacts(self.machine, self.contour)
+        """Landings of the follower between its tracks; none of a cam that does not pull."""
+        return landed(self.machine, self.contour, self.flights)
+
+    @property
+    def landing_loss(self) -> float:
+        """Energy lost at the landings between two tracks in a turn, J; NaN: not known."""
+        return sum(each.loss for each in self.impacts)
+
+    @property
+    def landing_power(self) -> float:
+        """Mean power of `landing_loss`, W."""
+        return self.landing_loss * self.cam_speed / FULL_TURN
 
     @property
     def shares(self) -> GuideShares:

@@ -26,7 +26,7 @@ from camwright.pipeline.contact.rolling_envelope import (
 )
 from camwright.pipeline.contact.traction import RollingContact, rolling_increase
 from camwright.pipeline.contact.two_scale import CycleBodies
-from camwright.pipeline.cycle.contact_heat import flash_history
+from camwright.pipeline.cycle.contact_heat import flash_history, slip_flash
 from camwright.pipeline.cycle.oil_film_history import FilmHistory, film_history
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
 from camwright.pipeline.follower.follower_forces import Loads, follower_loads
@@ -84,8 +84,8 @@ class RollingHistory(Displayed):
     shear_range, Pa, of the orthogonal shear stress in the cam; bore, None in a preview; swept, map
     of the maximum stresses; traction_demand, tangential over normal force of rolling without slip,
     NaN where the contact is open, None under a flat face; sliding of a flat face; flash, rise of
-    the temperature in its contact, K; contact, creep and slip of a roller; tau_max and von_mises,
-    Pa, in the cam with traction; film.
+    the temperature in its contact or, of a cam that pulls, in that of a roller that slips, K;
+    contact, creep and slip of a roller; tau_max and von_mises, Pa, in the cam with traction; film.
     """
 
     shear_range: Array
@@ -138,7 +138,8 @@ class RollingHistory(Displayed):
         if self.sliding is not None:
             columns |= self.sliding.columns()
         if self.flash is not None:
-            words = "Rise of the temperature in the contact of the face"
+            part = "of the face" if self.sliding is not None else "of the roller that slips"
+            words = f"Rise of the temperature in the contact {part}"
             columns[column("flash_temperature", "K", words)] = self.flash
         if (bore := self.bore) is not None:
             columns |= {
@@ -202,6 +203,9 @@ def rolling_history(
     flash = None
     if motion.sliding is not None:
         flash = flash_history(machine, pair, theta, contact, motion.sliding)
+    elif motion.rolling is not None and machine.cam.pulls:
+        free = machine.roller.rolling(contour, loads, machine.cam_speed)
+        flash = slip_flash(machine, pair.width, free, motion.rolling, contact)
     reach = rolling_pass(pair.cam.poisson).shear_range.max()
     bore = None
     if bodies is not None:
@@ -297,12 +301,7 @@ def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
     return arrays
 
 
-def rolling_record(turns: Mapping[str, RollingHistory]) -> dict[str, RollingRecord]:
-    """Record of the maxima of the turn and their places by load case, mm and MPa."""
-    return {name: _worst_record(turn) for name, turn in turns.items()}
-
-
-def _worst_record(turn: RollingHistory) -> RollingRecord:
+def rolling_record(turn: RollingHistory) -> RollingRecord:
     """Record of the greatest stresses below the surface with their places, of the bore, and of the
     losses of a turn.
     """

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import pairwise
 from math import floor, inf, isfinite, nan
 from typing import NamedTuple
 
@@ -17,6 +19,8 @@ spline of a lift where its jerk steps, beside a dwell."""
 _LEAVING_ROUND_OFF = 1e-9  # of the clearance, of a roller that leaves a wall
 _LANDING_BISECTIONS = 60  # of the landing within a step
 _LANDINGS_MAX = 1000  # a turn
+_SAME = 1e-9  # rad, between a landing and the take-off of its rebound
+_REST_SHARE = 1e-3  # of the clearance: height of a rebound that counts as none
 
 
 class Landing(NamedTuple):
@@ -27,6 +31,8 @@ class Landing(NamedTuple):
     time : of the flight, s
     speed : against the wall along the travel, m/s, >= 0
     force : that presses it on the wall then, along the travel, N; negative: off it
+    rebound : speed off the wall after the landing, m/s; 0 where it stays
+    leaving : speed off the wall at the take-off, m/s: of the rebound before
     """
 
     take_off: float
@@ -36,11 +42,17 @@ class Landing(NamedTuple):
     time: float
     speed: float
     force: float
+    rebound: float = 0.0
+    leaving: float = 0.0
 
     @property
     def crosses(self) -> bool:
         """Whether it lands on the other wall."""
         return self.wall != self.start
+
+    def loss(self, mass: float) -> float:
+        """Kinetic energy against the wall that the landing of a mass, kg, takes, J."""
+        return 0.5 * mass * (self.speed**2 - self.rebound**2)
 
 
 def landings(
@@ -51,86 +63,131 @@ def landings(
     *,
     stiffness: float = 0.0,
     damping: float = 0.0,
+    restitution: float = 0.0,
 ) -> tuple[Landing, ...]:
-    """Landings of a rigid follower between two walls over one turn, without rebound.
+    """Landings of a rigid follower between two walls over one turn, with its rebounds.
 
-    The turn begins at the greatest force, on the wall that carries it. Where the force changes its
-    sign the roller leaves that wall and moves under the force alone, which the walls no longer
-    exert; friction of the guides is none without side force. The force is linear between the
+    The turn begins at the greatest force, at rest on the wall that carries it. Where the force
+    changes its sign the roller leaves that wall and moves under the force alone, which the walls no
+    longer exert; friction of the guides is none without side force. It rebounds from a wall until
+    it would rise by less than `_REST_SHARE` of the clearance. The force is linear between the
     angles.
 
     Parameters
     ----------
-    required : array (n,)   axial force that the walls exert on the given motion, N, positive
+    required : array (n,)   axial force that the inner wall exerts on the given motion, N, positive
                             outward, at n equal angles of the turn
     clearance : array (n,)  of the roller along the travel, m, >= 0
     mass : float            kg, > 0
     cam_speed : float       rad/s, > 0
     stiffness, damping : float   of the spring, N/m, and of the guides, N s/m, in the clearance
+    restitution : float     speed off a wall over that of the landing, >= 0, < 1
 
     Raises
     ------
     InputError
-        If mass or speed is not positive or a value not finite.
+        If mass or speed is not positive or a value not finite or out of its bounds.
     """
-    positive("follower.mass", mass, "kg")
-    positive("cam_speed", cam_speed, "rad/s")
-    force, gap = finite("required_force", required), finite("clearance", clearance)
-    if not (gap >= 0.0).all():
-        raise InputError("clearance", float(gap.min()), ">= 0 m")
-    step = FULL_TURN / force.size / cam_speed
-    return _Turn(force, gap, mass, step, stiffness, damping).landings()
+    return Walls.of(required, clearance, mass, cam_speed, stiffness, damping).landings(restitution)
 
 
-class _Turn(NamedTuple):
-    """Forces, N, and clearance, m, of a turn in equal steps of time, s."""
+class Walls(NamedTuple):
+    """Two walls with a rigid follower between them, over a turn in equal steps of time, s.
 
-    force: Array
-    gap: Array
+    force : of each wall on the follower that it guides, N, positive outward: inner, outer
+    gap : clearance along the travel, m; mass, kg; stiffness, N/m, and damping, N s/m, against the
+    motion in the clearance
+    """
+
+    force: tuple[list[float], list[float]]
+    gap: list[float]
     mass: float
     step: float
     stiffness: float
     damping: float
 
-    def at(self, values: Array, index: float) -> float:
+    @classmethod
+    def of(
+        cls, required: Array, clearance: Array, mass: float, cam_speed: float,
+        stiffness: float = 0.0, damping: float = 0.0,
+    ) -> Walls:  # fmt: skip
+        """Walls by the force of the inner one; see `landings`."""
+        positive("follower.mass", mass, "kg")
+        positive("cam_speed", cam_speed, "rad/s")
+        force, gap = finite("required_force", required), finite("clearance", clearance)
+        if not (gap >= 0.0).all():
+            raise InputError("clearance", float(gap.min()), ">= 0 m")
+        step = FULL_TURN / force.size / cam_speed
+        before, after = np.roll(gap, 1), np.roll(gap, -1)
+        opening, bend = (after - before) / (2.0 * step), (after - 2.0 * gap + before) / step**2
+        outer = force + stiffness * gap + damping * opening + mass * bend
+        return cls((force.tolist(), outer.tolist()), gap.tolist(), mass, step, stiffness, damping)
+
+    def on(self, wall: float) -> list[float]:
+        """Force (n,) of a wall on the follower that it guides, N."""
+        return self.force[0 if wall == INNER else 1]
+
+    @staticmethod
+    def at(values: list[float], index: float) -> float:
         """Value at an index of the turn, in steps."""
         k = floor(index)
-        count, share = values.size, index - k
-        return float((1.0 - share) * values[k % count] + share * values[(k + 1) % count])
+        count, share = len(values), index - k
+        return (1.0 - share) * values[k % count] + share * values[(k + 1) % count]
 
-    def landings(self) -> tuple[Landing, ...]:
-        """Flights of the roller through the clearance with their landings, from the greatest force
-        on over a turn; also those by which it rebounds where the force has not yet turned towards
-        the wall.
+    def landings(self, restitution: float = 0.0) -> tuple[Landing, ...]:
+        """Flights of the roller through the clearance with their landings, over a turn from the
+        greatest force on; where it still rebounds there, from the middle of its longest rest on.
 
         Raises
         ------
         InputError
-            If there are more than `_LANDINGS_MAX`.
+            If the restitution is not within [0, 1), or there are more than `_LANDINGS_MAX`.
         """
-        size = np.abs(self.force)
-        count, begin = size.size, int(size.argmax())
-        wall = INNER if self.force[begin] > 0.0 else OUTER
-        index, least = float(begin), _RIPPLE_SHARE * size[begin]
+        if not 0.0 <= restitution < 1.0:
+            raise InputError("follower.restitution", restitution, "in [0, 1)")
+        force = np.array(self.force[0])
+        begin = int(np.abs(force).argmax())
+        flown = self._over(float(begin), INNER if force[begin] > 0.0 else OUTER, restitution)
+        if not flown or not flown[-1].rebound > 0.0:
+            return flown
+        rests = [
+            ((after.take_off - one.landing + _SAME) % FULL_TURN, one)
+            for one, after in pairwise(flown)
+            if one.rebound == 0.0
+        ]
+        if not rests:
+            return flown
+        longest, one = max(rests)
+        middle = (one.landing + 0.5 * longest) % FULL_TURN
+        return self._over(middle / FULL_TURN * force.size, one.wall, restitution)
+
+    def _over(self, begin: float, wall: float, restitution: float) -> tuple[Landing, ...]:
+        """Landings over a turn from a place, in steps, at which the roller rests on a wall; also
+        those by which it rebounds, and leaves again where the force has not yet turned towards the
+        wall.
+        """
+        least = _RIPPLE_SHARE * max(map(abs, self.force[0]))
+        index, end = begin, floor(begin) + len(self.gap)
         flown: list[Landing] = []
+        off: float | None = None  # speed off the wall; None: at rest on it
         while len(flown) < _LANDINGS_MAX:
-            left = self._leaves(wall, index, begin + count, least)
-            if left is None:
-                return tuple(flown)
-            landed = self._flown(left, wall)
+            if off is None:
+                left = self._leaves(wall, index, end, least)
+                if left is None:
+                    return tuple(flown)
+                index, off = left, 0.0
+            landed = self._flown(index, wall, off, restitution)
             flown.append(landed)
-            while isfinite(landed.landing) and landed.force < 0.0 and len(flown) < _LANDINGS_MAX:
-                index = self._index(landed.landing, left)
-                landed = self._flown(index, landed.wall)
-                flown.append(landed)
             if not isfinite(landed.landing):
                 return tuple(flown)
-            wall, index = landed.wall, self._index(landed.landing, left)
-        raise InputError("cam.groove.clearance", float(self.gap.max()), "of fewer landings a turn")
+            wall, index = landed.wall, self._index(landed.landing, index)
+            leaves = landed.rebound > 0.0 or landed.force < 0.0
+            off = landed.rebound if leaves and index < end else None
+        raise InputError("cam.groove.clearance", max(self.gap), "of fewer landings a turn")
 
     def _index(self, angle: float, after: float) -> float:
         """Index of a cam angle after another one, in steps."""
-        count = self.force.size
+        count = len(self.gap)
         return after + (angle / FULL_TURN * count - after) % count
 
     def _leaves(self, wall: float, index: float, end: int, least: float) -> float | None:
@@ -144,8 +201,8 @@ class _Turn(NamedTuple):
         end : int       last index
         least : float   force towards the other wall that counts, N
         """
-        count = self.force.size
-        away = -wall * self.force[np.arange(floor(index) + 1, end + 1) % count]
+        force = np.array(self.on(wall))
+        away = -wall * force[np.arange(floor(index) + 1, end + 1) % force.size]
         beyond = np.flatnonzero(away > least)
         if not beyond.size:
             return None
@@ -156,31 +213,81 @@ class _Turn(NamedTuple):
         share = -away[k] / (away[k + 1] - away[k])
         return max(index, floor(index) + 1 + k + float(share))
 
-    def _flown(self, start: float, wall: float) -> Landing:
+    def _flown(self, start: float, wall: float, off: float, restitution: float) -> Landing:
         """Flight of the roller from a wall, with its landing; without one within a turn the landing
         is NaN.
 
         Parameters
         ----------
-        start : float   place of the turn, in steps, at which it leaves
-        wall : float    that it leaves, `INNER` or `OUTER`
+        start : float         place of the turn, in steps, at which it leaves
+        wall : float          that it leaves, `INNER` or `OUTER`
+        off : float           speed off the wall, m/s
+        restitution : float   of the landing
         """
-        count, index, position, speed = self.force.size, start, 0.0, 0.0
-        if wall == OUTER:
-            k = floor(index)
-            position = self.at(self.gap, index)
-            speed = float(self.gap[(k + 1) % count] - self.gap[k % count]) / self.step
+        count = len(self.gap)
+        index, position, speed = self._off(start, wall, off)
         while index < start + count:
             arc = self._arc(index, position, speed)
             for side in (INNER, OUTER):
                 if arc.room(1.0, side) < -_LEAVING_ROUND_OFF * arc.gaps[1]:
-                    return self._landed(start, index, wall, side, arc)
+                    landed = self._landed(start, index, wall, side, arc, restitution)
+                    return landed._replace(leaving=off)
+            index, position, speed = self._free(
+                floor(index) + 1, floor(start) + count, arc.position(1.0), arc.velocity(1.0)
+            )
+        turned = (start % count) / count * FULL_TURN
+        return Landing(turned, nan, wall, wall, inf, nan, nan, leaving=off)
+
+    def _off(self, start: float, wall: float, off: float) -> tuple[float, float, float]:
+        """Place of the turn, in steps, at which the roller leaves a wall, its distance from the
+        inner wall, m, and its speed, m/s; off : its speed off that wall, m/s.
+        """
+        if wall == INNER:
+            return start, 0.0, off
+        k, count = floor(start), len(self.gap)
+        opening = (self.gap[(k + 1) % count] - self.gap[k % count]) / self.step
+        return start, self.at(self.gap, start), opening - off
+
+    def _free(self, k: int, last: int, position: float, speed: float) -> tuple[float, float, float]:
+        """Place, distance and speed, see `_off`, at the begin of the step in which the roller
+        lands, from the begin of step k on; by the steps of `_arc`, of which there are thousands.
+
+        last : step that it does not enter
+        """
+        force, gap, step = self.force[0], self.gap, self.step
+        spring, drag = self.stiffness / self.mass, self.damping / self.mass
+        count, sixth = len(gap), step * step / 6.0
+        while k < last:
+            i, j = k % count, (k + 1) % count
+            pulled = spring * position + drag * speed
+            first = -force[i] / self.mass - pulled
+            guess = -force[j] / self.mass - pulled
+            ahead = position + speed * step + (2.0 * first + guess) * sixth
+            faster = speed + 0.5 * (first + guess) * step
+            end = -force[j] / self.mass - spring * ahead - drag * faster
+            ahead = position + speed * step + (2.0 * first + end) * sixth
+            beyond = _LEAVING_ROUND_OFF * gap[j]
+            if ahead < -beyond or ahead > gap[j] + beyond:
+                break
+            position, speed, k = ahead, speed + 0.5 * (first + end) * step, k + 1
+        return float(k), position, speed
+
+    def flight(self, start: float, wall: float, off: float) -> Iterator[tuple[float, FlightStep]]:
+        """Motion of the roller in flight without end: places of the turn, in steps, and the motion
+        from there to the end of the step.
+
+        Parameters
+        ----------
+        start, wall, off : place of the turn, in steps, wall that it leaves, and speed off it, m/s
+        """
+        index, position, speed = self._off(start, wall, off)
+        while True:
+            arc = self._arc(index, position, speed)
+            yield index, arc
             position, speed = arc.position(1.0), arc.velocity(1.0)
             index = floor(index) + 1.0
-        turned = (start % count) / count * FULL_TURN
-        return Landing(turned, nan, wall, wall, inf, nan, nan)
 
-    def _arc(self, index: float, position: float, speed: float) -> _Passage:
+    def _arc(self, index: float, position: float, speed: float) -> FlightStep:
         """Motion of the roller in flight from a place within a step of the turn to the end of the
         step, with linear acceleration.
 
@@ -192,7 +299,7 @@ class _Turn(NamedTuple):
         """
         end_of_step = floor(index) + 1.0
         span = (end_of_step - index) * self.step
-        before, after = self.at(self.force, index), self.at(self.force, end_of_step)
+        before, after = self.at(self.force[0], index), self.at(self.force[0], end_of_step)
 
         def rate(force: float, at: float, moving: float) -> float:
             return -(force + self.stiffness * at + self.damping * moving) / self.mass
@@ -201,10 +308,16 @@ class _Turn(NamedTuple):
         ahead = position + speed * span + (2.0 * first + last) * span**2 / 6.0
         last = rate(after, ahead, speed + 0.5 * (first + last) * span)
         gaps = self.at(self.gap, index), self.at(self.gap, end_of_step)
-        return _Passage(position, speed, first, last, span, gaps)
+        return FlightStep(position, speed, first, last, span, gaps)
 
     def _landed(
-        self, start: float, index: float, wall: float, side: float, arc: _Passage
+        self,
+        start: float,
+        index: float,
+        wall: float,
+        side: float,
+        arc: FlightStep,
+        restitution: float,
     ) -> Landing:
         """Landing of the roller within a step of the turn, by bisection.
 
@@ -214,22 +327,26 @@ class _Turn(NamedTuple):
         index : float    begin of the motion within the step
         wall : float     that it left
         side : float     wall on which it lands
-        arc : _Passage   motion to the end of the step
+        arc : FlightStep    motion to the end of the step
+        restitution : float   of the landing
         """
         low, high = 0.0, 1.0
         for _ in range(_LANDING_BISECTIONS):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if arc.room(middle, side) < 0.0 else (middle, high)
-        count, there = self.force.size, index + high * (floor(index) + 1.0 - index)
+        count, there = len(self.gap), index + high * (floor(index) + 1.0 - index)
         opening = 0.0 if side == INNER else (arc.gaps[1] - arc.gaps[0]) / arc.span
         speed = max(side * (opening - arc.velocity(high)), 0.0)
         left, landed = (each % count / count * FULL_TURN for each in (start, there))
-        force = side * self.at(self.force, there)
-        time = (there - start) * self.step
-        return Landing(left, landed, wall, side, time, speed, force)
+        force = side * self.at(self.on(side), there)
+        time, rebound = (there - start) * self.step, restitution * speed
+        least = _REST_SHARE * self.at(self.gap, there)
+        if 0.5 * self.mass * rebound**2 < max(force, 0.0) * least:
+            rebound = 0.0
+        return Landing(left, landed, wall, side, time, speed, force, rebound)
 
 
-class _Passage(NamedTuple):
+class FlightStep(NamedTuple):
     """Flight within a step: position, m, from the inner wall, speed, m/s, of linear acceleration.
 
     gaps: of the groove at begin and end, m

@@ -13,6 +13,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze, 
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath, Slide
+from camwright.geometry.lift import Lift
 from camwright.geometry.second_track import SecondFollower, SecondTrack, Touch, touch_of
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
 from camwright.pipeline.follower.disc_preload import DiscPreload, Squeezed
@@ -544,6 +545,49 @@ def levers(overhang: Values, guide_spacing: float | Array) -> tuple[Values, Valu
     return 1.0 + ratio, ratio
 
 
+class RequiredForce(NamedTuple):
+    """Axial force without guide friction that a motion of the follower requires, by its parts, N,
+    at cam angles (n,); see `Loads`.
+    """
+
+    theta: Array
+    lift: Array
+    lift_slope: Array
+    acceleration: Array
+    spring_force: Array
+    applied_force: Array
+    inertia_force: Array
+    viscous_force: Array
+
+    @classmethod
+    def of(
+        cls, system: FollowerSystem, lift: Lift, theta: Array, speed: Array, rate: Array
+    ) -> RequiredForce:
+        """Force at cam angles, cam speeds, rad/s, and accelerations, rad/s2, (n,)."""
+        height, slope, bend = lift.derivatives(theta, 2)
+        slope = np.where(np.abs(slope) > REST * lift.stroke, slope, 0.0)
+        acceleration = bend * speed**2 + slope * rate
+        return cls(
+            theta,
+            height,
+            slope,
+            acceleration,
+            system.spring_force(height),
+            system.applied_force(theta, height),
+            system.inertia_force(height, slope * speed, acceleration),
+            system.viscous_damping * slope * speed,
+        )
+
+    @property
+    def resisting_force(self) -> Array:
+        """Force without that of inertia, N."""
+        return self.spring_force + self.applied_force + self.viscous_force
+
+    @property
+    def force(self) -> Array:
+        return self.spring_force + self.applied_force + self.inertia_force + self.viscous_force
+
+
 def follower_loads(
     pitch: FollowerPath,
     system: FollowerSystem,
@@ -599,14 +643,12 @@ def follower_loads(
     cam (2024), eq. 40 for c3.
     """
     theta = finite("theta", theta)
-    lift, slope, lift_d2 = pitch.lift.derivatives(theta, 2)
-    slope = np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0)
     rate, speed = finite("cam_acceleration", cam_acceleration), _forward(cam_speed, theta)
-    acceleration = lift_d2 * speed**2 + slope * rate
-    spring_force, applied_force = system.spring_force(lift), system.applied_force(theta, lift)
-    inertia_force = system.inertia_force(lift, slope * speed, acceleration)
-    viscous_force = system.viscous_damping * slope * speed
-    demand = spring_force + applied_force + inertia_force + viscous_force
+    required = RequiredForce.of(system, pitch.lift, theta, speed, rate)
+    lift, slope, acceleration = required.lift, required.lift_slope, required.acceleration
+    spring_force, applied_force = required.spring_force, required.applied_force
+    inertia_force, viscous_force = required.inertia_force, required.viscous_force
+    demand = required.force
 
     travel, pivot = pitch.travel(theta), system.pivot
     wall, swung, pull = wall_of(demand, held=system.held), None, None

@@ -369,6 +369,10 @@ class RollingRecord(TypedDict):
     """Friction loss of the contact."""
     gross_slip_share: NotRequired[float]
     """Share of the turn with gross slip."""
+    landings_per_cam_turn: NotRequired[int]
+    """Landings of the follower between two tracks."""
+    landing_loss_J_per_cam_turn: NotRequired[float | None]
+    """Energy lost at them."""
     film_thickness_mixed: NotRequired[MixedFilmRecord]
     """Oil film of rough surfaces."""
 

@@ -55,6 +55,7 @@ from camwright.pipeline.records.trial_contents import (
     CertificateRecord,
     ConvergenceRecord,
     FatigueRecord,
+    RollingRecord,
     TrialContents,
 )
 from camwright.pipeline.results.trial import Trial
@@ -424,8 +425,18 @@ def trial_record(trial: Trial) -> TrialContents:
         "length_certificate": length_record(ends, (*machine.bodies,)),
         "length_refused": None if ends is None else ends.refused or None,
         "fatigue": fatigue_record(trial.solution),
-        "rolling": rolling_record({cycle.load_case: cycle.rolling for cycle in trial.cycles}),
+        "rolling": {cycle.load_case: _rolling(cycle) for cycle in trial.cycles},
     }
+
+
+def _rolling(cycle: Cycle) -> RollingRecord:
+    """Record of rolling over a turn, and of the landings between two tracks."""
+    record = rolling_record(cycle.rolling)
+    if cycle.flights is not None:
+        lost = cycle.landing_loss
+        record["landings_per_cam_turn"] = len(cycle.impacts)
+        record["landing_loss_J_per_cam_turn"] = lost if np.isfinite(lost) else None
+    return record
 
 
 def quality_record(quality: Quality) -> QualityRecord:

@@ -135,6 +135,7 @@ def groove_case() -> Case:
     groove = {"clearance": "0.02 mm", "depth": "12 mm", "outer_radius": "90 mm", "source": "g"}
     tables["cam"] |= {"closure": "groove", "width": "20 mm", "groove": groove}
     tables["roller"]["pin"]["mounting"] = "overhung"
+    tables["follower"]["restitution"] = 0.0
     return case_of(tables)
 
 

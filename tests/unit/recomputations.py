@@ -37,6 +37,8 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "landing_speed", "landing_pressure", "crossover_slip",
     ),
     (_WORN, "test_worn_clearance_is_judged_where_it_is_greatest"): ("worn_clearance",),
+    (_GROOVE, "test_energy_of_a_turn_with_landings"): ("landing_balance",),
+    (_GROOVE, "test_the_slip_of_the_roller_by_its_own_equation"): ("slip_temperature",),
     (_YOKE, "test_the_breadth_by_the_points_of_the_cam"): ("yoke_breadth",),
     (_PAIR, "test_both_discs_are_judged"): ("second_disc_gap",),
     (_PAIR, "test_the_preload_is_judged_on_both_discs"): ("preload_least", "preload_pressure"),

@@ -71,6 +71,22 @@ def without_flight() -> Solution:
     )
     bare = made.changed_cycle(cycle)
     bare.results["impacts"] = lost
+    assert cycle.flights is not None
+    unknown_flights = tuple(one._replace(landing=np.nan) for one in cycle.flights.landings)
+    bare.results["flights"] = cycle.flights._replace(landings=unknown_flights)
+    return replace(base, cycles=(bare,))
+
+
+def struck(share: float = 1e-3, limit: float | None = None) -> Solution:
+    """The groove with a force of its inner wall that is too large by a share."""
+    base = made.in_groove() if limit is None else with_limits(friction_balance=limit)
+    (cycle,) = base.cycles
+    assert cycle.flights is not None
+    inner, outer = cycle.flights.walls.force
+    more = [(1.0 + share) * each for each in inner]
+    wrong = cycle.flights._replace(walls=cycle.flights.walls._replace(force=(more, outer)))
+    bare = made.changed_cycle(cycle)
+    bare.results["flights"] = wrong
     return replace(base, cycles=(bare,))
 
 
@@ -164,6 +180,49 @@ def landing_pressure() -> float:
     radius = made.ROLLER * (1.0 - made.ROLLER * curvature)
     modulus, width = machine.contact_modulus, machine.contact_width
     return 1e-6 * float(np.sqrt(force * modulus / (np.pi * width * radius)))
+
+
+def slip_temperature() -> float:
+    """Oil, bulk and flash, degC, of the friction and slip as solved.
+
+    The contact runs along the walls by their points.
+    """
+    solution = made.in_groove()
+    (cycle,) = solution.cycles
+    machine, driven, theta = cycle.machine, cycle.rolling.contact, cycle.theta
+    walls, step = Groove(solution.contour.pitch, made.ROLLER), 1e-5
+    paces = {
+        side: np.hypot(*(walls.points(theta + step, side) - walls.points(theta - step, side)))
+        for side in ("inner", "outer")
+    }
+    pulled = cycle.loads.wall < 0.0
+    along = machine.cam_speed * np.where(pulled, paces["outer"], paces["inner"]) / (2.0 * step)
+    # on the outer wall rolling is spinning the other way; the slip counts in the inner sense
+    backwards = along - np.where(pulled, -driven.slip, driven.slip)
+    kept = [
+        np.sqrt(card.conductivity * card.density * card.specific_heat)
+        for card in (machine.cam.material, machine.roller.material)
+    ]
+    heat = np.abs(driven.force * driven.slip) / machine.contact_width
+    carried = kept[0] * np.sqrt(along) + kept[1] * np.sqrt(np.abs(backwards))
+    flash = 1.11 * heat / (carried * np.sqrt(2.0 * cycle.contact.half_width))
+    cold = machine.lubricant.temperature - 273.15
+    return float(cold + 0.47 * 1.2 * flash.mean() + flash.max())
+
+
+def oiled(**values) -> Solution:
+    base = made.in_groove()
+    oil = replace(base.case.lubricant, **values)
+    return made.changed_solution(base, case=made.changed(base.case, lubricant=oil))
+
+
+def struck_share() -> float:
+    """Work of the inner wall while it carries over half of that of both without its sign.
+
+    The mass is accelerated from the landing on it to the highest speed: h/2 w sin(theta).
+    """
+    theta, _, _ = landing(outer=False)
+    return float((1.0 - np.sin(theta) ** 2) / 2.0)
 
 
 def wall_stress() -> float:
@@ -311,4 +370,23 @@ by_limit(
     2.0 * made.in_groove().machine.cam_speed * landing(outer=True)[2],
     "twice the speed of the roller centre",
     base=flown,
+)
+tried(
+    "landing_balance",
+    limited("landing_balance", lambda limit: struck(limit=limit), struck),
+    None,
+    without_flight,
+    1e-3 * struck_share(),
+    "a thousandth of the work of the inner wall, over half of that without its sign",
+    struck,
+)
+by_limit(
+    "slip_temperature",
+    "surface_temperature",
+    lambda: oiled(temperature=np.nan),
+    slip_temperature(),
+    "Blok (1937) with the speeds of the points of the walls",
+    base=made.in_groove,
+    zero=273.15,
+    missing=lambda: oiled(temperature=None),
 )

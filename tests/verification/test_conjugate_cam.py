@@ -19,7 +19,7 @@ from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.contact.closed_form import in_full
 from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
 from camwright.pipeline.cycle.crank_speed import mechanism_torque
-from camwright.pipeline.cycle.crossover_history import impacts
+from camwright.pipeline.cycle.crossover_history import flights
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
 from camwright.pipeline.preview import preview_case
@@ -201,12 +201,12 @@ def test_without_clearance_and_compliance_the_track_is_the_sign_of_the_force(nam
     """A clearance of a nanometre: the track changes where the rigid force changes its sign."""
     cycle, machine, _ = running(name)
     narrow = replace(machine.cam.conjugate, clearance=1e-9)
-    landed = impacts(replace(machine, cam=replace(machine.cam, conjugate=narrow)), cycle.contour)
+    cam = replace(machine.cam, conjugate=narrow)
+    landed = flights(replace(machine, cam=cam, restitution=0.0), cycle.contour).landings
     theta, rigid = uniform_turn(14400), machine.system.with_friction(0.0, 0.0)
     force = follower_loads(cycle.contour.pitch, rigid, machine.cam_speed, theta).axial_force
     assert len(landed) >= 2
-    for one in landed:
-        flight = one.flight
+    for flight in landed:
         assert flight.landing == pytest.approx(flight.take_off, abs=np.radians(0.5))
         beyond = np.interp(flight.landing + np.radians(0.5), theta, force, period=2.0 * np.pi)
         assert np.sign(beyond) == flight.wall
@@ -370,7 +370,8 @@ def test_landings_by_an_adaptive_integrator():
             return state[0] if inner else state[0] - gap(start + speed * time)
 
         lands.terminal, lands.direction = True, -1.0 if inner else 1.0
-        begin = (gap(start), opening(start)) if inner else (0.0, 0.0)
+        left, off = flight.start > 0.0, flight.leaving
+        begin = (0.0, off) if left else (gap(start), opening(start) - off)
         flight_of = solve_ivp(flown, (0.0, 0.1), begin, events=lands, rtol=1e-10, atol=1e-14)
         time, (_, moving) = flight_of.t_events[0][0], flight_of.y_events[0][0]
         against = -moving if inner else moving - opening(start + speed * time)
@@ -384,10 +385,9 @@ def test_a_roller_lands_with_the_spin_that_it_left_with():
     radii = {1.0: (path, 0.0, machine.roller.radius),
              -1.0: (disc.pitch, np.pi, disc.roller_radius)}  # fmt: skip
     crossed = [one for one in cycle.impacts if one.flight.crosses]
-    assert len(crossed) == len(cycle.impacts) >= 2
+    assert len(crossed) >= 2
     for k, one in enumerate(crossed):
         before = crossed[k - 1].flight
-        assert before.wall == one.flight.start
         pitch, turn, radius = radii[one.flight.wall]
         paces = []
         # the disc was left at the flight before this one

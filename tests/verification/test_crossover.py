@@ -103,6 +103,47 @@ def test_a_large_clearance_against_an_adaptive_integrator(clearance):
     assert found.speed == pytest.approx(exact.y_events[0][0][1], rel=1e-4)
 
 
+@pytest.mark.parametrize("restitution", [0.3, 0.7])
+def test_rebounds_against_an_integrator_of_events(restitution):
+    """Times, walls and speeds of the flights after the first take-off within 1e-4, until rest.
+
+    The roller rests where it would rise by less than a thousandth of the clearance: the speed of
+    its last landing is then below that of a fall from there.
+    """
+    law, clearance, rate, damping = motion("polynomial_345"), 2e-4, 400.0, 3.0
+    walls = np.full(COUNT, clearance)
+    spring = {"stiffness": rate, "damping": damping}
+    found = landings(
+        inertia("polynomial_345"), walls, MASS, SPEED, restitution=restitution, **spring
+    )
+
+    def flown(time, state):
+        accelerated = SPEED**2 * law(np.array([first.take_off + SPEED * time]), 2)[0]
+        return state[1], -accelerated - (rate * state[0] + damping * state[1]) / MASS
+
+    events = [lambda _, state: state[0], lambda _, state: state[0] - clearance]
+    for event, direction in zip(events, (-1.0, 1.0), strict=True):
+        event.terminal, event.direction = True, direction
+    first = rise(found)
+    begin, state, series = 0.0, (0.0, 0.0), found[found.index(first) :]
+    count = next(k for k, one in enumerate(series) if one.rebound == 0.0) + 1
+    for one in series[:count]:
+        flight = solve_ivp(
+            flown, (begin, begin + 0.1), state, events=events, rtol=1e-11, atol=1e-15
+        )
+        begin, speed = flight.t[-1], flight.y[1][-1]
+        wall = OUTER if flight.t_events[1].size else INNER
+        assert one.wall == wall
+        landed = (one.landing - first.take_off) % FULL_TURN / SPEED
+        assert (landed, one.speed) == pytest.approx((begin, abs(speed)), rel=1e-4)
+        assert one.rebound == pytest.approx(restitution * one.speed) or one is series[count - 1]
+        state = (clearance if wall == OUTER else 0.0, -restitution * speed)
+    assert count >= 3
+    last = series[count - 1]
+    height = 0.5 * MASS * (restitution * last.speed) ** 2 / last.force
+    assert 0.0 < height < 1e-3 * clearance
+
+
 def test_energy_of_a_turn_with_landings():
     """Work of the walls equals the energy lost in the landings: 1e-6 of the work in a turn.
 
@@ -138,3 +179,5 @@ def test_a_closing_force_keeps_one_wall():
 def test_refusals():
     with pytest.raises(InputError, match=r"clearance = -1e-06, must be >= 0 m"):
         landings(np.ones(9), np.full(9, -1e-6), MASS, SPEED)
+    with pytest.raises(InputError, match=r"restitution = 1, must be in \[0, 1\)"):
+        landings(np.ones(9), np.zeros(9), MASS, SPEED, restitution=1.0)
