@@ -32,6 +32,7 @@ motion_svg             ``motion.svg``: the mechanism over one turn, animated
 scene_solids           rings, boxes and rods as triangles
 scene_arm              solids of second arm, output and spring of an arm, with their poses
 scene_groove           solids of a disc with a groove, and of the follower before it
+scene_second           solids of a second roller or face that pulls, and of its disc
 scene_page             ``scene.html``: interactive 3-D view over the turn
 sections               parts of a report by name; `report` writes them
 ====================== ===========================================================================

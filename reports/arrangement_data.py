@@ -83,18 +83,17 @@ def motion_of(turn: SheetTurn) -> DrawnMotion:
         turn.load_case, np.radians(c["cam_angle_deg"]), turn.crank, turn.words.shaft,
         c["lift_mm"], np.radians(c["pressure_angle_deg"]), c.get("face_contact_offset_mm"),
         {name: np.nan_to_num(c[_COLUMNS[name]]) for name in FORCES if _COLUMNS[name] in c},
-        turn.walls, _pulling(turn),
+        turn.walls, pulling_at(turn, c["cam_angle_deg"]),
     )  # fmt: skip
 
 
-def _pulling(turn: SheetTurn) -> tuple[Array, Array] | None:
-    """Contact of the second track and its outward normal in the drawing (2, n), mm, at the rows of
-    the cycle; None of a cam without one.
+def pulling_at(turn: SheetTurn, angle: Array) -> tuple[Array, Array] | None:
+    """Contact of the second track and its outward normal in the drawing (2, n), mm, at cam angles
+    (n,), deg; None of a cam without one.
     """
     table = turn.contour
     if "second_normal_x" not in table:
         return None
-    angle = turn.columns["cam_angle_deg"]
 
     def at(name: str) -> Array:
         return np.interp(angle, table["cam_angle_deg"], table[name], period=360.0)
@@ -361,15 +360,15 @@ def _sizes(
     edge = np.hypot(turn.contour["contour_x_mm"], turn.contour["contour_y_mm"])
     radius = turn.length("cam", "groove", "outer_radius") or float(edge.max())
     width = turn.length("cam", "width") or 0.0
-    discs, below = list(_discs(turn)), 0.0
+    beside, below = [], 0.0
     if (second := _second(turn, lowest, lift)) is not None:
         reach = second.radius or _face(turn)[1]
         half, below = max(half, second.radius or 0.0), reach - float(second.centre[1])
         if second.disc is not None:
-            discs.append(Disc(second.spacing, width, 2.0 * float(np.hypot(*second.disc).max())))
+            beside.append(Disc(second.spacing, width, 2.0 * float(np.hypot(*second.disc).max())))
             deep += second.spacing
     return MechanismSizes(radius, width, axis, lowest, lift, (half, deep), diameter, end,
-                          tuple(sleeves), tuple(discs), below)  # fmt: skip
+                          tuple(sleeves), _discs(turn), below, tuple(beside))  # fmt: skip
 
 
 def _discs(turn: SheetTurn) -> tuple[Disc, ...]:

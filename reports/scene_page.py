@@ -14,9 +14,10 @@ from camwright.geometry.arrays import Array, rotation
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.envelope import Sleeve
 from camwright.pipeline.base.files import Json, read_npz, write_atomic
+from camwright.pipeline.base.tables import Table
 from camwright.pipeline.results.field_file import EndField, read_end_field
-from camwright.reports import scene_arm, stress_map
-from camwright.reports.arrangement_data import mechanism_of
+from camwright.reports import scene_arm, scene_second, stress_map
+from camwright.reports.arrangement_data import mechanism_of, pulling_at
 from camwright.reports.drawing.arrangement import DrawnArm, DrawnMechanism
 from camwright.reports.interactive import script_safe_json, scripts
 from camwright.reports.page import environment
@@ -27,6 +28,7 @@ from camwright.reports.scene_solids import (
     Lattice,
     Solid,
     box,
+    fork,
     joined,
     pin,
     ring,
@@ -35,6 +37,7 @@ from camwright.reports.scene_solids import (
     tube,
     unit_circle,
 )
+from camwright.reports.sheet_turn import SheetTurn
 
 FILE = "scene.html"
 TURN, ENDS = Path("fields") / "turn.npz", Path("fields") / "ends.vtu"
@@ -172,7 +175,8 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
             lean, follower = view.to_lab + view.turn - np.pi, _face_on_arm(view, width, arm)
     if groove is not None:
         follower = groove.follower(stem, end, _pin_radius(view))
-    bodies["follower"] = follower.as_record(_DIGITS)
+    pair = scene_second.carrier(mechanism, width, _pin_radius(view))
+    bodies["follower"] = (pair or follower).as_record(_DIGITS)
     bodies["guide"] = _frame(
         mechanism, middle, 0.0 if groove is None else groove.cheek[0]
     ).as_record(_DIGITS)
@@ -187,11 +191,23 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
         "origin": [_rounded(part) for part in lab],
         "facing": _rounded(view.to_lab + view.turn + spin),
         "lean": None if lean is None else _rounded(lean),
-        "moving": scene_arm.moving(mechanism, lifts, width, _DIGITS),
-        "contact": [_rounded(part) for part in _contacts(view, lab, arm)],
+        "moving": [
+            *scene_arm.moving(mechanism, lifts, width, _DIGITS),
+            *scene_second.moving(
+                mechanism,
+                view.bore,
+                (lifts, view.to_lab),
+                width,
+                _DIGITS,
+                _second_disc(material, view),
+            ),
+        ],
+        "contact": [
+            _rounded(part) for part in _carried(turn, view, rows, _contacts(view, lab, arm))
+        ],
         "half": width / 2,
         "readout": [
-            {"words": words, "unit": unit, "values": _rounded(rows[name][view.position])}
+            {"words": words, "unit": unit, "values": _shown(rows[name][view.position])}
             for words, name, unit in _READOUT
             if name in rows
         ],
@@ -207,18 +223,46 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
     }
 
 
+def _carried(turn: SheetTurn, view: TurnView, rows: Table, first: Array) -> Array:
+    """Contact points (3, f), mm, on the track that carries, third the place of its disc along the
+    shaft; first : array (2, f), on the first track.
+    """
+    pulling, second = pulling_at(turn, view.angle), mechanism_of(turn).second
+    level = np.zeros(view.angle.size)
+    if pulling is None or second is None:
+        return np.vstack([first, level])
+    pulls = rows["wall"][view.position] < 0.0
+    return np.where(
+        pulls, np.vstack([pulling[0], level + second.spacing]), np.vstack([first, level])
+    )
+
+
 def _flank(material: ReportMaterial, view: TurnView, width: float) -> Json:
     """Record of the flank for the page, with the maximum von Mises stress of the turn below each
     point of the contour, MPa, where it is known.
     """
-    outer = view.contour
-    record = ring(outer, width).as_record(_DIGITS)
-    greatest = _greatest(material, view, outer.shape[1])
-    if greatest is not None:
-        angle = np.linspace(0.0, 360.0, outer.shape[1], endpoint=False)
-        words = [f"cam {a:.1f}°: {v:.4g} MPa" for a, v in zip(angle, greatest, strict=True)]
-        record |= {"values": _rounded(np.tile(greatest, 2)), "words": words * 2}
-    return record
+    count = view.contour.shape[1]
+    record = ring(view.contour, width).as_record(_DIGITS)
+    stresses = _by_track(material, view, count)
+    if stresses is None:
+        return record
+    greatest, second = stresses
+    if second is not None and material.turn.second_disc is None:  # the other face half a turn on
+        greatest = np.maximum(greatest, np.roll(second, count // 2))
+    words = _stress_words("", greatest)
+    return record | {"values": _rounded(np.tile(greatest, 2)), "words": words * 2}
+
+
+def _second_disc(material: ReportMaterial, view: TurnView) -> tuple[Array, list[str]] | None:
+    """Maximum von Mises stress of the turn at the points of the second disc, MPa, and its words;
+    None where not known.
+    """
+    stresses = None
+    if material.turn.second_disc is not None:
+        stresses = _by_track(material, view, view.contour.shape[1])
+    if stresses is None or stresses[1] is None:
+        return None
+    return np.array(_rounded(stresses[1])), _stress_words("second disc, ", stresses[1])
 
 
 def _walls(material: ReportMaterial, view: TurnView, groove: SceneGroove) -> Json:
@@ -226,23 +270,38 @@ def _walls(material: ReportMaterial, view: TurnView, groove: SceneGroove) -> Jso
     MPa, at points where their wall carries and 0 elsewhere; without stresses where they are not
     known.
     """
-    count = groove.inner.shape[1]
     record = groove.walls().as_record(_DIGITS) | {"loops": 4}
-    greatest = _greatest(material, view, count)
+    stresses = _by_track(material, view, groove.inner.shape[1])
+    if stresses is None or stresses[1] is None:
+        return record
+    values: list[Array] = []
+    words: list[str] = []
+    for name, stress in (("inner", stresses[0]), ("outer", stresses[1])):
+        values += 2 * [stress]
+        words += 2 * _stress_words(f"{name} wall, ", stress)
+    return record | {"values": _rounded(np.concatenate(values)), "words": words}
+
+
+def _stress_words(name: str, stress: Array) -> list[str]:
+    """Words on the stress (n,), MPa, at equal cam angles; name: of the surface."""
+    angle = np.linspace(0.0, 360.0, stress.size, endpoint=False)
+    return [f"{name}cam {a:.1f}°: {v:.4g} MPa" for a, v in zip(angle, stress, strict=True)]
+
+
+def _by_track(
+    material: ReportMaterial, view: TurnView, stations: int
+) -> tuple[Array, Array | None] | None:
+    """Maximum von Mises stress, MPa, at equal cam angles (stations,) on the first and the second
+    track, 0 where the other one carries; second None of one track, and None without a map.
+    """
+    greatest = _greatest(material, view, stations)
     rows = material.run.final.cycle.of_load_case(view.load_case)
     if greatest is None or "wall" not in rows:
-        return record
-    angle = np.linspace(0.0, 360.0, count, endpoint=False)
+        return None if greatest is None else (greatest, None)
+    angle = np.linspace(0.0, 360.0, stations, endpoint=False)
     wall = np.sign(np.interp(angle, rows["cam_angle_deg"], rows["wall"], period=360.0))
-    values, words = [], []
-    for name, side in (("inner", 1.0), ("outer", -1.0)):
-        stress = np.where(wall == side, greatest, 0.0)
-        text = [
-            f"{name} wall, cam {a:.1f}°: {v:.4g} MPa" for a, v in zip(angle, stress, strict=True)
-        ]
-        values += 2 * [stress]
-        words += 2 * text
-    return record | {"values": _rounded(np.concatenate(values)), "words": words}
+    first, second = (np.where(wall == side, greatest, 0.0) for side in (1.0, -1.0))
+    return first, second
 
 
 def _greatest(material: ReportMaterial, view: TurnView, stations: int) -> Array | None:
@@ -323,18 +382,7 @@ def _follower(view: TurnView, width: float, stem: float, top: float) -> Solid:
         # the y axis of the body points to the cam, downwards here
         block = box((-high[0], -high[1], -width / 2), (-low[0], -low[1], width / 2))
         return joined([block, rod(stem, -float(low[1]), top)])
-    radius, plate = float(high[1]), 0.25 * width
-    bridge = radius + 0.15 * stem
-    half = 0.5 * min(stem, radius)
-    inside, outside = width / 2 + 0.1 * width, width / 2 + 0.1 * width + plate
-    plates = [
-        box((-half, -half, min(side * inside, side * outside)),
-            (half, bridge + plate, max(side * inside, side * outside)))
-        for side in (-1.0, 1.0)
-    ]  # fmt: skip
-    yoke = box((-half, bridge, -outside), (half, bridge + plate, outside))
-    axle = pin(_pin_radius(view), 1.1 * outside)
-    return joined([*plates, yoke, axle, rod(stem, bridge + plate, top)])
+    return fork(float(high[1]), _pin_radius(view), width, stem, top)
 
 
 def _pin_radius(view: TurnView) -> float:
@@ -359,7 +407,9 @@ def _frame(mechanism: DrawnMechanism, disc: float = 0.0, before: float = 0.0) ->
             for each in mechanism.sizes.sleeves
         ]
     else:
-        solids = [pin(0.5 * arm.bearing, 2.0 * mechanism.sizes.follower[1]).raised(arm.pivot)]
+        apart = 0.0 if mechanism.second is None else mechanism.second.spacing
+        half = 2.0 * mechanism.sizes.follower[1] - 1.5 * apart
+        solids = [pin(0.5 * arm.bearing, half).deeper(0.5 * apart).raised(arm.pivot)]
     discs = [each._replace(place=each.place + disc) for each in mechanism.sizes.discs]
     solids += [pin(0.5 * each.diameter, 0.5 * each.width).deeper(each.place) for each in discs]
     if discs:
@@ -497,6 +547,12 @@ def _end_words(material: ReportMaterial, field: EndField) -> str:
         f"cam angle {field.cam_angle:.4g}°{''.join(cases[:1])}: force {field.force:.4g} N, "
         f"moment {field.moment:.4g} N mm"
     )
+
+
+def _shown(values: Array) -> list[float]:
+    """Values to read, without round-off: zero below 1e-9 of the greatest one."""
+    size = np.abs(np.nan_to_num(values))
+    return _rounded(np.where(size > 1e-9 * size.max(), values, 0.0))
 
 
 def _rounded(values: ArrayLike) -> list[float]:

@@ -182,6 +182,28 @@ def helix(diameter: float, wire: float, turns: float, length: float) -> Solid:
     return Solid(order, np.hstack([first, second]))
 
 
+def fork(radius: float, hub: float, width: float, stem: float, top: float) -> Solid:
+    """Fork with the pin of a roller on a stem along y, about the roller centre, mm.
+
+    Parameters
+    ----------
+    radius, hub : float   of roller and pin
+    width : float         of the roller
+    stem : float          diameter of the stem
+    top : float           height of the end of the stem
+    """
+    plate, bridge, half = 0.25 * width, radius + 0.15 * stem, 0.5 * min(stem, radius)
+    inside, outside = width / 2 + 0.1 * width, width / 2 + 0.1 * width + plate
+    plates = [
+        box((-half, -half, min(side * inside, side * outside)),
+            (half, bridge + plate, max(side * inside, side * outside)))
+        for side in (-1.0, 1.0)
+    ]  # fmt: skip
+    joint = box((-half, bridge, -outside), (half, bridge + plate, outside))
+    axle = pin(hub, 1.1 * outside)
+    return joined([*plates, joint, axle, rod(stem, bridge + plate, top)])
+
+
 def unit_circle() -> Array:
     """Circle (2, n) of radius 1 about the origin."""
     angle = np.linspace(0.0, 2 * np.pi, _ROUND, endpoint=False)

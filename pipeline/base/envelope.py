@@ -61,8 +61,9 @@ class MechanismSizes:
     follower                half of its greatest length across the stem and along the camshaft
     stem_diameter, stem_end   height of the end over the reference point
     sleeves                 guides, and spring with its seats over the turn
-    discs                   second disc, gear, bearings, shaft
+    discs                   gear, bearings, shaft
     below                   length of the follower below roller centre or face
+    second                  second disc of the cam
     """
 
     cam_radius: float
@@ -76,11 +77,13 @@ class MechanismSizes:
     sleeves: tuple[Sleeve, ...]
     discs: tuple[Disc, ...]
     below: float = 0.0
+    second: tuple[Disc, ...] = ()
 
     @property
     def on_shaft(self) -> tuple[Box, ...]:
         """Boxes of the cam and the parts about its shaft."""
-        about = (Disc(0.0, self.cam_width, 2.0 * self.cam_radius), *self.discs)
+        cam = Disc(0.0, self.cam_width, 2.0 * self.cam_radius)
+        about = (cam, *self.second, *self.discs)
         return tuple(map(self._disc, about))
 
     @property

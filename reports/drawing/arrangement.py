@@ -360,7 +360,7 @@ def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing
     turn = cam_turn(float(motion.theta[row]))
     groups = (
         ShapeGroup("axes", (*_axes(m), *_gear(m))),
-        *_second_track(m, lift, turn),
+        *second_track(m, lift, turn),
         ShapeGroup("cam", tuple(_cam(m)), Pose(turn)),
         *(() if m.second is None else m.second.hidden(turn, Pen("ink", _EDGE * m.scale))),
         ShapeGroup("turning", tuple(_turning(m))),
@@ -376,7 +376,7 @@ def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing
     return Drawing("Arrangement", words, groups, _box(m))
 
 
-def _second_track(m: DrawnMechanism, lift: float, turn: float) -> tuple[ShapeGroup, ...]:
+def second_track(m: DrawnMechanism, lift: float, turn: float) -> tuple[ShapeGroup, ...]:
     """Groups of the second roller or face with its arm or frame, and of the second disc, behind the
     cam turned by `turn`, rad; none without them. Lift in mm.
     """

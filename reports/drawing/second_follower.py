@@ -19,8 +19,8 @@ from camwright.reports.drawing.drawing_shapes import (
     rectangle,
 )
 
-# Over bore, stem or roller: slot, plate beside it and past the roller centre, bar of a frame.
-_SLOT, _BESIDE_SLOT, _PAST, _FRAME_BAR = 1.15, 0.55, 0.65, 0.6
+SLOT, SLOT_SIDE, PAST, FRAME_BAR = 1.15, 0.55, 0.65, 0.6
+"""Over bore, stem or roller: slot, plate beside it and past the roller centre, bar of a frame."""
 _HALF_ROUND = 25  # points of half a circle
 
 
@@ -83,9 +83,9 @@ class DrawnSecond:
         bore : float    radius of the shaft, mm
         stem : float    diameter of the stem, mm
         """
-        slot, foot = _SLOT * bore, float(self.centre[1])
-        half, turn = slot + _BESIDE_SLOT * stem, np.linspace(0.0, np.pi, _HALF_ROUND)
-        past = _PAST * (self.radius or stem)
+        slot, foot = SLOT * bore, float(self.centre[1])
+        half, turn = slot + SLOT_SIDE * stem, np.linspace(0.0, np.pi, _HALF_ROUND)
+        past = PAST * (self.radius or stem)
         around = slot * np.stack([np.cos(turn), np.sin(turn)])
         low, high = -lifts[1], -lifts[0]
         ends = (around + np.array([[0.0], [high]]), np.array([[0.0], [low]]) - around)
@@ -103,7 +103,7 @@ class DrawnSecond:
         """
         wide, thick = face
         foot, half = float(self.centre[1]), max(room, 0.5 * wide)
-        outside = half + _FRAME_BAR * stem
+        outside = half + FRAME_BAR * stem
         opening = rectangle(-half, foot, half, 0.0)
         frame = rectangle(-outside, foot - thick, outside, thick)
         return DrawnOutline((frame, opening), edge)

@@ -70,23 +70,26 @@
 
   function traces() {
     const { flank, cam, follower, guide } = data.bodies;
-    const valued = flank.values && { intensity: flank.values, colorscale: "Viridis", lighting: EVEN,
-      hovertext: flank.words, hoverinfo: "text", flatshading: false, colorbar: arranged().bar };
-    const made = [solid(flank, valued || {}), solid(cam, { color: STEEL, lighting: PLAIN })];
+    const stresses = [flank, ...data.moving.map((part) => part.body)].flatMap((body) => body.values || []);
+    const limits = { colorscale: "Viridis", cmin: Math.min(...stresses), cmax: Math.max(...stresses) };
+    const valued = (body) => body.values && { intensity: body.values, ...limits, lighting: EVEN,
+      hovertext: body.words, hoverinfo: "text", flatshading: false };
+    const made = [solid(flank, flank.values ? { ...valued(flank), colorbar: arranged().bar } : {}), solid(cam, { color: STEEL, lighting: PLAIN })];
     made.push(solid(data.roller || follower, { color: "#e3e8ed" }));
     made.push({ type: "scatter3d", mode: "lines", x: [], y: [], z: [], hoverinfo: "skip",
       line: { color: MARK, width: 6 } });
     made.push({ type: "scatter3d", mode: "lines", x: [], y: [], z: [], hoverinfo: "skip",
       line: { color: "#444c55", width: 5 } });
-    const range = flank.values && { color: rim.of, colorscale: "Viridis",
-      cmin: Math.min(...flank.values), cmax: Math.max(...flank.values) };
+    const range = flank.values && { color: rim.of, ...limits };
     made.push({ type: "scatter3d", mode: "lines", x: rim.x, y: rim.y, z: rim.z, hoverinfo: "skip",
       line: { width: 7, ...(range || { color: DARK }) } });
     made.push({ type: "scatter3d", mode: "lines", x: hole.x, y: hole.y, z: hole.z,
       hoverinfo: "skip", line: { width: 2, color: "#59616b" } });
     made.push(solid(data.bodies.bore, { color: "#7d8894", lighting: PLAIN }));
     if (data.roller) made.push(solid(follower, { color: DARK }));
-    for (const part of data.moving) made.push(solid(part.body, { color: DARK }));
+    for (const { body, colour, plain } of data.moving)
+      made.push(solid(body, body.values ? { ...valued(body), showscale: false }
+        : { color: colour || DARK, lighting: plain ? PLAIN : LIGHT }));
     if (guide) made.push(solid(guide, { color: "#6c7783", opacity: 0.35 }));
     return made;
   }
@@ -105,7 +108,7 @@
     pairs.push(data.roller ? at(data.roller, data.facing[n]) : at(follower, lean));
     const [cx, cy] = [data.contact[0][n], data.contact[1][n]];
     pairs.push([[cx, cx], [cy, cy]]);
-    const zs = { 3: [-1.06 * data.half, 1.06 * data.half], 4: [] };
+    const zs = { 3: [-1.06, 1.06].map((end) => data.contact[2][n] + end * data.half), 4: [] };
     if (data.roller) {
       const spoke = data.roller.spoke, facing = data.facing[n] + Math.PI / 2;
       pairs.push([spoke.map((r) => ox + r * Math.cos(facing)), spoke.map((r) => oy + r * Math.sin(facing))]);

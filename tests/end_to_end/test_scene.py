@@ -251,7 +251,7 @@ def test_scene_says_what_the_run_found(page: Path) -> None:
     np.testing.assert_allclose(
         shown["peak pressure p0"], rows["p0_fe_MPa"][view.position], rtol=1e-4
     )
-    touching, centre = np.array(data["contact"]), np.array(data["origin"])
+    touching, centre = np.array(data["contact"][:2]), np.array(data["origin"])
     assert np.hypot(*(touching - centre)) == pytest.approx(
         np.full(turn_fixture.FRAMES, 1e3 * report_fixture.ROLLER), rel=1e-4
     )

@@ -449,6 +449,7 @@ ASK_FOR_A_KIND = {
         "pipeline.search.sizes.sizing": "narrows the shapes to those with an open roller",
         "reports.arrangement_data": _DRAWS,
         "reports.drawing.arrangement": _DRAWS,
+        "reports.scene_second": _DRAWS,
     },
     SPRINGS: {
         "pipeline.checks.spring_strength": "narrows the spring to the kind that a measure needs",

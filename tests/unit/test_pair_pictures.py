@@ -9,7 +9,7 @@ from camwright.geometry.arrays import rotation
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.run import run_case
-from camwright.reports import analysis_sheet
+from camwright.reports import analysis_sheet, scene_page, scene_solids
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of, motion_of
 from camwright.reports.drawing import arrangement
 from camwright.reports.report_data import read_material
@@ -25,11 +25,33 @@ DATA = Path(__file__).parents[1] / "data"
         pytest.param("yoke_pump", marks=pytest.mark.slow),
     ],
 )
-def turn(request, tmp_path_factory):
+def material(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param) / "run"
     run_case(read_case(DATA / f"{request.param}.toml"), folder, positions=72, jobs=1,
              depth=Tier.PREVIEW)  # fmt: skip
-    return read_material(folder).turn
+    return read_material(folder)
+
+
+@pytest.fixture(scope="module")
+def turn(material):
+    return material.turn
+
+
+@pytest.fixture(scope="module")
+def view(turn):
+    """The recorded turn of a deeper run: first roller or face at every cam angle."""
+    m, c, angle = mechanism_of(turn), turn.contour, turn.columns["cam_angle_deg"]
+    around = scene_solids.unit_circle()
+    body = np.array([[-12.0, 12.0, 12.0, -12.0], [0.0, 0.0, -10.0, -10.0]])
+    if m.roller is not None:
+        body = np.hstack([m.roller * around, 0.6 * m.roller * around])
+    step = c["cam_angle_deg"].size // angle.size
+    touch = np.stack([c[f"contour_{axis}_mm"][::step] for axis in "xy"])
+    origin = np.stack([c[f"pitch_{axis}_mm"][::step] for axis in "xy"], axis=1)
+    return scene_page.TurnView(
+        turn.load_case, np.arange(angle.size), angle, touch, 15.0 * touch / np.hypot(*touch), body,
+        origin, np.zeros(angle.size),
+    )  # fmt: skip
 
 
 def worst_rows(turn) -> dict[float, int]:
@@ -107,3 +129,54 @@ def test_outline_has_the_second_disc_and_the_follower_that_carries(turn):
     away = np.hypot(*(figure.follower - figure.touches[:, None])) if carried else np.zeros(1)
     assert away.min() < 2.0
     assert "hole" not in figure.caption
+
+
+def test_scene_moves_disc_and_roller_and_marks_the_contact_on_the_track_that_carries(
+    material, view
+):
+    turn, m = material.turn, mechanism_of(material.turn)
+    scene = scene_page.scene(material, view)
+    x, y, along = np.array(scene["contact"])
+    pulls = turn.walls < 0.0
+    assert np.unique(along[pulls]) == pytest.approx(m.second.spacing)
+    assert not along[~pulls].any()
+    touch = arrangement.contact_point(m, motion_of(turn))
+    assert np.stack([x, y])[:, pulls] == pytest.approx(touch[:, pulls], rel=1e-3, abs=1e-3)
+    assert scene["reach"]["deep"] >= m.second.spacing
+    if m.second.disc is None:
+        assert scene["moving"] == []
+        assert min(scene["bodies"]["follower"]["y"]) < -73.0
+        return
+    flank, _, roller, *_ = scene["moving"]
+    assert len(flank["body"]["z"]) == 2 * view.contour.shape[1]
+    middle = [0.5 * (min(each["body"]["z"]) + max(each["body"]["z"])) for each in (flank, roller)]
+    assert middle == pytest.approx([m.second.spacing] * 2)
+    for row in (0, 30, 50):
+        places = [
+            rotation(each["turn"][row]) @ np.array([each["body"]["x"], each["body"]["y"]])
+            + np.array([[each["x"][row]], [each["y"][row]]])
+            for each in (flank, roller)
+        ]
+        centre = 0.5 * (places[1].min(axis=1) + places[1].max(axis=1))
+        gap = np.hypot(*(places[0] - centre[:, None])).min() - m.second.radius
+        assert gap == pytest.approx(0.0, abs=0.15)
+
+
+def test_colours_are_of_the_track_that_carries(material, view, monkeypatch):
+    """Stress 100 MPa and the cam angle in degrees: 0 where the other track carries."""
+    monkeypatch.setattr(
+        scene_page, "_greatest", lambda _m, _v, count: 100.0 + np.arange(count) * 360.0 / count
+    )
+    turn, scene = material.turn, scene_page.scene(material, view)
+    values = np.array(scene["bodies"]["flank"]["values"])[: view.contour.shape[1]]
+    first, second = (np.where(turn.walls == side, 100.0 + view.angle, 0.0) for side in (1.0, -1.0))
+    if turn.second_disc is None:
+        wanted = np.maximum(first, np.roll(second, second.size // 2))
+        assert values == pytest.approx(wanted, abs=0.01)
+        return
+    assert values == pytest.approx(first, abs=0.01)
+    body = scene["moving"][0]["body"]
+    at = np.linspace(0.0, 360.0, len(body["values"]) // 2, endpoint=False)
+    drawn = np.interp(view.angle, at, body["values"][: at.size])
+    assert drawn == pytest.approx(second, abs=0.01)
+    assert body["words"][0].startswith("second disc, cam 0.0")
