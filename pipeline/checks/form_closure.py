@@ -169,7 +169,7 @@ def groove_wall(cam: LoadedCam) -> Array:
     reason="On both walls at once the roller slides on one of them, seizes or breaks.",
     load_cases=NONE,
     values=("cam.profile_tolerance", "cam.groove.clearance"),
-    levers=(levers.one("cam.groove.clearance"),),
+    levers=(levers.one("cam.groove.clearance"), levers.one("cam.profile_tolerance", -1)),
     page="Cam",
 ).measured("case", allowed=lambda _: Allowed(1.0), deviation=1e-9)
 def groove_clearance(cam: LoadedCam) -> Array:
@@ -256,7 +256,7 @@ def _breadths(solution: Solution) -> Array:
     closed_by="yoke",
     load_cases=NONE,
     values=("cam.profile_tolerance", "cam.yoke.clearance"),
-    levers=(levers.one("cam.yoke.clearance"),),
+    levers=(levers.one("cam.yoke.clearance"), levers.one("cam.profile_tolerance", -1)),
     page="Cam",
 )
 def yoke_breadth(solution: Solution) -> Demand | None:
@@ -321,7 +321,12 @@ def _of_turns(
     needs="roller",
     closed_by="conjugate",
     values=(*given.LOADS, "cam.conjugate.interference", "cam.profile_tolerance"),
-    levers=(levers.one("cam.conjugate.interference"), *levers.GENTLER),
+    levers=(
+        levers.one("cam.conjugate.interference"),
+        *(levers.one(each, -1) for each in ("cam.profile_tolerance", "cam.conjugate.wear_depth")),
+        levers.MASS,
+        *levers.GENTLER,
+    ),
     page="Contact",
 )
 def preload_least(solution: Solution) -> Demand | None:
@@ -462,7 +467,9 @@ def _worst_impact(solution: Solution, measure: Callable[[WallImpact], float]) ->
     return every[first_greatest([each.value for each in every])] if every else None
 
 
-_CLEARANCES = tuple(f"cam.{each}.clearance" for each in ("groove", "conjugate", "yoke"))
+_HELD_BY = "groove", "conjugate", "yoke"
+_CLEARANCES = tuple(f"cam.{each}.clearance" for each in _HELD_BY)
+_WEARS = tuple(f"cam.{each}.wear_depth" for each in _HELD_BY)
 
 
 @check(
@@ -479,7 +486,7 @@ _CLEARANCES = tuple(f"cam.{each}.clearance" for each in ("groove", "conjugate", 
     symbols={"c": f"{STATED} [mm]", "o": f"{STATED} [mm]"},
     reason="The follower no longer goes where the cam is to guide it.",
     values=_CLEARANCES,
-    levers=tuple(levers.one(each, -1) for each in _CLEARANCES),
+    levers=tuple(levers.one(each, -1) for each in (*_CLEARANCES, *_WEARS)),
     page="Cam",
 )
 def worn_clearance(solution: Solution) -> Demand | None:
@@ -500,7 +507,10 @@ _FLIGHT = (
     "flight of the rigid mass under inertia, weight, external and spring force through the"
     " clearance, with rebounds by follower.restitution, else by the damping of the elastic follower"
 )
-_CLEARANCE = (*(levers.one(each, -1) for each in _CLEARANCES), *levers.GENTLER)
+_CLEARANCE = (
+    *(levers.one(each, -1) for each in (*_CLEARANCES, *_WEARS, "cam.profile_tolerance")),
+    *levers.GENTLER,
+)
 
 
 @check(

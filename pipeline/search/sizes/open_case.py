@@ -43,6 +43,8 @@ GAPS = tuple(_PROVISIONAL)
 _WITHIN_THICKNESS = 0.999  # depth of a provisional curved face over its thickness
 HUB_WALL = 1.1
 """Least radius of a roller over that of its hub, where the bearing has no ring."""
+_WITHIN_GROOVE = 1.01
+"""Distance of a provisional path from the rim of its disc over the roller radius."""
 _HEAD = "\n# Values of the keys that the case left open, by camwright design sizes.\n"
 
 
@@ -154,7 +156,10 @@ def parse_open_case(
     other = ROLLER if flat or _entry(tables, "follower.face.depth") is not None else FACE
     absent = {other, OFFSET if isinstance(_entry(tables, "follower.arm"), dict) else DISTANCE}
     gaps = tuple(key for key in GAPS if key not in absent and _entry(tables, key) is None)
-    provisional = {**_PROVISIONAL, **_of_arm(tables)}
+    provisional = {**_PROVISIONAL, **_of_arm(tables), **_of_groove(tables)}
+    if gaps and _entry(tables, "cam.closure") == "conjugate":
+        limit = '"spring", "gravity", "groove" or "yoke" for sizes: those of two discs'
+        raise InputError("cam.closure", "conjugate", limit + " are not sought")
     for key in gaps:
         enter(tables, key, _least_roller(tables) if key == ROLLER else provisional[key])
     case = completed(validated(tables), folder)
@@ -199,6 +204,16 @@ def _of_arm(tables: Tables) -> Mapping[str, str]:
     elif prime is None:
         prime = float(np.sqrt(max(distance**2 - length**2, 0.5 * distance**2))) - lowered
     return face | {PRIME: units.format(prime, "mm"), DISTANCE: units.format(distance, "mm")}
+
+
+def _of_groove(tables: Tables) -> Mapping[str, str]:
+    """Prime radius that leaves a groove a rim around it; {} without one."""
+    outer, roller = _entry(tables, "cam.groove.outer_radius"), _entry(tables, ROLLER)
+    if not isinstance(outer, str):
+        return {}
+    size = units.parse(_least_roller(tables) if roller is None else roller, "mm", ROLLER)
+    within = units.parse(outer, "mm", "cam.groove.outer_radius") - _WITHIN_GROOVE * size
+    return {PRIME: units.format(within, "mm")}
 
 
 def _least_roller(tables: Tables) -> str:

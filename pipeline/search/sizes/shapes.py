@@ -417,7 +417,6 @@ def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
     if not 0.0 <= least_radius < np.inf:
         raise InputError("least radius", least_radius, ">= 0 m")
     case, section, gaps = opened.case, opened.case.lift, opened.gaps
-    case.require_force_closure("its sizes")
     arm = case.follower.arm
     if isinstance(section, LiftEccentric) and case.follower.kind != "flat":
         if arm is not None:

@@ -42,6 +42,7 @@ from camwright.pipeline.checks.contact_strength import (
     shakedown,
 )
 from camwright.pipeline.checks.flat_face_sliding import face_width, self_locking
+from camwright.pipeline.checks.form_closure import outer_undercut
 from camwright.pipeline.checks.jump_and_jamming import (
     contact_at_overspeed,
     contact_force_margin,
@@ -95,7 +96,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _GROWTH = (pressure_angle, curvature_ratio, undercut, concave_radius, minimum_wall,
-           contact_pressure, contact_pressure_at_life, edge_pressure, shakedown,
+           outer_undercut, contact_pressure, contact_pressure_at_life, edge_pressure, shakedown,
            jam_index)  # fmt: skip
 """Checks that a larger cam can pass."""
 _HELD = (contact_force_margin, jump, jump_speed, contact_at_overspeed, contact_over_speed,
@@ -441,7 +442,10 @@ class _SizeSearch:
         if ROLLER in gaps and isinstance(self.shapes, RollerShapes):
             force = np.stack([each.loads.normal_force for each in screened.solved.cycles])
             curvature = np.stack(
-                [each.contour.pitch.curvature(each.theta) for each in screened.solved.cycles]
+                [
+                    each.loads.wall * each.contour.pitch.curvature(each.theta)
+                    for each in screened.solved.cycles
+                ]
             )
             shape = self.shapes.best_roller(shape, force, curvature)
             screened = self._screened(shape, spring)
