@@ -146,7 +146,7 @@ def pin_in_hole(
     InputError
         If a value is out of these bounds; a negative clearance is a press fit.
     ContactError
-        If the half contact angle exceeds `WINDOW_MAX`.
+        If the half contact angle exceeds `WINDOW_MAX`, or its extent does not settle.
 
     References
     ----------
@@ -170,6 +170,8 @@ def pin_in_hole(
                 f" must be < {shown(WINDOW_MAX, 'deg', 3)}"
             )
         window = min(window * (1.4 if share > _FILLED[1] else share / 0.75), WINDOW_MAX)
+    else:
+        raise ContactError("pin in hole: the extent of the contact did not settle")
     return Conforming(
         angle=contact.angle,
         pressure=contact.pressure * load / radius,

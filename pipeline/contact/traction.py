@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, Value, Values, finite, freeze, positive, readonly
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_in_plane, von_mises
 
@@ -24,7 +24,7 @@ _LEAST_STICK = 1e-9
 # Places of the greatest stress: reach beside and below the contact in half-widths, cells to the
 # reach and, of each zoom, to a cell.
 _GRID_REACH, _CELLS, _NEARBY, _TABLE_ZOOMS = 1.25, 25, 5, 4
-_TURNS_MAX = 50
+_TURNS_MAX, _SPIN_HALVINGS = 50, 60  # turns that settle, then halvings of the range of the spin
 _SPEED_CONVERGED = 1e-9  # relative speed of a periodic roller
 
 
@@ -233,6 +233,8 @@ def rolling_contact(
     ------
     InputError
         If a value is not finite, or the radius or the period not positive.
+    ContactError
+        If no spin of the roller recurs after a turn.
 
     References
     ----------
@@ -287,15 +289,20 @@ def _steps(
     inertia : float          of the roller, kg m2
     radius : float           of the roller, m
     step : float             time between positions, s
+
+    Raises
+    ------
+    ContactError
+        If no spin recurs after a turn.
     """
-    count = rolling.size
-    tangential, turning = np.zeros(count), np.array(rolling)
-    omega = float(rolling[-1])
-    scale = max(float(np.abs(rolling).max()), 1e-300)
-    before, columns = omega, (rolling, demand, limit, resisting, np.sign(rolling))
+    tangential, turning = np.zeros(rolling.size), np.array(rolling)
+    columns = (rolling, demand, limit, resisting, np.sign(rolling))
     rows = list(zip(*(each.tolist() for each in columns), strict=True))
-    for _ in range(_TURNS_MAX):
-        start = omega
+    settled = _SPEED_CONVERGED * max(float(np.abs(rolling).max()), 1e-300)
+
+    def turned(omega: float) -> float:
+        """Spin after a turn from one, rad/s; the turn is written."""
+        before = float(rolling[-1])
         for k, (target, rolled, most, drag, way) in enumerate(rows):
             if omega == before:
                 needed = rolled
@@ -309,9 +316,24 @@ def _steps(
             else:
                 omega = _braked(omega + pull * radius * step / inertia, drag * step / inertia)
             tangential[k], turning[k], before = pull, omega, target
-        if abs(omega - start) <= _SPEED_CONVERGED * scale:
-            break
-    return tangential, turning
+        return omega
+
+    omega = float(rolling[-1])
+    for _ in range(_TURNS_MAX):
+        start, omega = omega, turned(omega)
+        if abs(omega - start) <= settled:
+            return tangential, turning
+    # a heavy roller with little friction takes many turns; a greater spin leaves a greater one
+    low, high = min(float(rolling.min()), 0.0), max(float(rolling.max()), 0.0)
+    for _ in range(_SPIN_HALVINGS):
+        start = 0.5 * (low + high)
+        omega = turned(start)
+        if abs(omega - start) <= settled:
+            return tangential, turning
+        low, high = (start, high) if omega > start else (low, start)
+    raise ContactError(
+        f"roller: its spin changes by {abs(omega - start):.3g} rad/s over a turn, must recur"
+    )
 
 
 def _braked(omega: float, loss: float) -> float:

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from camwright.geometry.arrays import Array, Value, Values
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT
@@ -262,6 +262,11 @@ def grease_load_factor(load_share: Array, allowed_share: Array, duty: Array) -> 
                                      `grease_load_share`, unbounded
     duty : array (s,)                q_i
 
+    Raises
+    ------
+    ContactError
+        If the root is not found.
+
     References
     ----------
     Palmgren (1924), Miner (1945): shares of life add up; JTEKT as in `grease_life`.
@@ -289,6 +294,8 @@ def grease_load_factor(load_share: Array, allowed_share: Array, duty: Array) -> 
 
     for _ in range(_NEWTON_STEPS):
         before, inverse = inverse, next_inverse(sizes, np.real(room))
-        if np.all(before - inverse <= 1e-15 * before, where=solvable):
+        if not np.any(before - inverse > 1e-15 * before, where=solvable):
             break
+    else:
+        raise ContactError(f"grease life: the load did not settle in {_NEWTON_STEPS} steps")
     return np.where(solvable, 1.0 / np.where(solvable, next_inverse(load, room), 1.0), 0.0)

@@ -214,7 +214,7 @@ class ScreenedCam(LoadedCam):
 
         The axial force is that without friction over the share that the friction leaves of it, and
         the load ratios are those of the table at that force: repeated until the force settles. They
-        change little with the force, so that a few rounds do.
+        change little with the force, so that a few rounds do; NaN where they do not.
 
         Parameters
         ----------
@@ -237,8 +237,11 @@ class ScreenedCam(LoadedCam):
             jam = ratios[0] * rubs[0][left] + ratios[1] * rubs[1][left]
             axial[left] = free[left] / share_left(direction[left], jam)
             left = left[np.abs(axial[left] - now) > _FRICTION_SETTLED * now]
+        unsettled = np.zeros(free.size)
+        unsettled[left] = np.nan
+        factor = supports.factor + unsettled.reshape(shape)
         on_a, on_b = supports.rubbing(axial.reshape(shape))
-        return OfGuides(on_a * supports.factor, on_b * supports.factor)
+        return OfGuides(on_a * factor, on_b * factor)
 
     @cached_property
     def guides(self) -> GuideLoads:

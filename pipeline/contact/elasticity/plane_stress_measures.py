@@ -58,6 +58,7 @@ _POWERS = np.array([(i, j) for i in range(5) for j in range(5 - i)])
 # Spacing of the coarse points, in half-widths, and the share of the largest value on them above
 # which the maximum may lie nearby.
 _COARSE_CELL, _LIKELY_SHARE = 0.125, 0.85
+_SUMMIT_STEP_END = 1e-6  # last step of Newton's method to a maximum, in cells
 
 
 class PeakFinder:
@@ -214,4 +215,6 @@ def _summit(fit: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
         at = at - np.where(trusted, step, 0.0)
         trusted &= (np.abs(at) < 0.5).all(axis=0)
         at = np.where(trusted, at, 0.0)
+    trusted &= (np.abs(step) < _SUMMIT_STEP_END).all(axis=0)
+    at = np.where(trusted, at, 0.0)
     return np.asarray((fit * _terms(at)).sum(axis=0)), at, trusted

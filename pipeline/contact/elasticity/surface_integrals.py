@@ -21,6 +21,8 @@ from camwright.pipeline.contact.elasticity.pressure_distribution import (
     PressureShapes,
 )
 
+_PLACED = 1e-9  # last step to a place on a facet, over its length
+
 
 @dataclass(frozen=True, eq=False)
 class ContactFrame:
@@ -134,4 +136,7 @@ def _local_coordinate(xi_nodes: Array, xi: Array) -> Array:
         s = s - step
         if np.abs(step).max(initial=0.0) < 1e-14:
             break
+    else:
+        if not np.abs(step).max() < _PLACED:  # beyond the round-off of a small facet
+            raise ContactError("a place on the surface was not found on its facet")
     return np.asarray(s)

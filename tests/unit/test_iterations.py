@@ -1,0 +1,116 @@
+"""No iteration ends in silence: one that does not settle raises, or is told in another way."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.pipeline.contact.traction import Drag, rolling_contact
+
+ROOT = Path(__file__).parents[2]
+FOLDERS = ("geometry", "meshes", "pipeline", "reports", "validation")
+TOLD = {
+    "geometry/cam_size.py: _by_angle": "bisection, ended where its bracket cannot shrink",
+    "geometry/interference.py: _polished": "crossings that do not settle are left out",
+    "pipeline/base/crossing.py: first_passing": "bisection by the halvings of its caller",
+    "pipeline/contact/elasticity/active_set.py: _together": "the rest is solved one by one",
+    "pipeline/contact/elasticity/fitted_stress.py: greatest_fitted": "None: the caller says so",
+    "pipeline/contact/finite_length/factor_table.py: _solved": "the last attempt raises",
+    "pipeline/contact/hub_elements.py: _settled": "None: the caller takes the least energy",
+    "pipeline/screening/live_preview.py: _in_range": "a preview without factors",
+    "pipeline/screening/live_preview.py: with_torques": "without a range of speeds",
+    "pipeline/screening/screened_cam.py: _settled": "NaN of what has not settled",
+    "pipeline/search/machine/synthesised_points.py: promising": "a count of designs",
+    "pipeline/search/parts/part_search.py: searched": "a count of limits",
+    "pipeline/search/remedies/remedy_search.py: _confirmed": "the best attempt, judged anew",
+    "pipeline/search/sizes/sizing.py: _stiffened": "the first attempt, whose checks are shown",
+    "pipeline/search/sizes/sizing.py: sized": "the last attempt, whose checks are shown",
+    "pipeline/smoothing/constrained_synthesis.py: synthesise": "synthesis_converged judges it",
+    "pipeline/studies/batch/solver_process.py: _row": "a row that says so",
+}
+"""Functions whose loop may end without a raise, and how they tell it."""
+
+
+def blocks(tree: ast.AST) -> Iterator[list[ast.stmt]]:
+    for node in ast.walk(tree):
+        for name in ("body", "orelse", "finalbody"):
+            block = getattr(node, name, None)
+            if isinstance(block, list):
+                yield block
+
+
+def has(nodes: list[ast.stmt], kinds: type[ast.stmt] | tuple[type[ast.stmt], ...]) -> bool:
+    return any(isinstance(each, kinds) for node in nodes for each in ast.walk(node))
+
+
+def is_count(node: ast.stmt) -> bool:
+    """Whether a statement is ``for _ in range(...)``."""
+    return (
+        isinstance(node, ast.For)
+        and isinstance(node.target, ast.Name)
+        and node.target.id == "_"
+        and isinstance(node.iter, ast.Call)
+        and isinstance(node.iter.func, ast.Name)
+        and node.iter.func.id == "range"
+    )
+
+
+def silent(text: str) -> Iterator[str]:
+    """Names of functions with a loop of a count that may end early, and ends in silence else."""
+    for function in ast.walk(ast.parse(text)):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        for block in blocks(function):
+            for k, node in enumerate(block):
+                if not is_count(node) or not has([node], (ast.Break, ast.Return)):
+                    continue
+                assert isinstance(node, ast.For)
+                if not has([*node.orelse, *block[k + 1 :]], ast.Raise):
+                    yield function.name
+
+
+def test_an_iteration_that_does_not_settle_says_so() -> None:
+    """A new loop raises after its last step, or has its reason above; a mended one leaves it."""
+    found = {
+        f"{path.relative_to(ROOT).as_posix()}: {name}"
+        for folder in FOLDERS
+        for path in sorted((ROOT / folder).rglob("*.py"))
+        for name in silent(path.read_text(encoding="utf-8"))
+    }
+    assert found == set(TOLD)
+
+
+def test_the_syntax_tree_sees_a_silent_end() -> None:
+    loop = "def solved(x):\n    for _ in range(9):\n        x = x / 2\n        if x < 1:\n"
+    assert [*silent(f"{loop}            break\n    return x\n")] == ["solved"]
+    assert [*silent(f"{loop}            return x\n    raise ValueError\n")] == []
+    assert [*silent(f"{loop}            break\n    else:\n        raise ValueError\n")] == []
+
+
+def heavy(inertia: float, count: int = 360) -> tuple[np.ndarray, ...]:
+    """Force, spin and its rate of a roller that leaves its cam for half of the turn."""
+    theta = 2.0 * np.pi * np.arange(count) / count
+    force = np.maximum(200.0 * np.sin(theta), 0.0)
+    spin = 300.0 + 120.0 * np.cos(theta)
+    return theta, force, spin, -120.0 * 10.0 * np.sin(theta) * np.ones_like(theta)
+
+
+@pytest.mark.parametrize("inertia", [1e-3, 0.1, 10.0, 1000.0])
+def test_the_spin_of_a_heavy_roller_recurs(inertia: float) -> None:
+    """The spin after a turn is that before it, however little friction turns the roller: by the
+    balance of the impulses over the turn, friction less bearing drag, within 1e-6 of the drag.
+    """
+    _, force, spin, rate = heavy(inertia)
+    drag = Drag(inertia=inertia, friction=0.05, torque=0.02)
+    period, radius = 2.0 * np.pi / 10.0, 0.02
+    rolling = rolling_contact(
+        force, spin, rate, np.full(force.size, 3.0), np.full(force.size, 1e-4),
+        np.full(force.size, 0.02), drag=drag, radius=radius, period=period,
+    )  # fmt: skip
+    turning = spin - rolling.slip / radius
+    step = period / force.size
+    gained = (radius * rolling.force - np.sign(spin) * 0.02) * step / inertia
+    np.testing.assert_allclose(np.diff(turning), gained[1:], rtol=0, atol=1e-6 * 300.0)
+    assert abs(turning[0] - turning[-1] - gained[0]) < 1e-6 * 300.0
