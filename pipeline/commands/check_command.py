@@ -537,7 +537,6 @@ def _checked_case(
         measurement_words,
     )
     from camwright.pipeline.case.plausibility import implausible
-    from camwright.pipeline.contact.tiers import Tier
     from camwright.pipeline.preview import preview_case
     from camwright.pipeline.results.check_records import judgement, to_be_confirmed
     from camwright.pipeline.results.junit_report import Clock
@@ -576,7 +575,6 @@ def _checked_case(
         "case": case.name,
         "input_sha256": case.sha256,
         **judgement(checks, trial.depth.word),
-        **({} if case.cam.second is None else {"deepest": Tier.PREVIEW.word}),
         "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(trial.binding),
         "governing": governing_id(made),

@@ -75,6 +75,14 @@ class ContactHistory(Displayed):
         """The quantities by name."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "tier"}
 
+    def where(self, at: NDArray[np.bool_], other: ContactHistory) -> ContactHistory:
+        """This history, with another by the same tier at some angles `at` (n,)."""
+        mixed = {
+            name: np.where(at if values.ndim == 1 else at[:, None], getattr(other, name), values)
+            for name, values in self.arrays.items()
+        }
+        return ContactHistory(**mixed, tier=self.tier)
+
     @property
     def unsolved(self) -> NDArray[np.bool_]:
         """Where the contact is wider than a tenth of the relative radius (n,), bool: not solved."""

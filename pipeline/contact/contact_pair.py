@@ -80,6 +80,14 @@ class ContactPair:
         both = (self, pushes), (self.pulling, ~pushes)
         return [(pair, at) for pair, at in both if at.any()]
 
+    @property
+    def other_track(self) -> ContactPair:
+        """This pair on the track that does not carry at each cam angle."""
+        if self.wall is None:
+            return self
+        carries = self.wall
+        return replace(self, wall=lambda theta: -carries(theta))
+
     def contacts(self, theta: Array) -> tuple[Array, Array]:
         """Contact points (2, n), m, on the surface that carries at cam angles (n,), rad, and its
         outward normals (2, n).

@@ -83,7 +83,8 @@ class Cycle(Tabled):
     half-planes, and for a contour that encloses no body, where it is unknown. None inside rolling
     and part loads means that the machine has no such part. error_bars: demands have those of their
     sampling; without where ratios of demands alone count. ends: finite elements over half-spaces
-    of the pressure along the line of contact; None: half-spaces alone. results: by name,
+    of the pressure along the line of contact; None: half-spaces alone. idle: contact on the track
+    that bears less, of preloaded discs; None of others. results: by name,
     computed from loads and contact.
     """
 
@@ -94,6 +95,7 @@ class Cycle(Tabled):
     contact: ContactHistory
     error_bars: bool = field(default=True, kw_only=True)
     ends: EndCorrection | None = field(default=None, kw_only=True)
+    idle: ContactHistory | None = field(default=None, kw_only=True)
     results: dict[str, object] = field(default_factory=dict, init=False)
 
     def with_ends(self, correction: EndCorrection | None) -> Cycle:
@@ -285,7 +287,9 @@ class Cycle(Tabled):
         """Traction, creep, film, fatigue and bore stress; NaN if the contour is no body."""
         if self.contact.tier is None:
             return RollingHistory.unknown(self.theta.size)
-        return rolling_history(self.machine, self.pair, self.bodies, self.loads, self.surface)
+        return rolling_history(
+            self.machine, self.pair, self.bodies, self.loads, self.surface, self.idle
+        )
 
     @KeptResult
     def pin_slope(self) -> Array | None:
@@ -428,6 +432,15 @@ class Cycle(Tabled):
         if machine.disc_preload is not None:
             words = "Normal force on the preloaded disc that bears less"
             columns[Column("idle_force", "N", words)] = loads.idle_force
+        if self.idle is not None:
+            words = "Maximum contact pressure on the preloaded disc that bears less"
+            hertz, elements = self.idle.p0_hertz, self.idle.p0
+            if self.idle.tier is Tier.PREVIEW:
+                elements = np.full(hertz.size, np.nan)
+            columns |= {
+                Column("idle_p0_hertz", "MPa", f"{words}, Hertz", unknown=True): hertz,
+                Column("idle_p0_fe", "MPa", f"{words}, finite elements", unknown=True): elements,
+            }
         return columns
 
     @property

@@ -27,6 +27,7 @@ from camwright.pipeline.contact.rolling_envelope import (
 from camwright.pipeline.contact.traction import RollingContact, rolling_increase
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.contact_heat import flash_history, slip_flash
+from camwright.pipeline.cycle.contact_setup import CarryingWall, under_load
 from camwright.pipeline.cycle.oil_film_history import FilmHistory, film_history
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
 from camwright.pipeline.follower.follower_forces import Loads, follower_loads
@@ -186,9 +187,12 @@ def rolling_history(
     bodies: CycleBodies | None,
     loads: Loads,
     contact: ContactHistory,
+    idle: ContactHistory | None = None,
 ) -> RollingHistory:
     """Rolling or sliding over a turn at the angles of its loads: traction, heat, film, fatigue and
     bore stress.
+
+    idle : contact on the track that bears less, of preloaded discs
 
     Without the meshed bodies the stresses are those of half-planes, and there is no bore stress.
     """
@@ -198,7 +202,7 @@ def rolling_history(
     if motion.traction_share is not None and follower.friction is not None:
         more = rolling_increase(pair.cam.poisson, follower.friction, motion.traction_share)
         shear, mises = contact.tau_max * more[0], contact.von_mises * more[1]
-    map_ = partial(_envelope, machine, pair, bodies, loads, contact)
+    map_ = partial(_envelope, machine, pair, bodies, loads, contact, idle)
     worst = partial(map_, governing=True) if bodies is None else None
     flash = None
     if motion.sliding is not None:
@@ -232,11 +236,13 @@ def _envelope(
     bodies: CycleBodies | None,
     loads: Loads,
     contact: ContactHistory,
+    idle: ContactHistory | None,
     *,
     governing: bool = False,
 ) -> Envelope:
     """Map of the maximum stresses below the surface over the turn, at its own stations; governing :
-    only at those with the greatest stresses.
+    only at those with the greatest stresses. Of preloaded discs it is that of the disc with the
+    greater pressure at each station.
     """
     stations, theta = uniform_turn(STATIONS), loads.theta
     system = replace(machine.system, rubbing=loads.rubbing)
@@ -245,6 +251,15 @@ def _envelope(
     if card.fatigue_torsion is not None and card.fatigue_bending is not None:
         limits = FatigueLimits(card.fatigue_torsion, card.fatigue_bending)
     load = np.maximum(there.normal_force, 0.0) / pair.width
+    if idle is not None:
+        pair = under_load(pair, there)
+        less = there.idle_force / pair.width
+        pressures = [force / each.relative_radius(stations)
+                     for force, each in ((load, pair), (less, pair.other_track))]  # fmt: skip
+        harder = CarryingWall(stations, there.wall * (pressures[0] - pressures[1]))
+        load = np.where(pressures[1] > pressures[0], less, load)
+        contact = contact.where(harder(theta) != loads.wall, idle)
+        pair = replace(pair, wall=harder)
     added = None if bodies is None else added_stress(pair, bodies, theta, contact.line_load)
     return swept(
         pair, theta, contact, stations, load, limits=limits, body_stress=added, governing=governing

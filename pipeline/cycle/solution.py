@@ -64,6 +64,8 @@ from camwright.pipeline.torque.torque import Torque
 CHUNK = 180
 MESHING, CONTACT = "mesh", "cycle"
 CERTIFICATE, BENCHMARKS, ENDS = "certificate", "benchmarks", "ends"
+_OTHER_TRACK = ".idle"
+"""Ending of the name of the load case under which the contact of that track is stored."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -312,6 +314,7 @@ def solved_turns(
             bodies,
             _contact(loaded, bodies, each, body, store, progress),
             error_bars=error_bars,
+            idle=_idle(loaded, bodies, each, body, store, progress),
         )
         for each, loaded in ((each, under_load(pair, each.loads)) for each in turns)
     )
@@ -507,6 +510,26 @@ def _contact(
     pieces = list(_pieces(pair, bodies, each, store, progress))
     arrays = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
     return ContactHistory(**arrays, tier=Tier.CYCLE)
+
+
+def _idle(
+    pair: ContactPair,
+    bodies: CycleBodies | None,
+    each: Turn,
+    body: bool,
+    store: ContactStore,
+    progress: Progress,
+) -> ContactHistory | None:
+    """Contact over a turn on the track that bears less, of preloaded discs; None of others.
+
+    Parameters as of `_contact`.
+    """
+    if each.machine.disc_preload is None:
+        return None
+    machine = replace(each.machine, load_case=f"{each.machine.load_case}{_OTHER_TRACK}")
+    loads = replace(each.loads, normal_force=each.loads.idle_force)
+    other = replace(each, machine=machine, loads=loads)
+    return _contact(pair.other_track, bodies, other, body, store, progress)
 
 
 def _pieces(

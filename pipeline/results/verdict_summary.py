@@ -319,8 +319,6 @@ def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
     so_far = "all is well so far: every check that a preview can judge passes"
     if document["depth"] != PREVIEW:
         so_far = f"all is well so far: every check at the depth {document['depth']} passes"
-    if document.get("deepest") == document["depth"]:
-        return [f"{so_far}. OPEN: this kind of cam is judged no deeper"]
     name = Path(places.case).stem
     return [
         f"{so_far}. OPEN, as deeper ones need finite elements;",
