@@ -561,8 +561,8 @@ def _by_elements(demand: Demand, solution: Solution) -> Demand:
         f"{shown(float(pivot.foundation[row]), 'MPa', 3)} by a rigid pin in slices",
         f"the pin tilts by {shown(float(pivot.tilt[row]), 'mrad', 3)}, its clearance included",
         f"error bar {100.0 * pivot.error:.2g} % of two meshes",
-        f"solved at {pivot.solved} angles, between every second of which"
-        f" {100.0 * pivot.difference:.2g} % of the greatest are missed",
+        f"solved at {pivot.solved} angles, halfway between fewer of which at most"
+        f" {100.0 * pivot.difference:.2g} % of it were missed",
     )
     method = (
         "pin and bush by finite elements along their axis and harmonics around it, in contact with"

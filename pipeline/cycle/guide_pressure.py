@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import ContactError
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base.tables import Column
@@ -110,14 +110,21 @@ def pivot_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
         index = first_greatest([each.edge_pressure.max() for each in solved])
         worst = solved[index]
         row = worst.worst + sum(each.tilt.size for each in solved[:index])
-        half = worst.angles.size // 2
-        around = np.roll(worst.pressure, half, axis=0)
+        places = np.linspace(worst.places[0], worst.places[-1], SLICES)
+        along = np.stack(
+            [np.interp(places, worst.places, hat) for hat in np.eye(worst.places.size)]
+        )
+        around = [
+            np.interp(_round(), worst.angles, each, period=FULL_TURN) for each in worst.pressure.T
+        ]
         return turned | {
-            "position_mm": _MM * worst.places,
-            "line_load_N_per_mm": _N_PER_MM * np.concatenate([each.line for each in solved]),
+            "position_mm": _MM * places,
+            "line_load_N_per_mm": _N_PER_MM
+            * np.concatenate([each.line for each in solved])
+            @ along,
             "worst_row": np.array(row),
-            "bore_angle_deg": np.degrees(worst.angles[1] * np.arange(-half, half + 1)),
-            "bore_pressure_MPa": _MPA * np.concatenate([around, around[:1]]).T,
+            "bore_angle_deg": np.degrees(_round()),
+            "bore_pressure_MPa": _MPA * along.T @ np.array(around),
         }
     pushes = [PivotPush.of(c.machine, c.loads, c.follower_moment) for c in cycles]
     pressed = [each for each in pushes if each is not None]

@@ -198,14 +198,16 @@ def test_residuals_of_the_contact_are_those_of_the_pin_too(name):
 
 
 def test_file_of_the_pivot_by_elements():
-    """Around the bore from -180 to 180 deg, the row of the greatest pressure, sizes with signs."""
+    """Hat functions around the bore and along it, the row of the greatest pressure, signs."""
     (cycle,) = by_elements().cycles
     arrays = pivot_arrays([cycle])
-    assert arrays["bore_angle_deg"].tolist() == pytest.approx([45.0 * k for k in range(-4, 5)])
-    assert arrays["bore_pressure_MPa"].shape == (3, 9)
-    assert arrays["bore_pressure_MPa"][2, 4] == pytest.approx(20.0)
-    row = int(arrays["worst_row"])
-    assert arrays["line_load_N_per_mm"][row].tolist() == pytest.approx([-2.0, 0.0, 4.0])
+    angle, pressure = arrays["bore_angle_deg"], arrays["bore_pressure_MPa"]
+    assert pressure.shape == (81, 721) and arrays["position_mm"].shape == (81,)
+    assert pressure[-1, 360] == pytest.approx(20.0)
+    assert pressure[60, angle == 22.5] == pytest.approx(5.0)
+    assert pressure[-1, angle == -22.5] == pytest.approx(10.0)
+    line = arrays["line_load_N_per_mm"][int(arrays["worst_row"])]
+    assert line[[0, 20, 40, 80]].tolist() == pytest.approx([-2.0, -1.0, 0.0, 4.0])
     columns = {each.name: values for each, values in cycle.columns().items()}
     assert columns["pivot_edge_pressure_foundation"].max() == pytest.approx(28e6)
     assert columns["pivot_tilt"].max() == pytest.approx(2e-3)
