@@ -20,6 +20,11 @@ _PROMINENCE = 0.1
 _LOST = LimitLine(0.0, "contact lost at")
 
 
+def _lost(turn: SheetTurn) -> tuple[LimitLine, ...]:
+    """Line at which contact is lost; none of a cam that pulls, whose other track takes over."""
+    return () if turn.walls is not None else (_LOST,)
+
+
 def endurance(turn: SheetTurn) -> tuple[LimitLine, ...]:
     """Limit of the contact pressure."""
     return turn.limit("endurance", "MPa", "contact_pressure")
@@ -89,16 +94,18 @@ def _energy(turn: SheetTurn) -> Figure | None:
     rest = turn.case.get("follower", {}).get("face") is not None
     stored, moving = spring - spring[np.argmin(lift)], 0.5 * mass * speed**2
     put_in = _summed(c["cam_torque_Nm"], theta)
-    curves = (Curve(turn.crank, stored, "spring, above zero lift"),
-              Curve(turn.crank, moving, "kinetic, of the follower", "green"))  # fmt: skip
+    kinetic = Curve(turn.crank, moving, "kinetic, of the follower", "green")
+    held = Curve(turn.crank, stored, "spring, above zero lift")
+    curves = (held, kinetic) if turn.sprung else (kinetic,)
+    within = "stored in the spring and in the motion" if turn.sprung else "in the motion"
     work = (Curve(turn.crank, put_in, "work of the cam", "vermillion"),
             Curve(turn.crank, rubbing + drag, "guide friction", "muted"))  # fmt: skip
     heat = "" if turn.on_arm else " and heat of the guides"
     note = " The face rubs on the cam as well." if rest else ""
     return angle_figure(
         turn, "energy", "Energy flow over the cycle",
-        "Energy stored in the spring and in the motion of the follower; work that the cam has put "
-        f"into the follower{heat} since cam angle 0.{note}",
+        f"Energy {within} of the follower; work that the cam has put into the follower{heat} since"
+        f" cam angle 0.{note}",
         Panel("energy", "J", curves), Panel("since angle 0", "J", work), mark=False,
     )  # fmt: skip
 
@@ -167,7 +174,7 @@ def _speed_sweep(turn: SheetTurn) -> Figure | None:
                    for (name, label), colour in zip(columns, SERIES, strict=False))  # fmt: skip
     surge = surge[first]
     marks = tuple(AxisMark(float(speed[k]), f"resonance {speed[k]:.0f} rpm") for k in _peaks(surge))
-    panels = [Panel("contact force", "N", forces, (_LOST,))]
+    panels = [Panel("contact force", "N", forces, _lost(turn))]
     if np.any(surge):
         panels.append(Panel("spring surge", "N", (Curve(speed, surge),), height=0.8))
     return over(
@@ -218,15 +225,18 @@ def _normal_force(turn: SheetTurn) -> Figure | None:
         ("normal_force_by_length_N", "guide length"),
         ("normal_force_by_clearance_N", "guide clearance"),
     )
+    ends = "Contact is lost where the normal force reaches zero."
+    if turn.walls is not None:
+        ends = "Where the normal force reaches zero the other track takes over."
     return angle_figure(
         turn, "normal-force", "Normal force",
         "Contact force between cam and follower and its component along the arc of the roller "
-        "centre. Contact is lost where the normal force reaches zero."
+        f"centre. {ends}"
         if turn.on_arm
         else "Contact force between cam and follower and its component along the stem, guide "
-        "friction included; change by the finite length and by the clearance of the guides. Contact"
-        " is lost where the normal force reaches zero.",
-        Panel("force", "N", curves, (_LOST, *_force_limits(turn))),
+        "friction included; change by the finite length and by the clearance of the guides. "
+        f"{ends}",
+        Panel("force", "N", curves, (*_lost(turn), *_force_limits(turn))),
         Panel("change", "N", curves_of(turn, *shares), height=0.6),
     )  # fmt: skip
 
@@ -406,7 +416,7 @@ def _elastic(turn: SheetTurn) -> Figure | None:
         turn, "elastic", "Contact force: elastic stem, friction bounds",
         "Contact force with an elastic stem at the computed cam speed, and with minimum and "
         "maximum guide friction.",
-        Panel("contact force", "N", curves_of(turn, *forces), (_LOST,)),
+        Panel("contact force", "N", curves_of(turn, *forces), _lost(turn)),
         Panel("shortening", "um", curves_of(turn, ("stem_shortening_um", "")), height=0.7),
         Panel("cam speed", "rad/s", curves_of(turn, ("cam_speed_rad_per_s", "")), height=0.6),
     )  # fmt: skip

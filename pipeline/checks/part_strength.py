@@ -706,11 +706,14 @@ bore_pressure = check(
     title="Torque reversals per turn at gear and key",
     unit="-",
     source=Source("crossover shock, Rothbart, Cam Design Handbook (2004)", confirmed=True),
-    method="sign changes of cam torque plus drag",
+    method="sign changes of cam torque plus drag, without torques below 1e-6 N m",
     must_have=False,
     within=("key", "gear"),
-    formula="n <= 0; n: sign changes of T + drag over the turn, greatest over the load cases",
-    symbols={"n": "changes(cam_torque + camshaft.drag)"},
+    formula="n <= 0; n: sign changes of T + drag beyond 1e-6 N m over the turn, greatest over the"
+    " load cases",
+    symbols={
+        "n": "changes((cam_torque + camshaft.drag) step(|cam_torque + camshaft.drag| - 1e-6))"
+    },
     reason="not a must-have: the torque of a balancing cam reverses by its purpose; the effects"
     " decide: gear_impact, key_pressure, key_shear, cam_slip, gear_bending, pinion_bending",
     values=given.LOADS,

@@ -26,7 +26,7 @@ from camwright.pipeline.case.case_values import wound_spring
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
-from camwright.pipeline.follower.camshaft_loads import gear_force
+from camwright.pipeline.follower.camshaft_loads import NO_TORQUE, gear_force
 from camwright.pipeline.follower.follower_forces import levers, wall_of
 from camwright.pipeline.follower.pivot_forces import (
     FRICTION,
@@ -577,7 +577,7 @@ class LoadedCam:
     def reverses(self) -> NDArray[np.bool_]:
         """Whether the cam torque changes sign over the turn, or is not known, (...) or (m, 1)."""
         torque = np.real(self.torque)
-        signs = (torque >= 0.0).all(axis=-1), (torque <= 0.0).all(axis=-1)
+        signs = (torque >= -NO_TORQUE).all(axis=-1), (torque <= NO_TORQUE).all(axis=-1)
         one_way = np.asarray(np.logical_or(*signs))
         return ~one_way[..., None] if one_way.ndim else ~one_way
 

@@ -77,8 +77,13 @@ class Reversal(NamedTuple):
     slope: float
 
 
+NO_TORQUE = 1e-6
+"""Torque that moves neither teeth nor key, N m: that of a cam without spring at standstill, or of
+round-off in a dwell."""
+
+
 def torque_reversals(theta: Array, torque: ArrayLike, drag: float = 0.0) -> tuple[Reversal, ...]:
-    """Sign changes of the torque through gear and key over a turn.
+    """Sign changes of the torque through gear and key over a turn, beyond `NO_TORQUE`.
 
     At each reversal teeth and key cross their backlash; the impact increases with the slope of
     the torque.
@@ -100,7 +105,7 @@ def torque_reversals(theta: Array, torque: ArrayLike, drag: float = 0.0) -> tupl
     """
     angle = finite("theta", theta)
     value = finite("torque", torque) + drag
-    lively = np.flatnonzero(value != 0.0)  # a dwell at zero is one reversal
+    lively = np.flatnonzero(np.abs(value) > NO_TORQUE)  # a dwell at zero is one reversal
     reversals = []
     for here, after in zip(lively, np.roll(lively, -1), strict=True):
         if value[here] * value[after] >= 0.0:

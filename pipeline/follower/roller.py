@@ -330,7 +330,7 @@ class Roller(Part):
         driven = self._driven(first, contact, speed)
         for other in others:
             driven = driven.where(other.carries, self._driven(other, contact, speed))
-        loaded = force > 0
+        loaded = force > (NO_FORCE if loads.held else 0.0)  # no quotient where the track changes
         demand = np.abs(driven.demand) / np.where(loaded, force, np.nan)
         if self.friction is None:
             return SurfaceMotion(entrainment_speed(motion.rolling_speed), traction_demand=demand)

@@ -246,3 +246,10 @@ def test_hole_stays_within_the_contour_of_a_valley():
     away = np.hypot(*(contour.polygon(1440) - hole.centre[:, None])).min()
     assert away - hole.radius == pytest.approx(1e-3, abs=1e-5)
     assert np.hypot(*hole.centre) < contour.radius_min().value
+
+
+def test_a_torque_of_next_to_nothing_reverses_nothing():
+    """At standstill a cam without spring has the torque of round-off: 3e-9 N m in a groove."""
+    assert torque_reversals(THETA, 3e-9 * np.sin(5 * THETA)) == ()
+    small = np.where(np.abs(THETA - np.pi) < 1.0, 1e-9 * np.sin(40 * THETA), np.sign(np.pi - THETA))
+    assert len(torque_reversals(THETA, small)) == 2  # as of a dwell
