@@ -17,6 +17,7 @@ from camwright.meshes.outline import OutlinePiece, Zone, arc, line
 
 _CONTOUR_SAMPLES = 7200  # of the contour, 0.05 deg apart
 _WALL_MIN = 0.01  # over the bore radius
+_EDGES_PER_FILLET = 4.0
 _EDGES_ACROSS_HOLE_WALL = 4
 _WALL_DECIMALS = 9  # of a wall, m: walls nearer to each other are equal
 
@@ -168,7 +169,7 @@ def cam_size(
         centre = rotation(keyway.angle) @ np.array([bore_radius + 0.5 * keyway.depth, 0.0])
         extent = 0.5 * float(np.hypot(keyway.width, keyway.depth))
         size = size.with_spot(centre, min(keyway.width, keyway.depth) / 3.0, extent)
-        size = _finer_at_fillets(size, bore_radius, keyway)
+        size = finer_at_fillets(size, bore_radius, keyway, _EDGES_PER_FILLET, 1.0)
     if wall / 2 < float(size(place[:, None])[0]):
         size = size.with_spot(place, wall / 2, wall)
     floor = sizing.contact_size or sizing.far_size / 200.0
@@ -223,14 +224,18 @@ def hole_size(size: SizeField, path: SampledContour, hole: HoleLike) -> SizeFiel
     return size.with_spot(hole.centre, finest, hole.radius + wall)
 
 
-def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -> SizeField:
-    """Element size made finer so that each fillet of the keyway has four edges."""
+def finer_at_fillets(
+    size: SizeField, bore_radius: float, keyway: KeywayLike, edges: float, reach: float
+) -> SizeField:
+    """Element size made finer so that each fillet of the keyway has a number of edges, up to a
+    reach around it in fillet radii.
+    """
     fillet = keyway.fillet
     if fillet > 0:
         outer, half = bore_radius + keyway.depth, 0.5 * keyway.width
         for side in (-1.0, 1.0):
             corner = rotation(keyway.angle) @ np.array([outer - fillet, side * (half - fillet)])
-            size = size.with_spot(corner, 0.5 * np.pi * fillet / 4.0, fillet)
+            size = size.with_spot(corner, 0.5 * np.pi * fillet / edges, reach * fillet)
     return size
 
 

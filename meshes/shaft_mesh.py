@@ -6,15 +6,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, rotation
+from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.cutouts import KeywayLike
 from camwright.meshes.body_mesh import BodyMesh
-from camwright.meshes.cam_outline import ContourLike, cam_size, contour_piece, hole_pieces, trace
-from camwright.meshes.element_size import ElementSize, SizeField
+from camwright.meshes.cam_outline import (
+    ContourLike,
+    cam_size,
+    contour_piece,
+    finer_at_fillets,
+    hole_pieces,
+    trace,
+)
+from camwright.meshes.element_size import ElementSize
 from camwright.meshes.gmsh_mesher import Index, triangulate
 from camwright.meshes.outline import Facets, arc, facets
 
-_PER_FILLET = 8.0  # element edges along the root
+_PER_FILLET, _AROUND_FILLET = 8.0, 1.5  # element edges along the root; reach, in its radii
 _BESIDE_EDGE = 1.0 / 20.0  # element length at the edges of the keyway in the bore, over its width
 
 
@@ -57,7 +64,7 @@ def cam_on_shaft(
     hole, path = hole_pieces(bore_radius, keyway), trace(contour)
     size = cam_size(path, bore_radius, keyway, sizing)
     if keyway is not None:  # the pressure of the fit is singular at the edges of its mouth
-        size = _finer_at_fillets(size, bore_radius, keyway)
+        size = finer_at_fillets(size, bore_radius, keyway, _PER_FILLET, _AROUND_FILLET)
         mouth = float(np.arcsin(0.5 * keyway.width / bore_radius))
         for side in (-mouth, mouth):
             at = keyway.angle + side
@@ -76,16 +83,6 @@ def cam_on_shaft(
         BodyMesh(each.points, each.triangles, each.boundaries) for each in (cam, shaft)
     )
     return CamOnShaft(of_cam, of_shaft, _in_order(of_cam, "bore"), _in_order(of_shaft, "seat"))
-
-
-def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -> SizeField:
-    """Element size made finer so that each fillet has `_PER_FILLET` edges."""
-    floor, half, fillet = bore_radius + keyway.depth, 0.5 * keyway.width, keyway.fillet
-    if fillet > 0.0:
-        for side in (-1.0, 1.0):
-            at = rotation(keyway.angle) @ np.array([floor - fillet, side * (half - fillet)])
-            size = size.with_spot(at, 0.5 * np.pi * fillet / _PER_FILLET, 1.5 * fillet)
-    return size
 
 
 def _in_order(mesh: BodyMesh, name: str) -> Index:

@@ -48,8 +48,10 @@ SIGNOFF = "8_signoff.pdf"
 PDF = "8_report.pdf"
 MOST = 12
 """Checks in the table of safeties: those of the least safety."""
-_LINE, _LONG = 110, 330
-"""Characters of a fact, and of the paragraphs below the facts."""
+_LINE, _LONG, _CARD_MOST = 110, 330, 700
+"""Characters of a fact, of the paragraphs below the facts, and of a material on the drawing, which
+has all of any source that a case can state.
+"""
 _TEMPERATURES = (
     (("lubricant",), "lubricant"),
     (("spring", "design"), "spring"),
@@ -323,7 +325,8 @@ def _sheet(material: ReportMaterial, record: Record, end: str) -> DrawingSheet:
     profile, hole = record["profile_tolerance_mm"], record["counter_hole"]
     facts = [
         ("Title", shortened(title, 110)), ("Case", shortened(str(case["name"]), 40) + disc),
-        ("Thickness", quantity(thickness, "mm")), ("Card", shortened(record["material"], 110)),
+        ("Thickness", quantity(thickness, "mm")),
+        ("Card", shortened(record["material"], _CARD_MOST)),
         ("Hardness", shortened(record["hardness"], 60)),
         ("Roughness", "" if roughness is None else f"Rq {quantity(roughness, 'µm')}"),
         ("Scale", scale_words(part.scale)), ("General tolerances", ""),

@@ -80,6 +80,10 @@ STATUS = {
 }
 
 
+ROUND_OFF_DEG = 1e-9
+"""Angle below which it is shown as 0, deg."""
+
+
 def number(value: Scalar, digits: int = 4) -> str:
     """Number with `digits` significant digits; a dash if missing.
 
@@ -118,10 +122,14 @@ def listed(value: Scalar | Sequence[Scalar]) -> str:
 
 
 def quantity(value: Scalar, unit: str = "", digits: int = 4) -> str:
-    """Number with unit, SI units converted to drawing units (MPa, mm, deg)."""
+    """Number with unit, SI units converted to drawing units (MPa, mm, deg); an angle that is
+    round-off as 0.
+    """
     if isinstance(value, (int, float)) and not isinstance(value, bool) and unit in SHOWN_AS:
         unit, scale = SHOWN_AS[unit]
         value = value * scale if scale != 1.0 else value
+    if unit == "deg" and isinstance(value, float) and abs(value) < ROUND_OFF_DEG:
+        value = 0.0
     text = number(value, digits)
     unit = re.sub(r"\^([23])", lambda power: power[1].translate(SUPERSCRIPT), unit)
     unit = unit.replace(" ", "\N{NO-BREAK SPACE}")

@@ -23,6 +23,7 @@ from camwright.reports.interactive import script_safe_json, scripts
 from camwright.reports.page import environment
 from camwright.reports.pressure_figures import Record
 from camwright.reports.report_data import ReportMaterial
+from camwright.reports.report_tables import ROUND_OFF_DEG
 from camwright.reports.scene_groove import SceneGroove, scene_groove
 from camwright.reports.scene_solids import (
     Lattice,
@@ -207,7 +208,7 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
         ],
         "half": width / 2,
         "readout": [
-            {"words": words, "unit": unit, "values": _shown(rows[name][view.position])}
+            {"words": words, "unit": unit, "values": _shown(rows[name][view.position], unit)}
             for words, name, unit in _READOUT
             if name in rows
         ],
@@ -549,10 +550,13 @@ def _end_words(material: ReportMaterial, field: EndField) -> str:
     )
 
 
-def _shown(values: Array) -> list[float]:
-    """Values to read, without round-off: zero below 1e-9 of the greatest one."""
+def _shown(values: Array, unit: str) -> list[float]:
+    """Values to read, without round-off: zero below 1e-9 of the greatest one, and of angles that
+    are all round-off.
+    """
     size = np.abs(np.nan_to_num(values))
-    return _rounded(np.where(size > 1e-9 * size.max(), values, 0.0))
+    least = max(1e-9 * size.max(), ROUND_OFF_DEG if unit == "deg" else 0.0)
+    return _rounded(np.where(size > least, values, 0.0))
 
 
 def _rounded(values: ArrayLike) -> list[float]:

@@ -38,7 +38,7 @@ def dead_load(case: Case) -> float:
     if follower.pivot is not None and follower.arm is not None:
         prime, offset = case.cam.prime_radius, case.facing.offset
         pivot = follower.pivot.about(follower.arm, follower.mass, prime, offset, case.output)
-        return float(pivot.applied(mean, pivot.travel(0.0)))
+        return float(pivot.applied(mean, pivot.direction(0.0)))
     return follower.mass * follower.gravity_along_axis + mean
 
 

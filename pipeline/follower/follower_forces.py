@@ -187,7 +187,7 @@ class FollowerSystem:
         """Weight and external force at cam angles and lifts (n,), N, positive towards the cam."""
         if self.pivot is None:
             return self.load.at(theta)
-        return self.pivot.applied(self.external.at(theta), self.pivot.travel(lift))
+        return self.pivot.applied(self.external.at(theta), self.pivot.direction(lift))
 
     @property
     def load(self) -> ExternalForce:
@@ -196,7 +196,7 @@ class FollowerSystem:
         """
         if self.pivot is None:
             return self.external.plus(self.mass * self.gravity_along_axis)
-        force = self.pivot.applied(self.external.force, self.pivot.travel(0.0))
+        force = self.pivot.applied(self.external.force, self.pivot.direction(0.0))
         return ExternalForce(self.external.theta, force)
 
     @property

@@ -124,33 +124,33 @@ class ArmPivot:
         """Share of the output in the external force, N."""
         return 0.0 if self.output is None else self.output.reduced_force
 
-    def applied(self, external: Value, travel: Value) -> Array:
+    def applied(self, external: Value, direction: Value) -> Array:
         """Weight, external force and moment reduced to the reference point, N, towards the cam.
 
         Parameters
         ----------
         external : array (..., n)   external force, N
-        travel : array (..., n)     direction of travel, rad
+        direction : array (..., n)  of travel, rad
         """
         beyond = self._of_output
         moment = (external - beyond) * self.load_distance + self.load_moment
         moment = moment + beyond * self.length
         if self.gravity_angle is not None:
-            lever = self.mass_distance * np.cos(self._from_vertical(travel, self.mass_angle))
+            lever = self.mass_distance * np.cos(self._from_vertical(direction, self.mass_angle))
             moment = moment + self.mass * STANDARD_GRAVITY * lever
         return np.asarray(moment / self.length)
 
-    def travel(self, lift: Value) -> Value:
+    def direction(self, lift: Value) -> Value:
         """Direction of travel at a lift, m, rad; see `Arm.travel`."""
         return self.sense * (_QUARTER_TURN - self.start - lift / self.length)
 
-    def _from_vertical(self, travel: Value, beyond: Value) -> Value:
+    def _from_vertical(self, direction: Value, beyond: Value) -> Value:
         """Angle of the travel of a point beside the arm from the upward vertical, rad."""
         vertical = 0.0 if self.gravity_angle is None else self.gravity_angle
-        return travel - self.sense * beyond - vertical
+        return direction - self.sense * beyond - vertical
 
     def pull(
-        self, spring: Value, external: Value, travel: Value, velocity: Value, acceleration: Value
+        self, spring: Value, external: Value, direction: Value, velocity: Value, acceleration: Value
     ) -> Pull:
         """Sum of all forces on the arm but those of contact and pivot, that of its inertia
         included, along and across the travel, N.
@@ -163,12 +163,12 @@ class ArmPivot:
                                                   point, N
         external : array (..., n)                 external force towards the cam, that of an output
                                                   included, N
-        travel : array (..., n)                   direction of travel of the reference point, rad
+        direction : array (..., n)                of travel of the reference point, rad
         velocity, acceleration : array (..., n)   of the reference point, m/s and m/s2
         """
         cos, sin = np.cos(self.load_angle), self.sense * np.sin(self.load_angle)
-        pulled = self.of_spring(spring, travel)
-        pushed = self.of_output(travel, velocity, acceleration)
+        pulled = self.of_spring(spring, direction)
+        pushed = self.of_output(direction, velocity, acceleration)
         acting = external - self._of_output
         along = pulled.along + pushed.along - acting * cos
         across = pulled.across + pushed.across - acting * sin
@@ -179,45 +179,45 @@ class ArmPivot:
         across = across - self.sense * radius * (turning * sin + outward * cos)
         if self.gravity_angle is not None:
             weight = self.mass * STANDARD_GRAVITY
-            down = self._from_vertical(travel, 0.0)
+            down = self._from_vertical(direction, 0.0)
             along, across = along - weight * np.cos(down), across - weight * np.sin(down)
         return Pull(along, across)
 
-    def of_spring(self, force: Value, travel: Value) -> Pull:
+    def of_spring(self, force: Value, direction: Value) -> Pull:
         """Force on the arm by its spring, N; at the reference point against its travel where the
         pivot has no `spring`.
 
         Parameters
         ----------
-        force : array (...)    of the spring, reduced to the reference point, N
-        travel : array (...)   direction of travel of the reference point, rad, see `_lift`
+        force : array (...)       of the spring, reduced to the reference point, N
+        direction : array (...)   of travel of the reference point, rad, see `_lift`
         """
         if self.spring is None:
             return Pull(np.asarray(-force), np.asarray(0.0 * force))
-        lift = np.asarray(self._lift(travel))
+        lift = np.asarray(self._lift(direction))
         along_arm, outwards = self.spring.pull_on_arm(np.asarray(force), lift)
         return Pull(outwards, -self.sense * along_arm)
 
-    def of_output(self, travel: Value, velocity: Value, acceleration: Value) -> Pull:
+    def of_output(self, direction: Value, velocity: Value, acceleration: Value) -> Pull:
         """Force on the arm by the output of a rocker, inertia of the output included, N; zero
         without an output.
 
         Parameters
         ----------
-        travel : array (...)                   direction of travel of the reference point, rad, see
+        direction : array (...)                of travel of the reference point, rad, see
                                                `_lift`
         velocity, acceleration : array (...)   of the reference point, m/s, m/s2
         """
         if self.output is None:
-            return Pull(np.asarray(0.0 * travel), np.asarray(0.0 * travel))
-        lift = np.asarray(self._lift(travel))
+            return Pull(np.asarray(0.0 * direction), np.asarray(0.0 * direction))
+        lift = np.asarray(self._lift(direction))
         force = np.asarray(self.output.push(lift, velocity, acceleration))
         along_arm, outwards = self.output.rocker.push_on_arm(force, lift, self.output.arm_length)
         return Pull(outwards, -self.sense * along_arm)
 
-    def _lift(self, travel: Value) -> Value:
-        """Lift of the reference point, m, at which it travels in the direction `travel`, rad."""
-        return self.length * (_QUARTER_TURN - self.start - self.sense * travel)
+    def _lift(self, direction: Value) -> Value:
+        """Lift of the reference point, m, at which it travels in a direction, rad."""
+        return self.length * (_QUARTER_TURN - self.start - self.sense * direction)
 
     def locking(self, pressed: Pressed) -> Array:
         """Moment of the friction under a contact force alone over that of its axial force (...).

@@ -178,7 +178,7 @@ class Designs:
         machine, mass = self.machine, self.value("follower.mass")
         dead_load = mass * machine.gravity_along_axis + machine.external.mean
         if (pivot := pivot_of(self.numbers)) is not None:
-            dead_load = pivot.applied(machine.external.mean, pivot.travel(0.0))
+            dead_load = pivot.applied(machine.external.mean, pivot.direction(0.0))
         rate, preload = self.value("spring.rate"), self.value("spring.preload") + dead_load
         if source.energy is not None:
             energy = source.energy[None, :]

@@ -210,6 +210,23 @@ def test_the_drawing_shows_ends_and_crown_of_the_track(
     )
 
 
+def test_a_long_card_is_whole_in_the_title_block(tmp_path: Path) -> None:
+    material = drawing(tmp_path / "run", 1.0, keyed=True)
+    file = tmp_path / "run" / "workshop" / "dimensions.json"
+    record = json.loads(file.read_text())
+    record["material"] = " ".join(f"word{k}" for k in range(80)) + " end-of-card"
+    file.write_text(json.dumps(record))
+    (page,) = printed_text.pages(documents.write_drawing(material)[0])
+    assert printed_text.covered(page) == []
+    printed = printed_text.words_on(page)
+    assert [
+        each for each in ("word0", "word79", "end-of-card", "Approved") if each not in printed
+    ] == []
+    heights = [each * printed_text.POINT for glyph in printed_text.glyphs(page)
+               for each in (glyph.y0, glyph.y1)]  # fmt: skip
+    assert 10.0 < min(heights) < max(heights) < 287.0
+
+
 def test_no_drawing_of_a_contour_that_encloses_no_body(tmp_path: Path) -> None:
     report_fixture.write_run(tmp_path / "run", 36, field=False)
     assert documents.write_drawing(read_material(tmp_path / "run")) == []

@@ -255,7 +255,7 @@ def test_an_arm_and_a_pivot_that_are_described_are_judged_with_a_face():
     # the pivot swings as the contour does: a weight or a linked spring acts at the true angle
     machine, theta = trial.solution.machine, np.linspace(0.0, 6.0, 7)
     pitch = trial.contour.pitch
-    travel = machine.arm_pivot.travel(pitch.lift(theta))
+    travel = machine.arm_pivot.direction(pitch.lift(theta))
     np.testing.assert_allclose(travel, pitch.travel(theta), rtol=1e-12)
 
 

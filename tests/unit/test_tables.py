@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 from camwright.pipeline.base.verdict import governing_id
 from camwright.pipeline.results.check_records import RecordedCheck, of_records
-from camwright.reports import report_tables, verification_tables
+from camwright.reports import report_tables, scene_page, verification_tables
 from camwright.reports.verdict_text import governing, governing_load_case, verdict
 
 
@@ -258,6 +259,17 @@ def test_a_record_shows_units_and_what_is_inside():
     assert report_tables.named_rows(record) == [
         ("min angle", "27.3\xa0deg"), ("nodes", "42531"), ("sha256, cam", "ab")
     ]  # fmt: skip
+
+
+def test_an_angle_that_is_round_off_is_zero():
+    assert report_tables.quantity(4e-12, "deg") == "0\xa0deg"
+    assert report_tables.quantity(-4e-12, "deg") == "0\xa0deg"
+    assert report_tables.quantity(2e-6, "deg") != "0\xa0deg"
+    assert report_tables.quantity(4e-12, "m") != "0\xa0m"
+    read = scene_page._shown(np.array([4e-12, -3e-12, np.nan]), "deg")
+    assert read == [0.0, 0.0, 0.0]
+    assert scene_page._shown(np.array([25.0, 1e-9, -3.0]), "deg") == [25.0, 0.0, -3.0]
+    assert scene_page._shown(np.array([4e-12, 2e-12]), "N") == [4e-12, 2e-12]
 
 
 def test_headlines_that_do_not_apply_are_left_out():
