@@ -31,8 +31,8 @@ GROUPS = {
     ),
     "motions": (
         "Cams of a given motion",
-        "A swing with two dwells on an arm, and a stroke with two dwells in a groove, without a "
-        "torque to balance.",
+        "A swing with two dwells on an arm, and strokes in a groove, between two discs, in a yoke "
+        "and under a weight, without a torque to balance.",
     ),
     "papers": (
         "Cams of papers",

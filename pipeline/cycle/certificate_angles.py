@@ -41,8 +41,9 @@ def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int
     """Number of the load case and of the position of each angle to certify, at most `count`, the
     most critical first.
 
-    Extremes of pressure, load, curvature and its change over all load cases, then equal steps over
-    the turn of the first. Of angles closer than four positions only one is certified.
+    The greatest pressure on either track of a cam that pulls; extremes of pressure, load, curvature
+    and its change over all load cases; then equal steps over the turn of the first. Of angles
+    closer than four positions only one is certified.
     """
     wanted: list[tuple[int, int]] = []
 
@@ -56,6 +57,12 @@ def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int
         if loaded and not near and len(wanted) < count:
             wanted.append((case, index))
 
+    if cycles[0].loads.held:
+        for wall in (1.0, -1.0):
+            on_track = [np.where(cycle.loads.wall == wall, np.nan_to_num(cycle.contact.p0), 0.0)
+                        for cycle in cycles]  # fmt: skip
+            case = first_greatest([pressure.max() for pressure in on_track])
+            take(case, first_greatest(on_track[case]))
     for extreme in _EXTREMES:
         for case, cycle in enumerate(cycles):
             take(case, first_greatest(extreme(cycle.contact)))

@@ -96,6 +96,31 @@ def test_a_stroke_in_a_groove_passes_certified(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("name", ["transfer-conjugate", "pump-yoke"])
+def test_two_tracks_pass_certified(tmp_path, name):
+    """Both discs of a pair, both faces of a yoke carry; finite elements agree with Hertz."""
+    case = read_case(CASES / "motions" / f"{name}.toml")
+    summary = run_case(case, tmp_path / "run", progress=Silent()).summary
+    assert summary["verdict"] == "pass", summary["binding"]
+    final = read_run(tmp_path / "run").final
+    pushes = final.cycle["wall"] > 0.0
+    for at in (pushes, ~pushes):
+        assert at.any()
+        assert np.abs(final.cycle["p0_difference_percent"][at]).max() < 0.1
+
+
+@pytest.mark.slow
+def test_a_lifter_under_its_weight_passes_certified(tmp_path):
+    """The weight holds the contact all over the turn, at the over-speed, too."""
+    case = read_case(CASES / "motions" / "lifter-gravity.toml")
+    summary = run_case(case, tmp_path / "run", progress=Silent()).summary
+    assert summary["verdict"] == "pass", summary["binding"]
+    final = read_run(tmp_path / "run").final
+    assert final.cycle["normal_force_N"].min() > 0.0
+    assert np.abs(final.cycle["spring_force_N"]).max() < 1e-6
+
+
+@pytest.mark.slow
 def test_an_arm_with_two_dwells_passes_certified(tmp_path):
     """15 deg of swing by the laws of its case: the contour at rest and in the dwell is round."""
     case = read_case(CASES / "motions" / "packaging-arm.toml")

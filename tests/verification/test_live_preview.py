@@ -33,9 +33,12 @@ from camwright.pipeline.screening.response_surface import Surface, SurfaceFit, s
 from camwright.pipeline.solver import solve
 
 NO_CASE = "papers/mechanisms"
-WITHOUT = ("papers/petrescu_b3", "papers/petrescu_b4", "motions/feeder-groove")
-"""Cases of which the screening refuses the design itself: its contour bounds no body, or a groove
-holds its follower."""
+WITHOUT = (
+    *("papers/petrescu_b3", "papers/petrescu_b4"),
+    *("motions/feeder-groove", "motions/transfer-conjugate", "motions/pump-yoke"),
+)
+"""Cases of which the screening refuses the design itself: its contour bounds no body, or a cam that
+pulls holds its follower."""
 FOLLOWED = [
     name
     for file in sorted(live_settings.CASES.rglob("*.toml"))

@@ -17,6 +17,7 @@ from camwright.pipeline.contact.bore_stress import bore_stress
 from camwright.pipeline.contact.certificate import mesh_figures
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
+from camwright.pipeline.cycle.certificate_angles import positions_to_certify
 from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
 from camwright.pipeline.cycle.pressed_discs import pressed_discs
 from camwright.pipeline.preview import preview_case
@@ -149,6 +150,18 @@ def test_a_yoke_presses_both_faces_on_one_body():
     of_pair = bodies(ARM)
     assert of_pair.pulling.cam is not of_pair.cam
     assert of_pair.pulling.follower is not of_pair.follower
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ALL)
+def test_either_track_is_certified_where_it_is_pressed_most(name):
+    cycles = solved(name).cycles
+    chosen = positions_to_certify(cycles, 4)
+    for wall in (1.0, -1.0):
+        most = max(np.where(c.loads.wall == wall, c.contact.p0, 0.0).max() for c in cycles)
+        there = [cycles[case].contact.p0[k] for case, k in chosen
+                 if cycles[case].loads.wall[k] == wall]  # fmt: skip
+        assert max(there) == most
 
 
 @pytest.mark.slow
