@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import cache, lru_cache
 from typing import Any, TypeVar
 
@@ -22,7 +22,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.error_text import as_written
 from camwright.pipeline.case.keys import MATERIAL, NAME, Key, keys_at, names_in
 from camwright.pipeline.case.section import Section, suggestion
-from camwright.pipeline.follower.wound_wire import Number, Treatment, WoundWire
+from camwright.pipeline.follower.wound_wire import WoundWire
 
 _STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(0|[1-9][0-9]{0,3})\])?")
 Node = TypeVar("Node", Section, Part)
@@ -253,26 +253,7 @@ WIRE = (
 _LEFT_OUT = ("elastic_modulus", "relaxation")
 
 
-@dataclass(frozen=True, eq=False)
-class WoundSprings(WoundWire[Number]):
-    """Wound springs of many designs, or of one case, as arrays."""
-
-    wire_diameter: Number
-    mean_diameter: Number
-    coils: Number
-    free_length: Number
-    end_factor: Number
-    shear_modulus: Number
-    elastic_modulus: Number | None
-    density: Number
-    strength_at_1mm: Number
-    strength_exponent: Number
-    treatment: Treatment
-    temperature: float | None
-    relaxation: Number | None
-
-
-def wound_spring(case: Case, at: Callable[[str], Value | None]) -> WoundSprings[Value] | None:
+def wound_spring(case: Case, at: Callable[[str], Value | None]) -> WoundWire[Value] | None:
     """Coil springs of one design, or of many (...), by the numbers of their wire, coils and ends;
     None where the case has no table ``spring.design``.
 
@@ -293,4 +274,4 @@ def wound_spring(case: Case, at: Callable[[str], Value | None]) -> WoundSprings[
         for name in _LEFT_OUT
         if values[name] is None or np.isnan(np.asarray(values[name])).all()
     }
-    return WoundSprings(**values, treatment=design.treatment, temperature=design.temperature)
+    return WoundWire(**values, treatment=design.treatment, temperature=design.temperature)

@@ -34,7 +34,7 @@ from camwright.pipeline.base.quantities import (
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.rocker import Rocker
-from camwright.pipeline.follower.wound_wire import INDEX_MAX, INDEX_MIN, Treatment, WoundWire
+from camwright.pipeline.follower.wound_wire import INDEX_MAX, INDEX_MIN, WoundWire
 
 ATMOSPHERE = 101_325.0
 """Pressure of the surroundings, Pa."""
@@ -572,21 +572,6 @@ class PivotSpring(TorsionWire):
         return np.asarray(force) * self.length
 
 
-@dataclass(frozen=True)
-class HookedWire(WoundWire[float]):
-    """Wire of an extension spring, whose hooks cannot be peened; the strength is that of the wire
-    as drawn.
-    """
-
-    wire_diameter: float
-    mean_diameter: float
-    coils: float
-    shear_modulus: float
-    strength_at_1mm: float
-    strength_exponent: float = 0.0
-    treatment: Treatment = "plain"
-
-
 class HookedShares(NamedTuple):
     """Permissible stresses of an extension spring over the tensile strength of its wire: torsion of
     the coils and of the bend to the hook, bending of the hook.
@@ -668,14 +653,18 @@ class ExtensionSpring(SpringShape):
                 raise InputError(f"{self.table}.{name}", shown(radius, "mm"), limit)
 
     @property
-    def wire(self) -> HookedWire:
-        """Its wire as wound, not peened."""
-        return HookedWire(
+    def wire(self) -> WoundWire[float]:
+        """Its wire as wound, with the strength as drawn; hooks cannot be peened."""
+        return WoundWire(
             wire_diameter=self.wire_diameter,
             mean_diameter=self.mean_diameter,
             coils=self.coils,
             shear_modulus=self.shear_modulus,
             strength_at_1mm=np.nan if self.tensile_strength is None else self.tensile_strength,
+            strength_exponent=0.0,
+            treatment="plain",
+            **dict.fromkeys(("free_length", "end_factor", "density"), np.nan),
+            **dict.fromkeys(("elastic_modulus", "temperature", "relaxation")),
         )
 
     @property

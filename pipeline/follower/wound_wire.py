@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Generic, Literal, NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -34,10 +35,11 @@ class SpringWork(NamedTuple, Generic[Number]):
     rate: Number
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
 class WoundWire(Generic[Number]):
-    """Formulas of a helical spring, for numbers or arrays (m,) of designs.
+    """Wire wound to a helical spring of one design, or as arrays (m,) of many.
 
-    See `HelicalSpring` for the values.
+    See `HelicalSpring` for the values; those of an extension spring that has no such ends are NaN.
     """
 
     wire_diameter: Number
@@ -51,6 +53,7 @@ class WoundWire(Generic[Number]):
     strength_at_1mm: Number
     strength_exponent: Number
     treatment: Treatment
+    damping_ratio: float | None = None
     temperature: float | None
     relaxation: Number | None
 

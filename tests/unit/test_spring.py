@@ -13,7 +13,7 @@ from camwright.pipeline.case.cards.spring_catalogue import (
     lightest,
     read_catalogue,
 )
-from camwright.pipeline.case.case_values import WIRE, WoundSprings
+from camwright.pipeline.case.case_values import WIRE
 from camwright.pipeline.follower import spring
 from camwright.pipeline.follower.spring import (
     HelicalSpring,
@@ -21,6 +21,7 @@ from camwright.pipeline.follower.spring import (
     surge_force,
     surge_harmonics,
 )
+from camwright.pipeline.follower.wound_wire import WoundWire
 
 SPRING = HelicalSpring(
     wire_diameter=5e-3,
@@ -97,7 +98,7 @@ def test_each_limit_of_many_springs_is_that_of_each(room):
     names = (*WIRE[:-1], "relaxation")
     values = {name: np.array([getattr(each, name) or np.nan for each in WIRES]) for name in names}
     values |= {"elastic_modulus": None, "relaxation": np.full(len(WIRES), 0.004)}
-    many = WoundSprings(**values, treatment="plain", temperature=350.0)
+    many = WoundWire(**values, treatment="plain", temperature=350.0)
     kept = demand_on(SPRING.rate, np.full(len(WIRES), 300.0), 0.02, room=room).kept(many)
     one = demand_on(SPRING.rate, 300.0, 0.02, room=room)
     broken = set()

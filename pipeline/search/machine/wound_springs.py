@@ -9,9 +9,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand, SpringRoom
-from camwright.pipeline.case.case_values import WoundSprings
 from camwright.pipeline.follower.spring import HelicalSpring, Spring
-from camwright.pipeline.follower.wound_wire import Number
+from camwright.pipeline.follower.wound_wire import Number, WoundWire
 
 WIRES = (1.0, 1.25, 1.6, 2.0, 2.5, 3.0, 3.6, 4.0, 4.5, 5.0, 5.5, 6.0, 6.5, 7.0, 8.0, 8.5, 9.0,
          10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0)  # fmt: skip
@@ -75,7 +74,7 @@ def wound(
     fits = (n >= COILS[0]) & (n <= COILS[1])
     n = np.clip(n, *COILS)
     shape = n.shape
-    springs = WoundSprings(
+    springs = WoundWire(
         wire_diameter=np.broadcast_to(d, shape),
         mean_diameter=np.broadcast_to(D, shape),
         coils=n,
