@@ -153,6 +153,74 @@ def spring_deflection(energy: ArrayLike, spring_rate: ArrayLike, preload: ArrayL
     )
 
 
+def signed_deflection(energy: Array, spring_rate: float, preload: float) -> Array:
+    """Lift (n,), m, of a spring that may push or pull the follower, from the energy it stores.
+
+    The spring has no force at the lift s0 = -P/k, and stores k (s - s0)^2/2 above that. A positive
+    preload pushes at any lift, see `spring_deflection`. With a negative one the force changes its
+    sign wherever the energy has its minimum, if a turn has an even number of minima: the follower
+    swings about s0 by sqrt(2 E/k), to the side of the lower energy inwards. Of an odd number the
+    spring pulls all over the turn, and the lift is zero where the energy is greatest.
+
+    Parameters
+    ----------
+    energy : array (n,)    E, J, >= 0, at equal angles of a turn, above its minimum
+    spring_rate : float    k, N/m, > 0
+    preload : float        P, N, force at zero lift
+
+    Raises
+    ------
+    InputError
+        If the spring is too weak at zero lift: the lift would be negative, or have a corner.
+    """
+    if preload > 0.0:
+        return spring_deflection(energy, spring_rate, preload)
+    positive("spring.rate", spring_rate, "N/m")
+    stored = finite("spring.energy", energy)
+    free, side = -preload / spring_rate, _sides(stored)
+    greatest = float(stored.max())
+    if side is None:
+        least_force = float(np.sqrt(2.0 * spring_rate * greatest))
+        if not -preload > least_force * (1.0 + _PRELOAD_ROUND_OFF):
+            limit = f"> 0 N, or < {-least_force:.6g} N: the force has to keep its sign"
+            raise InputError("spring.preload", f"{preload:.6g} N", limit)
+        lift = free - np.sqrt(free**2 - 2.0 * (greatest - stored) / spring_rate)
+        return readonly(np.maximum(lift, 0.0))
+    lift = free + side * np.sqrt(2.0 * stored / spring_rate)
+    inwards = free - float(lift.min())
+    if not inwards <= free * (1.0 + _PRELOAD_ROUND_OFF):
+        limit = (
+            f"> 0 N, or <= {-spring_rate * inwards:.6g} N: it swings {1e3 * inwards:.5g} mm inwards"
+        )
+        raise InputError("spring.preload", f"{preload:.6g} N", limit)
+    return readonly(np.maximum(lift, 0.0))
+
+
+def _sides(energy: Array) -> Array | None:
+    """Side (n,) of its free length on which a spring stores an energy (n,), 1 or -1: it changes at
+    each minimum of the energy, between the angles beside it; None of an odd number of them.
+    """
+    before, after = np.roll(energy, 1), np.roll(energy, -1)
+    lowest = (energy <= before) & (energy < after)
+    bend = before - 2.0 * energy + after
+    away = np.divide(0.5 * (before - after), bend, out=np.zeros_like(bend), where=lowest)
+    vertex = energy - 0.25 * (before - after) * away
+    minima = np.flatnonzero(lowest & (vertex <= _NO_ENERGY * energy.max()))
+    if minima.size % 2:
+        return None
+    changes = np.zeros(energy.size, dtype=int)
+    first = (minima + (away[minima] >= 0.0)) % energy.size  # the first angle beyond each minimum
+    np.add.at(changes, first, 1)
+    side = np.where(np.cumsum(changes) % 2, -1.0, 1.0)
+    inner, outer = (float(energy[side == each].max(initial=0.0)) for each in (-1.0, 1.0))
+    return side if inner <= outer else -side
+
+
+_PRELOAD_ROUND_OFF = 1e-9  # of a preload
+_NO_ENERGY = 1e-6
+"""Energy at a minimum over the greatest up to which it is none: that between two samples."""
+
+
 def _energy_curve(theta: Array, cam_torque: Array) -> tuple[PeriodicPolynomial, float]:
     """Integral of the torque from angle 0, J, as a function of the angle, and its change over the
     turn, J; theta (n,), rad, cam_torque (n,), N m.

@@ -191,6 +191,9 @@ def _start(case: Case) -> Iterator[Rule]:
         limit = f"given with [torque]: {ratio_text(case.torque.cycle / FULL_TURN)} for one cycle"
         raise InputError("mechanism.gear_ratio", "missing", f"{limit} of {cycle} in a cam turn")
     _closure(case)
+    if not case.cam.pulls or case.spring.design is not None or case.spring.shape is not None:
+        limit = '> 0 N, or cam.closure = "groove", "conjugate" or "yoke" with a linear spring'
+        yield _more("spring.preload", _fixed(0.0), limit)
     if case.valve_train is not None and case.follower.arm is not None:
         raise InputError("valve_train", "a table", "left out with an arm")
     if case.rocker_linkage is not None and case.rocker is not None and case.rocker.lift == "output":
@@ -276,8 +279,7 @@ def _closure(case: Case) -> None:
         limit = f'"roller" with {stated_as}, which is done for a stem alone'
         raise InputError("follower.kind", case.follower.kind, limit)
     if case.lift is None:
-        limit = f"given with {stated_as}: its synthesis from a torque is not done"
-        raise InputError("lift", "missing", limit)
+        _stores(case, stated_as)
     for key, stated in (("cam.counter_hole", cam.counter_hole), ("valve_train", case.valve_train)):
         if stated is not None:
             raise InputError(key, "a table", f"left out with {stated_as}")
@@ -290,6 +292,23 @@ def _closure(case: Case) -> None:
     ring = case.roller.bearing.ring
     if case.spring.absent and ring is not None and case.roller.bearing.C0 is None:
         raise InputError("roller.bearing.C0", "missing", "given with a ring and without a spring")
+
+
+def _stores(case: Case, stated_as: str) -> None:
+    """Check a cam that pulls whose lift is drawn from a torque: a spring stores its work, and a
+    filter smooths it.
+
+    Raises
+    ------
+    InputError
+        If the spring is missing, or the lift is that of a constrained synthesis.
+    """
+    if case.spring.absent:
+        limit = f"given with {stated_as} and without [lift]: it stores the work of the torque"
+        raise InputError("spring", "missing", limit)
+    if case.smoothing.kind == "constrained":
+        limit = f"a filter with {stated_as}: its constrained synthesis is not done"
+        raise InputError("smoothing.kind", "constrained", limit)
 
 
 def _weight(case: Case) -> None:

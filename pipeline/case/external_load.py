@@ -43,14 +43,17 @@ def dead_load(case: Case) -> float:
 
 
 def closing_preload(case: Case) -> float:
-    """Closing force at zero lift and standstill, N: preload, weight and mean external force.
+    """Closing force at zero lift and standstill, N: preload, weight and mean external force; of a
+    cam that pulls it may be negative.
 
     Raises
     ------
     InputError
-        If it is not positive: no lift stores the work of a torque.
+        If it is not positive under a cam that does not pull: no lift stores the work of a torque.
     """
     dead = dead_load(case)
+    if case.cam.pulls:
+        return case.spring.preload + dead
     require_closing("spring.preload", case.spring.preload, dead)
     return case.spring.preload + dead
 

@@ -317,7 +317,7 @@ def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Impl
     """
     torque, smoothing, spring = torques.get(case.load_cases[0].name), case.smoothing, case.spring
     chosen = smoothing.kind == "constrained" and smoothing.of_spring
-    if torque is None or chosen:
+    if torque is None or chosen or (case.cam.pulls and closing_preload(case) <= 0.0):
         return
     swing = case.mechanism.compensation * float(np.ptp(energy_swing(torque.total, torque.span)))
     lift = float(stored_lift(swing, spring.rate, closing_preload(case), spring.shape))

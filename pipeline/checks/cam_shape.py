@@ -485,7 +485,7 @@ spring_travel = check(
 ).measured(
     "top",
     allowed=of_key("spring.travel_max"),
-    applies=lambda _, numbers: np.asarray(numbers["spring.preload"]) > NO_FORCE,
+    applies=lambda _, numbers: magnitude(np.asarray(numbers["spring.preload"])) > NO_FORCE,
     deviation=1e-4,
     kept=Kept(unit="mm"),
 )(lift)

@@ -19,11 +19,11 @@ from camwright.pipeline.base.quantities import (
     Known,
     Length,
     Part,
-    Preload,
     Pressure,
     Rate,
     Resolved,
     Share,
+    SignedForce,
     TableSource,
     Temperature,
     Used,
@@ -268,8 +268,8 @@ class Spring(Part):
     and preload follow"""
     rate: Annotated[Rate, Known("spring catalogue or drawing", "24.2 kN/m")]
     """force per deflection"""
-    preload: Annotated[Preload, Known("spring drawing", "242 N")]
-    """force at zero lift"""
+    preload: Annotated[SignedForce, Known("spring drawing", "242 N")]
+    """force at zero lift; negative of a spring that pulls there, which a cam that pulls permits"""
     travel_max: Annotated[Length | None, Known("spring catalogue or drawing", "34 mm")] = None
     """greatest lift that the spring permits"""
     seat_height: Annotated[Length | None, Known("assembly drawing", "120 mm")] = None
@@ -387,7 +387,7 @@ class Spring(Part):
     @property
     def absent(self) -> bool:
         """Whether it stands in for no spring, which form closure does without."""
-        return self.preload <= NO_FORCE
+        return abs(self.preload) <= NO_FORCE
 
     @property
     def parts(self) -> dict[str, Part | None]:

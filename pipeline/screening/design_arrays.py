@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,8 @@ from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
+from camwright.geometry.energy import lift_of_spring, signed_deflection
+from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet, Lift
@@ -180,14 +183,31 @@ class Designs:
         if (pivot := pivot_of(self.numbers)) is not None:
             dead_load = pivot.applied(machine.external.mean, pivot.direction(0.0))
         rate, preload = self.value("spring.rate"), self.value("spring.preload") + dead_load
+        if self.case.cam.pulls and not (preload > 0.0).all():
+            return self._turned(rate, preload)
         if source.energy is not None:
             energy = source.energy[None, :]
         elif source.torque is not None:
-            share = self.case.mechanism.gear_ratio * self.value("mechanism.compensation")
             stored = knot_integrals(source.torque)
             stored = stored - sampled_least(stored)[:, None]
-            energy = share * np.maximum(stored, 0.0)
+            energy = self._torque_share * np.maximum(stored, 0.0)
         return stored_lift(energy, rate, preload, self.numbers.spring_shape)
+
+    @property
+    def _torque_share(self) -> Array:
+        """Torque on the cam over the part of the crank torque that it is to balance (m, 1)."""
+        return self.case.mechanism.gear_ratio * self.value("mechanism.compensation")
+
+    def _turned(self, rate: Array, preload: Array) -> Array:
+        """Lift (m, N) of designs of which a spring may pull, see `signed_deflection`; (m, 1)."""
+        if self.source.torque is None:
+            raise InputError("smoothing.kind", "constrained", "a filter with a spring that pulls")
+        theta = uniform_turn(self.source.torque.shape[-1])
+        rows = np.broadcast_to(self._torque_share * self.source.torque, (self.count, theta.size))
+        springs = zip(rate[:, 0].tolist(), preload[:, 0].tolist(), strict=True)
+        stored = (partial(signed_deflection, spring_rate=k, preload=force) for k, force in springs)
+        lifts = (lift_of_spring(theta, *each) for each in zip(rows, stored, strict=True))
+        return np.stack([each.values for each in lifts])
 
     @KeptResult
     def jets(self) -> Array:

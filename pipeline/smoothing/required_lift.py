@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, uniform_turn
-from camwright.geometry.energy import lift_of_spring
+from camwright.geometry.energy import lift_of_spring, signed_deflection
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.external_load import closing_preload
@@ -55,16 +56,28 @@ def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
     Raises
     ------
     InputError
-        If the smoothing leaves no torque, or weight and external force pull the follower off.
+        If the smoothing leaves no torque, weight and external force pull the follower off, or the
+        spring of a cam that pulls is too weak, see `signed_deflection`.
     """
     target = case.mechanism.gear_ratio * required_torque(case, torque, smoother)
     _require_ripple(torque, target, smoother)
-    spring, closing = case.spring, closing_preload(case)
-    return lift_of_spring(
-        uniform_turn(target.size),
-        target,
-        lambda energy: stored_lift(energy, spring.rate, closing, spring.shape),
-    )
+    closing = closing_preload(case)
+
+    def deflection(energy: ArrayLike) -> Array:
+        return turned_lift(case, np.asarray(energy), closing)
+
+    return lift_of_spring(uniform_turn(target.size), target, deflection)
+
+
+def turned_lift(case: Case, energy: Array, closing: float) -> Array:
+    """Lift (n,), m, at which the spring of a case has stored an energy (n,) over the turn, J.
+
+    closing : float   force at zero lift, N, <= 0 under a cam that pulls alone
+    """
+    spring = case.spring
+    if closing > 0.0:
+        return stored_lift(energy, spring.rate, closing, spring.shape)
+    return signed_deflection(energy, spring.rate, closing)
 
 
 def _require_ripple(torque: Torque, target: Array, smoother: Smoother) -> None:

@@ -165,10 +165,12 @@ def test_refusals_name_field_value_and_limit(old: str, new: str, message: str) -
 
 
 def test_more_refusals_are_named() -> None:
-    text = changed('"24.2 kN/m"', '"-1 kN/m"').replace('"242 N"', '"-1 N"')
+    text = changed('"24.2 kN/m"', '"-1 kN/m"').replace('"242 N"', '"-2e9 N"')
     first, second = refused(text).split("; ")
     assert first == "spring.rate = -1 kN/m, must be > 0 and <= 1e+06 kN/m"
-    assert second == "spring.preload = -1 N, must be > 0 and <= 1e+09 N"
+    assert second == "spring.preload = -2e9 N, must be >= -1e+09 and <= 1e+09 N"
+    pulled = refused(changed('"242 N"', '"-1 N"'))
+    assert pulled.startswith('spring.preload = -1 N, must be > 0 N, or cam.closure = "groove"')
 
 
 def test_an_unknown_key_hides_no_wrong_value_of_its_table() -> None:
