@@ -24,9 +24,10 @@ from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
 from camwright.pipeline.smoothing.constraints import check_of
 from camwright.pipeline.smoothing.multistart import continued
+from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.scenario import redrawn
-from camwright.pipeline.smoothing.synthesis_problem import coarsened
+from camwright.pipeline.smoothing.synthesis_problem import FEASIBLE, Design, Problem, coarsened
 from camwright.pipeline.torque.torque import Torque
 
 if TYPE_CHECKING:
@@ -152,7 +153,8 @@ def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> D
     without checks.
 
     The limit of the ripple is compared with its minimum afterwards: as a constraint it would hide
-    the ripple of an infeasible case.
+    the ripple of an infeasible case. Where other terms of the objective, such as the jerk, leave
+    more ripple than the limit, the least ripple decides.
 
     Parameters
     ----------
@@ -169,13 +171,15 @@ def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> D
         if fine
         else synthesise(coarse, worth=_COARSE_PROGRESS)
     )
+    if every.ceiling is not None and design.ripple > every.ceiling:
+        design = _least_ripple(every if fine else coarsened(every), design, every.ceiling)
     drawn, lift = redrawn(case, design.variables), design.lift()
     contour = drawn.contour(lift)
     uses = dict(design.utilisation)
     if every.ceiling is not None:
         uses[TORQUE_REDUCTION.id] = design.ripple / every.ceiling
     limit = max(uses, key=lambda name: uses[name])
-    beyond = uses[limit] > 1.0
+    beyond = uses[limit] > 1.0 + FEASIBLE
     return {
         "feasible": not beyond,
         "ripple_left_share": design.ripple,
@@ -190,6 +194,25 @@ def draft_figures(case: Case, torques: Mapping[str, Torque], *, fine: bool) -> D
             (name for name in uses if uses[name] > _BINDING_USE), key=lambda n: -uses[n]
         ),
     }
+
+
+def _least_ripple(problem: Problem, design: Design, ceiling: float) -> Design:
+    """Design of the least ripple, without the other terms of the objective; where that keeps the
+    limit of the ripple, the design of the least objective within it.
+
+    Parameters
+    ----------
+    problem : Problem   with the limit of the ripple
+    design : Design     of the least objective without it; returned where that is the ripple alone
+    ceiling : float     greatest allowed ripple, over that of the engine
+    """
+    alone = replace(problem, objective=(Weighted(TORQUE, 1.0),), jerk_weight=Problem.jerk_weight)
+    if (alone.objective, alone.jerk_weight) == (problem.objective, problem.jerk_weight):
+        return design
+    left_out = frozenset({TORQUE_REDUCTION.id})
+    least = continued(replace(alone, left_out=left_out), design)
+    within = least if least.ripple > ceiling else continued(problem, least)
+    return within if within.feasible else least
 
 
 def _shortfalls(checks: Sequence[Check]) -> list[Shortfall]:

@@ -48,6 +48,7 @@ from camwright.pipeline.search.parts.exclusions import exclusions
 from camwright.pipeline.search.parts.part_search import RUNG, RUNGS, RollerSearch, selection
 from camwright.pipeline.search.parts.ripple_bounds import RippleBound, bearable_energy
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE
 
 CASES = Path(__file__).parents[2] / "cases"
 TORSION = """\
@@ -514,6 +515,20 @@ def test_a_judgement_is_of_the_contents_of_the_included_files(case, tmp_path):
 
     assert [judged(amplitude) for amplitude in (2.0, 2.0, 3.0, 2.0)] == [2.0, 2.0, 3.0, 2.0]
     assert made == [2.0, 3.0]
+
+
+def test_a_weight_on_the_jerk_excludes_no_part():
+    """The objective leaves 0.55 of the ripple of the arm's engine, of which 0.50 is allowed, though
+    a cam within every limit leaves that.
+    """
+    path = Path(__file__).parents[2] / "cases" / "gx120-arm.toml"
+    choice = Choice("track_roller_47x18", "65 x 42", "sintered_bronze")
+    case = choice.applied(with_values(read_case(path), {"smoothing.corners": False}), path.parent)
+    assert case.smoothing.jerk_weight > 1.0
+    record = figures.draft_figures(case, engine_torques(case), fine=False)
+    assert record["feasible"] and record["limit"] == ""
+    # of a limit, less the reserve of a synthesis
+    assert record["ripple_left_share"] == pytest.approx(0.5 * (1.0 - RESERVE), rel=1e-4)
 
 
 def test_a_judgement_is_of_its_depth(case, tmp_path, monkeypatch):
