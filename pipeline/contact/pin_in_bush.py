@@ -77,14 +77,13 @@ class PressedPin:
     """Pin pressed in its bush.
 
     pressure (m, k), Pa, at m angles and k places; line (2, k), N/m, in the plane of the couple and
-    across; peak, Pa; shift, m, and tilt, rad, of the axis in the plane of the couple; active (m,
-    k): in contact; relative residuals of equilibrium and complementarity as in `active_set`.
+    across; peak, Pa; tilt of the axis in the plane of the couple, rad; active (m, k): in contact;
+    relative residuals of equilibrium and complementarity as in `active_set`.
     """
 
     pressure: Array
     line: Array
     peak: float
-    shift: float
     tilt: float
     active: NDArray[np.bool_]
     equilibrium: float
@@ -250,7 +249,6 @@ class PinInBush:
             pressure,
             self.seat.radius * self._ways @ pressure,
             self.peak(pressure),
-            float(motion[0]) * self.seat.radius,
             float(motion[2]),
             active.reshape(pressure.shape),
             float(np.abs(flat @ self._weights - targets).max() / scale),

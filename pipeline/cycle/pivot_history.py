@@ -186,22 +186,25 @@ def pivot_history(push: PivotPush, mean_length: float, theta: Array) -> PivotHis
     if rows is None:
         return None
     # a narrow contact has a pressure in proportion to the root of its load
-    root, every = np.sqrt(push.size), rows.solved
-    rows.solve([*rows.spread(), first_greatest(push.edge_pressure)])
-    if not every:
-        raise ContactError("pin in its bush: contact narrower than the grid")
-    missed = rows.refine(root)
-    edge = root * _linear({row: each.peak / root[row] for row, each in every.items()}, theta)
-    worst = first_greatest(edge)
-    governing, coarse = rows.solved[worst], rows.pin
+    effort, every = push.size + push.couple / push.bush.length, rows.solved
+    root, worst, searched = np.sqrt(effort), first_greatest(push.edge_pressure), False
+    rows.solve(rows.spread())
+    while not searched:
+        if worst not in every:
+            every[worst] = rows.pin.pressed(rows.load(worst))
+        missed = rows.refine(root)
+        edge = root * _linear({row: each.peak / root[row] for row, each in every.items()}, theta)
+        worst = first_greatest(edge)
+        searched = worst in every
+    governing, coarse = every[worst], rows.pin
     refined = pin_in_bush(coarse.seat, coarse.grid.refined(_REFINED)).pressed(rows.load(worst))
     scale = refined.peak / governing.peak
-    signed = {row: _signed(each.line) / push.size[row] for row, each in every.items()}
+    signed = {row: _signed(each.line) / effort[row] for row, each in every.items()}
     return PivotHistory(
         edge_pressure=scale * edge,
         foundation=push.edge_pressure,
         tilt=_linear({row: each.tilt for row, each in every.items()}, theta),
-        line=push.size[:, None] * _linear(signed, theta),
+        line=effort[:, None] * _linear(signed, theta),
         places=coarse.places,
         angles=coarse.angles,
         pressure=scale * governing.pressure,

@@ -122,3 +122,19 @@ def test_a_contact_narrower_than_the_finest_grid_is_refused():
     with pytest.raises(ContactError, match="pin in its bush"):
         pivot_history(light, MEAN, THETA)
     assert pin_slopes(light, MEAN) is None
+
+
+def test_a_couple_without_a_force_and_angles_without_load():
+    """A quarter of the turn without any load, one with a couple alone, on both edges alike."""
+    quarter = np.arange(COUNT) < COUNT // 4
+    free = push()._replace(
+        force=np.where(quarter, 0.0, push().force),
+        beside=np.where(quarter, 0.0, push().beside),
+        couple=np.where(np.arange(COUNT) < COUNT // 8, 0.0, 4.0),
+    )
+    made = pivot_history(free, MEAN, THETA)
+    assert np.isfinite(made.edge_pressure).all() and np.isfinite(made.line).all()
+    assert (made.edge_pressure[1 : COUNT // 8 - 1] == 0.0).all()
+    row = COUNT // 8 + COUNT // 16
+    assert made.edge_pressure[row] > 5e6
+    np.testing.assert_allclose(made.line[row], -made.line[row, ::-1], rtol=1e-6, atol=1e-3)
