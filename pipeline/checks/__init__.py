@@ -19,6 +19,8 @@ In the order of the calculation:
 | `roller_bearing`        | rating, life, speed, grease of the bearing | s0; L10, s; n, rad/s     |
 | `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
 | `spring_strength`       | strength, gaps, buckling, surge, set       | tau, Pa; f, Hz           |
+| `gas_spring`            | pressure, stroke, warmth of a gas spring   | p, Pa; v, m/s; K         |
+| `shaped_springs`        | torsion and extension springs, links       | sigma, tau, Pa; F, N     |
 | `part_strength`         | pin, fork, ring, mass, bore, balance       | sigma, Pa; kg; e w, m/s  |
 | `arm_strength`          | fatigue and yield of an arm                | sigma, Pa; safety, -     |
 | `key_strength`          | key of the cam, keyway root, slip of seat  | p, tau, Pa; safety, -    |

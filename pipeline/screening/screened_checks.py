@@ -34,8 +34,8 @@ from camwright.pipeline.checks import (
     demands,
     flat_face_sliding,
     form_closure,
+    gas_spring,
     roller_bearing,
-    spring_strength,
     torque_balance,
 )
 from camwright.pipeline.checks.arm_strength import ArmPlace
@@ -466,7 +466,7 @@ def _yoke_breadth(designs: Designs) -> Judged | None:
 
 def _gas_stroke_rate(designs: Designs) -> Judged | None:
     rate = _strokes(designs) * designs.numbers["cam.fastest"] / FULL_TURN
-    limit = spring_strength.gas_of(designs.case).stroke_rate_limit
+    limit = gas_spring.gas_of(designs.case).stroke_rate_limit
     return _of_each(rate, designs), limit
 
 
@@ -480,15 +480,15 @@ def _gas_heating(designs: Designs) -> Judged | None:
 
     def warm(cam: ScreenedCam) -> Array:
         rate = strokes * cam.speed / FULL_TURN
-        return np.asarray(spring_strength.gas_warmth(case, work, rate))
+        return np.asarray(gas_spring.gas_warmth(case, work, rate))
 
     demand = _over_duty(designs, warm, life=False, steady=True)
-    return _of_each(demand, designs), float(celsius(spring_strength.gas_of(case).warm))
+    return _of_each(demand, designs), float(celsius(gas_spring.gas_of(case).warm))
 
 
 def _strokes(designs: Designs) -> Array:
     """Rises of the lift in a turn (m, 1)."""
-    return np.array([[spring_strength.strokes_of(slope)] for slope in designs.jets[1]])
+    return np.array([[gas_spring.strokes_of(slope)] for slope in designs.jets[1]])
 
 
 _ARRAYS: Mapping[str, tuple[Callable[[Designs], Judged | None], float]] = {
@@ -500,8 +500,8 @@ _ARRAYS: Mapping[str, tuple[Callable[[Designs], Judged | None], float]] = {
     assembly.counterweight_unbalance.id: (_counterweight_unbalance, 0.001),
     flat_face_sliding.bulk_temperature.id: (_bulk_temperature, 0.005),
     flat_face_sliding.contact_temperature.id: (_contact_temperature, 0.02),
-    spring_strength.gas_stroke_rate.id: (_gas_stroke_rate, 1e-9),
-    spring_strength.gas_heating.id: (_gas_heating, 1e-4),
+    gas_spring.gas_stroke_rate.id: (_gas_stroke_rate, 1e-9),
+    gas_spring.gas_heating.id: (_gas_heating, 1e-4),
     LANDING_SPEED.id: (
         lambda designs: _of_landings(designs, LANDING_SPEED, lambda one: one.flight.speed),
         1e-4,

@@ -33,7 +33,7 @@ LAWS = ROOT / "geometry/motion_laws.py"
 KINDS, SPRING = (ROOT / f"pipeline/follower/{name}.py" for name in ("spring_kinds", "spring"))
 STRENGTH, DRAWN, MISSING = (
     ROOT / f"{name}.py"
-    for name in ("pipeline/checks/spring_strength", "reports/drawing/spring_shapes",
+    for name in ("pipeline/checks/shaped_springs", "reports/drawing/spring_shapes",
                  "pipeline/base/missing_kinds")
 )  # fmt: skip
 LIMIT = 120.0  # mm/rad^3; the cam of the small machine has 190 without it
@@ -109,7 +109,9 @@ def with_spring() -> dict[Path, str]:
         ),
         edited(
             STRENGTH,
-            before("    GasSpring,\n", "    DiscSpring,\n"),
+            before("    ExtensionSpring,\n", "    DiscSpring,\n"),
+            ("    NONE,\n", "    NONE,\n    STATED,\n"),
+            ("    check,\n", "    check,\n    of_key,\n"),
             added=f"{read}\n\n{declared}",
         ),
         edited(

@@ -452,7 +452,8 @@ ASK_FOR_A_KIND = {
         "reports.scene_second": _DRAWS,
     },
     SPRINGS: {
-        "pipeline.checks.spring_strength": "narrows the spring to the kind that a measure needs",
+        "pipeline.checks.gas_spring": "narrows the spring to the kind that a measure needs",
+        "pipeline.checks.shaped_springs": "narrows the spring to the kind that a measure needs",
         "reports.drawing.arrangement": _DRAWS,
         "reports.part_figures": _DRAWS,
     },

@@ -19,11 +19,13 @@ from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import (
     camshaft_strength,
+    gas_spring,
     guide_strength,
     guide_wear,
     jump_and_jamming,
     key_strength,
     part_strength,
+    shaped_springs,
     spring_strength,
 )
 from camwright.pipeline.checks.cam_shape import acceleration_step
@@ -91,6 +93,8 @@ PARTS = (
     *declared_in(part_strength),
     *declared_in(key_strength),
     *declared_in(spring_strength),
+    *declared_in(gas_spring),
+    *declared_in(shaped_springs),
     *declared_in(guide_wear),
 )
 
