@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, Self
@@ -70,6 +71,17 @@ class Arm:
     def pivot(self) -> tuple[float, float]:
         """Centre distance, m, and sense, as of `arm_angle`."""
         return float(self.centre_distance), self.sense
+
+    def to_roller(self, radius: float) -> Callable[[Array], Array]:
+        """Angle, rad, from points at distances from the pivot, m, to the arm whose roller of a
+        radius, m, touches them; -inf where it cannot.
+        """
+
+        def beyond(distance: Array) -> Array:
+            cosine = (distance**2 + self.length**2 - radius**2) / (2.0 * distance * self.length)
+            return np.where(cosine <= 1.0, np.arccos(np.clip(cosine, -1.0, 1.0)), -np.inf)
+
+        return beyond
 
     def angle(self, radius: Value) -> Value:
         """Arm angle, rad, with the end of the arm at a radius, m, from the cam axis.
@@ -286,6 +298,11 @@ class ArmPath(CentrePath):
         """Motion of the centre alone."""
         return self.centre_motion(self.lift.jet(theta, 2), 0.0)
 
+    def pulled(self, polygon: ArrayLike, radius: float, theta: ArrayLike) -> Array:
+        reach = self.arm.to_roller(radius)
+        angle = arm_angle(polygon, self.arm.pivot, reach, theta, pulled=True)
+        return np.asarray(self.arm.length * angle)
+
     def travel(self, theta: ArrayLike) -> Array:
         return self.arm.travel(self.start + self.lift(theta) / self.arm.length)
 
@@ -438,13 +455,9 @@ class ArmContour(RoundContour):
         """Heights of the follower at rest on a polygon (2, n), m, at cam angles (m,), rad: arc of
         the roller centre from the line of centres (m,), m.
         """
-        arm, radius = self.pitch.arm, self.roller_radius
-
-        def beyond(distance: Array) -> Array:
-            cosine = (distance**2 + arm.length**2 - radius**2) / (2.0 * distance * arm.length)
-            return np.where(cosine <= 1.0, np.arccos(np.clip(cosine, -1.0, 1.0)), -np.inf)
-
-        return np.asarray(arm.length * arm_angle(polygon, arm.pivot, beyond, theta))
+        arm = self.pitch.arm
+        reach = arm.to_roller(self.roller_radius)
+        return np.asarray(arm.length * arm_angle(polygon, arm.pivot, reach, theta))
 
     def _track(self, theta: Array) -> tuple[Array, Array, Array]:
         frame = self.local_frame(theta)

@@ -97,11 +97,14 @@ def arm_angle(
     pivot: tuple[float, float],
     beyond: Callable[[Array], Array],
     theta: ArrayLike,
+    *,
+    pulled: bool = False,
 ) -> Array:
     """Angle of an arm on a fixed pivot that rests on a contour, (m,), rad.
 
     From the line to the cam axis, the maximum over the points of the contour of their own angle at
-    the pivot and that from there to the arm.
+    the pivot and that from there to the arm; of a roller that is pulled against a wall around it
+    the minimum of the difference, over the points on its side of that line.
 
     Parameters
     ----------
@@ -111,6 +114,7 @@ def arm_angle(
     beyond : function        distances of points from the pivot, m -> angle from the point to the
                              arm that touches it, rad; -inf where it cannot
     theta : array (m,)       angles from the cam axis to the pivot in the cam frame, rad
+    pulled : bool            against a wall around the roller
 
     Raises
     ------
@@ -121,14 +125,18 @@ def arm_angle(
 
     def support(x: Array, y: Array, angle: Array) -> Array:
         """Arm angle, rad, with the follower on a point (x, y), m, of the cam turned by `angle`,
-        rad.
+        rad; negative of a roller that is pulled.
         """
         along = centre_distance - x * np.cos(angle) - y * np.sin(angle)
         across = sense * (y * np.cos(angle) - x * np.sin(angle))
-        angles: Array = np.arctan2(across, along) + beyond(np.hypot(along, across))
+        of_point, to_arm = np.arctan2(across, along), beyond(np.hypot(along, across))
+        if pulled:
+            return np.where(across > 0.0, to_arm - of_point, -np.inf)
+        angles: Array = of_point + to_arm
         return angles
 
-    return _highest(polygon, support, theta)
+    highest = _highest(polygon, support, theta)
+    return -highest if pulled else highest
 
 
 def _highest(polygon: ArrayLike, support: Support, theta: ArrayLike) -> Array:

@@ -78,10 +78,10 @@ MISSING_KINDS = (
         keys=("lash", "pushrod", "hydraulic"),
     ),
     MissingKind(
-        "a groove (track, face) cam under an arm or with two rollers", "cam",
+        "a groove (track, face) cam with two rollers", "cam",
         ("groove", "grooved", "groove_width", "track", "face", "face_cam", "slot", "slotted",
          "box", "box_cam", "closed", "internal"),
-        'cam.closure = "groove" with one roller on a stem',
+        'cam.closure = "groove" with one roller on a stem or an arm',
         keys=("groove_width", "groove_depth", "track", "track_width"),
     ),
     MissingKind(

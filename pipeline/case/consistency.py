@@ -275,8 +275,8 @@ def _closure(case: Case) -> None:
         if case.follower.kind != "flat":
             limit = f'"flat" with {stated_as}, which is done for a stem alone'
             raise InputError("follower.kind", case.follower.kind, limit)
-    elif case.follower.kind != "roller":
-        limit = f'"roller" with {stated_as}, which is done for a stem alone'
+    elif case.roller_given is None or case.rocker is not None:
+        limit = f'"roller", or "oscillating" with a roller, with {stated_as}'
         raise InputError("follower.kind", case.follower.kind, limit)
     if case.lift is None:
         _stores(case, stated_as)

@@ -101,8 +101,8 @@ def on_wall(motion: Motion, wall: Array) -> Motion:
     The outer wall is the parallel curve at the negative radius of the roller, which rolls on it in
     the other direction: contact, undercut factor and spin are those of that radius.
     """
-    if not isinstance(motion, RollerMotion):
-        raise GeometryError("the follower in the groove is no roller of a stem")
+    if not isinstance(motion, RollerMotion | ArmMotion):
+        raise GeometryError("the follower in the groove is no roller")
     return replace(motion, size=wall * motion.size)
 
 

@@ -25,6 +25,8 @@ KINDS = {
     "yoke": "tests/data/yoke_pump.toml",
     "weight": "tests/data/gravity_lift.toml",
 }
+ON_AN_ARM = "tests/data/groove_arm.toml"
+"""Of every second groove."""
 BEARINGS = {  # card: outer diameter, width and bore, mm
     "32x14": (32.0, 14.0, 12.0),
     "40x16": (40.0, 15.9, 17.0),
@@ -41,7 +43,8 @@ def drawn(k: int) -> dict[str, Any]:
     """Tables of one cam: its closure in turn, its motion, sizes, masses and clearances by lot."""
     draw = np.random.default_rng([SEED, k])
     kind = list(KINDS)[k % len(KINDS)]
-    tables = tomllib.loads((ROOT / KINDS[kind]).read_text(encoding="utf-8"))
+    file = ON_AN_ARM if k % (2 * len(KINDS)) == len(KINDS) else KINDS[kind]
+    tables = tomllib.loads((ROOT / file).read_text(encoding="utf-8"))
     cam, follower, arm = tables["cam"], tables["follower"], "arm" in tables["follower"]
     yoke = kind == "yoke"
     strokes = int(draw.choice([1, 3, 5] if yoke else [1, 2, 3]))
