@@ -92,7 +92,8 @@ MODEL_LIMITS = (
         " the diameter of the pin, opposite to the swing, none at rest; the lift that balances a"
         " torque is drawn with the weight of the arm at zero lift, its torque with the true one."
         " The rating life of needles counts the path that the arm swings: a swing below the"
-        " pitch of the needles is not judged, nor is the load along the pin."
+        " pitch of the needles is not judged, nor is the load along the pin. A spring beside the"
+        " plane of the cam (`spring.link.plane_offset`) twists neither arm nor pivot."
     ),
     ModelLimit(
         "Pin and bush of a pivot are solved by finite elements where the contact of the cam is; the"
