@@ -15,6 +15,7 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
 )
 from camwright.pipeline.contact.finite_length.length_certificate import (
     LengthLoad,
+    LengthPoint,
     begun_ends,
 )
 from camwright.pipeline.contact.finite_length.length_tiers import (
@@ -147,3 +148,10 @@ def test_scatter_of_cells_too_wide_for_the_contact_is_not_that_of_the_blocks():
     # An observed order is that of the blocks and stays.
     smooth = 0.98 * blocks
     assert length_tiers._converged(smooth, halves) == length_tiers._converged(smooth, None)
+
+
+def test_a_line_that_its_tilt_lifts_in_the_middle_has_no_pressure_there():
+    lifted = length_tiers._converged(np.zeros(3), np.zeros(4))
+    assert (lifted.values, lifted.gci) == ((0.0, 0.0, 0.0), 0.0)
+    point = LengthPoint(replace(load(0.0, 40.0, 0.3), centre=0.0), None, None)
+    assert point.centre_ratio == 1.0

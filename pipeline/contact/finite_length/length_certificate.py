@@ -70,7 +70,11 @@ class LengthPoint:
 
     @property
     def centre_ratio(self) -> float:
-        """Pressure in the middle, finite elements over the half-spaces of the cycle."""
+        """Pressure in the middle, finite elements over the half-spaces of the cycle; 1 where its
+        tilt lifts the line there.
+        """
+        if not self.load.centre > 0.0:
+            return 1.0
         return float(self.finite_elements.factors.centre[0]) / self.load.centre
 
 

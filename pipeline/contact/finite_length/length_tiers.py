@@ -297,7 +297,8 @@ def _converged(values: Array, halves: Array | None) -> Convergence:
 
     Cells wider than the contact needs scatter it, and err alike in both tiers: of values without an
     observed order, the error of the half-spaces on the same cells is taken off before the bar is
-    taken, and added to it; the lesser bar holds.
+    taken, and added to it; the lesser bar holds. A pressure that is zero, in the middle of a line
+    which its tilt lifts there, scatters by nothing.
 
     Parameters
     ----------
@@ -306,7 +307,7 @@ def _converged(values: Array, halves: Array | None) -> Convergence:
         contact
     """
     plain = converged(values.tolist(), _MESH_RATIO)
-    if halves is None or plain.order is not None:
+    if halves is None or plain.order is not None or not (halves > 0.0).all():
         return plain
     corrected = values * halves[-1] / halves[:-1]
     freed = converged(corrected.tolist(), _MESH_RATIO)
