@@ -30,6 +30,10 @@ def undercut(at):
     return at.sharpness / (1 - at.p.undercut_factor)
 
 
+def outer_undercut(at):
+    return -at.sharpness / at.p.outer_undercut
+
+
 def concave_radius(at):
     return -at.curvature * (at.p.hollow_radius - at.p.roller_radius)
 
@@ -117,6 +121,8 @@ LIMITS: tuple[OracleLimit, ...] = (
     OracleLimit("curvature_ratio", "shape", "curvature_ratio", curvature_ratio,
                 "Norton, Cam Design and Manufacturing Handbook: rho_p >= 1.5 to 3 r"),
     OracleLimit("undercut", "shape", "undercut_factor", undercut, ROTHBART + ": 1 - r kappa"),
+    OracleLimit("outer_undercut", "shape", "outer_undercut", outer_undercut,
+                ROTHBART + ": parallel curve outwards, 1 + r kappa"),
     OracleLimit("concave_radius", "shape", "hollow_radius", concave_radius,
                 ROTHBART + ": |rho_p| + r >= tool radius in a hollow"),
     OracleLimit("curvature_rate", "shape", "curvature_rate", curvature_rate,

@@ -17,7 +17,7 @@ LIMIT_NUMBERS = (
     "minimum_wall", "guide_slope_a", "guide_slope_b", "gas_slope", "guide_gap", "guide_edge_load_a",
     "guide_edge_load_b", "guide_power_a", "guide_power_b", "guide_wear_pv_a", "guide_wear_pv_b",
     "friction", "waviness", "cam_torque", "tooth_torque", "keyway_safety",
-    "grease_rating", "modified_rate", "roller_spin_least",
+    "grease_rating", "modified_rate", "roller_spin_least", "outer_undercut",
 )  # fmt: skip
 MACHINE_NUMBERS = (
     "roller_radius", "contact_width", "contact_modulus", "guide_area_a", "guide_area_b",

@@ -8,6 +8,7 @@ from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.smoothing.scenario import Ratings
 
 BOUNDS = {
+    "outer_undercut": "outer_undercut",
     "travel": "spring_travel", "hollow_radius": "concave_radius", "pressure": "contact_pressure",
     "normal_force": "roller_static", "life_force_cubed": "roller_life", "gas_slope": "gas_speed",
     "roller_spin": "roller_speed", "friction": "traction_demand", "cam_torque": "key_pressure",

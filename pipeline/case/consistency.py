@@ -295,19 +295,21 @@ def _closure(case: Case) -> None:
 
 
 def _stores(case: Case, stated_as: str) -> None:
-    """Check a cam that pulls whose lift is drawn from a torque: a spring stores its work, and a
-    filter smooths it.
+    """Check a cam that pulls whose lift is drawn from a torque: a spring stores its work.
 
     Raises
     ------
     InputError
-        If the spring is missing, or the lift is that of a constrained synthesis.
+        If the spring is missing, or the lift is that of a constrained synthesis that is not done:
+        of a pair or a yoke, or of a spring that pulls.
     """
     if case.spring.absent:
         limit = f"given with {stated_as} and without [lift]: it stores the work of the torque"
         raise InputError("spring", "missing", limit)
-    if case.smoothing.kind == "constrained":
-        limit = f"a filter with {stated_as}: its constrained synthesis is not done"
+    if case.smoothing.kind == "constrained" and (
+        case.cam.groove is None or not case.spring.preload > 0.0
+    ):
+        limit = f"a filter with {stated_as}: it is done for a groove with a spring.preload > 0 N"
         raise InputError("smoothing.kind", "constrained", limit)
 
 

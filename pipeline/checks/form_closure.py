@@ -31,7 +31,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import contact_strength
 from camwright.pipeline.checks import value_groups as given
-from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
+from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check
 from camwright.pipeline.checks.extremes import Extreme, cycle_of, worst_case
 from camwright.pipeline.checks.flat_face_sliding import bulk_allowed, heat_missing
 from camwright.pipeline.checks.missing_keys import lacking_of_card
@@ -67,11 +67,13 @@ PLATE_MOMENT = 0.509
     load_cases=NONE,
     levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
     page="Cam",
+    kept_as="hollow of the outer wall over the roller",
 ).measured(
     "contour",
     value=lambda worst, _: 1.0 - worst,
     bound=lambda limit, _: 1.0 - limit,
     deviation=1e-4,
+    kept=Kept(unit="-"),
 )
 def outer_undercut(cam: LoadedCam) -> Array:
     """1 less the undercut factor of the outer wall."""

@@ -96,7 +96,8 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
     if (room := room_beside_shaft(machine)) is not None:
         limits.setdefault(CAM_RADIUS.id, {})[machine_shaft_gap.id] = room
     limits[spring_travel.id] = _travel_limit(case)
-    limits[jump_speed.id] = {jump_speed.id: cam_speed_without_jump(numbers)}
+    if jump_speed.concerns(machine):
+        limits[jump_speed.id] = {jump_speed.id: cam_speed_without_jump(numbers)}
     limits[KEYWAY_SAFETY.id] = {keyway_root.id: machine.limits[KEYWAY_SAFETY]}
     if case.scope.covers("guides"):
         for side, guide in machine.guides.both:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
+from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude, rolling_share
 from camwright.pipeline.case.limits import (
@@ -30,6 +31,7 @@ from camwright.pipeline.cycle.loaded_cam import (
     LoadedCam,
     OfGuides,
     not_negative,
+    on_wall,
     roller_of,
 )
 from camwright.pipeline.cycle.numbers import Numbers
@@ -110,6 +112,12 @@ class ScenarioCam(LoadedCam):
     scenario: Scenario
     variables: DesignVariables
     ratings: Ratings
+
+    @cached_property
+    def motion(self) -> Motion:
+        """On the wall of a groove that carries."""
+        unloaded = super().motion
+        return on_wall(unloaded, self.wall) if self.pulls else unloaded
 
     @property
     def fix(self) -> Correction:

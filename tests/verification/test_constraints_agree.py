@@ -260,6 +260,7 @@ RANGES = {
 EVERY = rated(
     roller_radius=0.008, offset=0.003, travel=0.045, pressure_angle=np.pi / 6, jam_index=0.5,
     curvature_ratio=1.5, undercut_factor=0.3, hollow_radius=0.03, curvature_rate=9e3,
+    outer_undercut=0.7,
     cam_radius=0.08, pressure=1e9, contact_width=0.01, contact_modulus=1.2e11,
     contact_force_margin=0.2, overspeed=200.0, jump=1.0, jump_speed=250.0, normal_force=900.0,
     life_force_cubed=1e9, roller_spin=600.0, guide_pressure=(5e6, 5e6), guide_pv=(1e6, 1e6),
@@ -371,7 +372,8 @@ def test_gradients_of_arms_match_differences(arm):
     described = named(EVERY)
     ratings = rated(
         given.ratings, held_radius=case.cam.held_radius, gas_slope=0.03, return_pressure_angle=0.7,
-        keyway=described.keyway, grease=described.grease if arm[0] == "roller" else None,
+        outer_undercut=0.7, keyway=described.keyway,
+        grease=described.grease if arm[0] == "roller" else None,
     )  # fmt: skip
     seen = of_true_gradient(replace(given, ratings=ratings, freed={"prime_radius": (0.03, 0.09)}))
     kinds = {"", *ratings.kinds}

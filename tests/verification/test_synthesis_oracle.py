@@ -153,7 +153,7 @@ def test_utilisations_are_those_of_the_formulas(seed, phase):
 def test_utilisations_of_every_part_are_those_of_the_formulas(seed):
     """As above, of every constraint; without, then with corrections and surge."""
     problem = thinned(described(signed()), 24, 120)
-    problem = replace(problem, ratings=rated(problem.ratings, gas_slope=0.03))
+    problem = replace(problem, ratings=rated(problem.ratings, gas_slope=0.03, outer_undercut=0.7))
     if seed > 1:
         problem = with_corrections(problem, seed)
     own, expected = at_a_random_cam(problem, seed, {})

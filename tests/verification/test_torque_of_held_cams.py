@@ -110,10 +110,7 @@ def test_a_spring_that_pulls_draws_the_mirror_of_one_that_pushes():
 def test_a_strong_spring_draws_the_cam_that_it_closes():
     """The lift of a spring-closed cam, and its forces in the groove."""
     held = text_of(SEVERAL, 900.0)
-    begin, end = held.index("[cam.groove]"), held.index("[camshaft]")
-    closed = (held[:begin] + held[end:]).replace('closure = "groove"\n', "")
-    closed = closed.replace("crossover_slip", "# crossover_slip")
-    case = parse_case(closed)
+    case = parse_case(as_spring_closed(held))
     spring_closed = cam_lift(case, engine_torques(case))
     trial = preview_case(parse_case(held), corners=False)
     assert np.array_equal(trial.lift.values, spring_closed.values)
@@ -121,12 +118,57 @@ def test_a_strong_spring_draws_the_cam_that_it_closes():
     assert_as_closed_by_a_strong_spring(cycle, cycle.machine)
 
 
+@pytest.mark.slow
 def test_designs_of_other_springs_agree_with_their_previews():
     case = parse_case(text_of(SEVERAL, -300.0))
     factors = {"spring.rate": np.array([19e3, 21e3]), "spring.preload": np.array([-320.0, -290.0])}
     worst = compared(case, factors, positions=720)
     assert {"torque_reduction", "landing_speed", "contact_pressure"} <= set(worst)
     assert exceeded(worst) == {}
+
+
+def synthesised(text):
+    """Preview of a constrained synthesis of 24 splines from one start, without initial energy."""
+    found = 'kind = "constrained"\n'
+    more = f"{found}coefficients = 24\nstarts = 1\nfree = []\n"
+    return preview_case(parse_case(text.replace(found, more)), corners=False)
+
+
+STRONGER = tuple((k, 8.0 * a, 8.0 * b) for k, a, b in SEVERAL)
+
+
+def as_spring_closed(text):
+    begin, end = text.index("[cam.groove]"), text.index("[camshaft]")
+    closed = (text[:begin] + text[end:]).replace('closure = "groove"\n', "")
+    return closed.replace("crossover_slip", "# crossover_slip")
+
+
+@pytest.mark.slow
+def test_a_strong_spring_synthesises_the_cam_that_it_closes():
+    """No constraint of either closure is active: both drafts are one, to its tolerance."""
+    text = text_of(STRONGER, 900.0, kind="constrained")
+    held, closed = synthesised(text), synthesised(as_spring_closed(text))
+    assert held.synthesis["feasible"] and closed.synthesis["feasible"]
+    away = np.abs(held.lift.values - closed.lift.values).max()
+    assert away < 1e-6 * np.ptp(closed.lift.values)
+
+
+@pytest.mark.slow
+def test_a_synthesis_keeps_the_outer_wall_and_both_signs_of_the_force():
+    """A weak spring: its hollow would undercut the outer wall, at speed the cam pulls."""
+    text = text_of(STRONGER, 20.0, kind="constrained")
+    slow = synthesised(text)
+    checks = {each.id: each for each in slow.checks}
+    assert slow.synthesis["feasible"] and checks["outer_undercut"].status == "pass"
+    assert checks["outer_undercut"].demand < 0.32  # of 0.3: it binds
+    fast = text.replace('preload = "20.0 N"', 'preload = "60 N"').replace('"300 rpm"', '"1500 rpm"')
+    fast = fast.replace('"330 rpm"', '"1600 rpm"')
+    trial = synthesised(fast.replace("[limits]", "[limits]\ntorque_reduction = 0.1"))
+    running = next(each for each in trial.cycles if each.load_case == "running")
+    assert trial.synthesis["feasible"] and (running.loads.axial_force < -50.0).any()
+    kept = {"contact_pressure", "pressure_angle", "jam_index", "torque_reduction", "roller_static"}
+    status = {each.id: each.status for each in trial.checks}
+    assert {name: status[name] for name in kept} == dict.fromkeys(kept, "pass")
 
 
 @pytest.mark.parametrize(
@@ -151,7 +193,7 @@ def without_spring():
     ("text", "message"),
     [
         (without_spring(), r"spring = missing, must be given"),
-        (text_of(ONE, 300.0, kind="constrained"), r"smoothing\.kind = constrained, must be"),
+        (text_of(ONE, -300.0, kind="constrained"), r"smoothing\.kind = constrained, must be"),
         (FILE.read_text(encoding="utf-8").replace('closure = "groove"', 'closure = "spring"')
          + '[spring]\nrate = "1 kN/m"\npreload = "-5 N"\ntravel_max = "40 mm"\n',
          r"spring\.preload = -5 N, must be > 0 N|cam\.groove"),
