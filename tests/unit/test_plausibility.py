@@ -155,6 +155,8 @@ def test_an_unbalance_finer_than_any_grade_is_told_without_the_mass_of_the_rotor
     assert f"at {1e3 * mass:.4g} g of cam and shaft alone" in one
     assert f"a grade of G {1e3 * 2e-7 / mass * speed:.2g}, usually 0.4" in one
     assert warnings(parse_case(changed(bare, '"20 g mm"', '"90000000 g mm"'))) == []
+    # 1.1 um, which a bench reaches, though it is a grade of 0.21
+    assert warnings(parse_case(changed(bare, '"20 g mm"', f'"{1.1 * mass:.4g} g mm"'))) == []
 
 
 def test_a_rate_a_thousand_times_too_low_contradicts_the_torque() -> None:
