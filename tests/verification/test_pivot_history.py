@@ -124,6 +124,20 @@ def test_a_contact_narrower_than_the_finest_grid_is_refused():
     assert pin_slopes(light, MEAN) is None
 
 
+@pytest.mark.parametrize(
+    ("away", "share", "ratio"),
+    [(0, 0.0, 0.99), (0, 0.45, 1.08), (0, 0.5, 1.37), (45, 0.25, 0.78), (80, 0.25, 2.0)],
+)
+def test_slices_over_elements_are_as_stated(away, share, ratio):
+    """The ratios of the limits of the model, at 640 N."""
+    force, aside = 640.0 * np.array([np.cos(np.radians(away)), np.sin(np.radians(away))])
+    bush, couple = push().bush, share * 640.0 * push().bush.length
+    one = (np.array([each]) for each in (force, couple, aside / bush.length))
+    slices = PivotPush(bush, push().pin, *one).edge_pressure[0]
+    made = solid(1.5).pressed(PinLoad(force, aside, couple))
+    assert slices / made.peak == pytest.approx(ratio, rel=0.02)
+
+
 def test_a_couple_without_a_force_and_angles_without_load():
     """A quarter of the turn without any load, one with a couple alone, on both edges alike."""
     quarter = np.arange(COUNT) < COUNT // 4
