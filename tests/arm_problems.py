@@ -83,14 +83,24 @@ def arm_case(
 
 
 def arm_problem(
-    *about: str, coefficients: int, points: int, **tighter: float
+    *about: str,
+    coefficients: int,
+    points: int,
+    weight: bool = False,
+    corners: tuple[str, ...] = (),
+    **tighter: float,
 ) -> tuple[Problem, OracleArm]:
-    """Synthesis of a cam under an arm without weight, and its formulas, at nominal values.
+    """Synthesis of a cam under an arm, and its formulas, at nominal values.
 
-    about : kind, bearing, spring and sense of the swing of `arm_case`; tighter: factors on bounds
+    about : kind, bearing, spring and sense of the swing of `arm_case`; weight: of what swings;
+    corners: words in the names of tolerance corners that are kept, too; tighter: factors on bounds
     """
-    case = arm_case(*about, stated={key: PIVOT[key] for key in MASS_ALONE})
-    problem = thinned(nominal(problem_of(case, engine_torques(case))), coefficients, points)
+    keys = (*MASS_ALONE, *(("gravity_angle",) if weight else ()))
+    case = arm_case(*about, stated={key: PIVOT[key] for key in keys})
+    whole = problem_of(case, engine_torques(case))
+    at_corners = [one for one in whole.scenarios if any(word in one.name for word in corners)]
+    whole = replace(nominal(whole), scenarios=(*nominal(whole).scenarios, *at_corners))
+    problem = thinned(whole, coefficients, points)
     bounds = dict(problem.ratings.bounds)
     for name, factor in tighter.items():
         bounds[name] *= factor

@@ -21,6 +21,7 @@ import oracle_limits as limits
 from oracle_states import OracleLimit, lift_of
 
 _LEAST_HERTZ = 1e-9  # N, of a half-width
+_GRAVITY = 9.80665  # m/s2, standard
 
 
 def _unit(angle):
@@ -51,55 +52,63 @@ def _along(function, variable, rates):
 
 @dataclass(frozen=True)
 class OracleArm:
-    """Arm with roller or flat face, its pivot and its spring, as plain numbers, SI.
+    """Arm with roller, flat or curved face, its pivot and its spring, as plain numbers, SI.
 
     link: ends of the spring about the pivot, rate, N/m, and preload, N; None: at the end of the
-    arm, or where it `winds` about the pivot, of a moment alone. offset, friction, face_width: of a
-    flat face; None: a roller. pin: radius of the pin, of the friction mu; mass, at `mass_distance`
-    and `mass_angle`: of all that swings; bounds: limits by the key of the constraint.
+    arm, or where it `winds` about the pivot, of a moment alone. offset: of a flat face, radius: of
+    a curved one, both with friction and face_width; None: a roller. pin: radius of the pin; mass,
+    at `mass_distance` and `mass_angle`: of all that swings, reduced: that at the end of the arm;
+    upward: from the vertical to the line from the cam axis to the pivot, None: without weight;
+    bounds: limits by the key of the constraint.
     """
 
     centre: float
     length: float
     sense: float
     pin: float
-    mu: float
     mass: float
+    reduced: float
     mass_distance: float
     mass_angle: float
     bounds: dict
     bush_area: float | None = None
     offset: float | None = None
+    radius: float | None = None
     friction: float = 0.0
     face_width: float | None = None
     link: dict | None = None
     winds: bool = False
+    upward: float | None = None
 
     @classmethod
     def of(cls, case, problem):
         arm, pivot, face = case.follower.arm, case.follower.pivot, case.follower.face
-        assert pivot.gravity_angle is None and pivot.load_moment == 0.0
-        assert face is None or face.radius is None
+        assert pivot.load_moment == 0.0
+        # of both together the arc has no closed form
+        assert pivot.gravity_angle is None or case.spring.link is None
         bush, link = pivot.bush, case.spring.link
         ends = ("arm_radius", "arm_angle", "fixed_radius", "fixed_angle", "rate", "preload")
         return cls(
             arm.centre_distance, arm.length, {"with": 1.0, "against": -1.0}[arm.swing],
-            0.5 * pivot.bearing.diameter, pivot.bearing.friction, pivot.swinging_mass,
+            0.5 * pivot.bearing.diameter, pivot.swinging_mass, case.follower.mass,
             pivot.mass_distance, pivot.mass_angle, dict(problem.ratings.bounds),
             bush_area=None if bush is None else bush.length * bush.diameter,
             offset=None if face is None else face.offset,
+            radius=None if face is None else face.radius,
             friction=0.0 if face is None else face.friction,
             face_width=None if face is None else face.width,
             link=None if link is None else {name: getattr(link, name) for name in ends},
-            winds=case.spring.kind == "torsion_pivot",
+            winds=case.spring.kind == "torsion_pivot", upward=pivot.gravity_angle,
         )  # fmt: skip
 
     # the spring -----------------------------------------------------------------------------
 
-    def lift_of(self, energy, rate, preload):
-        """Arc at which the spring has stored an energy: by the distance of its ends."""
+    def lift_of(self, energy, rate, preload, prime):
+        """Arc at which the spring has stored an energy: by the distance of its ends; the weight
+        stores as much as its moment at the start would.
+        """
         if self.link is None:
-            return lift_of(energy, rate, preload)
+            return lift_of(energy, rate, preload + self._weight(self._start(prime), self.mass)[1])
         on, fixed = self.link["arm_radius"], self.link["fixed_radius"]
         angle = self.link["fixed_angle"] - self.link["arm_angle"]
         travel = lift_of(energy, self.link["rate"], self.link["preload"])
@@ -110,6 +119,22 @@ class OracleArm:
     def _point(self, radius, angle):
         """Point about the pivot at an angle like psi."""
         return ca.vertcat(self.centre - radius * ca.cos(angle), self.sense * radius * ca.sin(angle))
+
+    def _start(self, prime):
+        """Angle of the arm at zero lift."""
+        if self.offset is not None:
+            return ca.asin((prime + self.offset) / self.centre)
+        square = self.centre**2 + self.length**2 - prime**2
+        return ca.acos(square / (2 * self.centre * self.length))
+
+    def _weight(self, psi, mass):
+        """Weight of a mass, N, and its force on the arc, positive towards the cam."""
+        if self.upward is None:
+            return ca.DM.zeros(2), 0
+        # the line to the pivot, along x, is turned clockwise from the vertical by that angle
+        force = -mass * _GRAVITY * _unit(self.upward)
+        at = self._point(self.mass_distance, psi + self.mass_angle) - ca.vertcat(self.centre, 0.0)
+        return force, self.sense * _cross(at, force) / self.length
 
     def _spring(self, cam, psi, rate, preload):
         """Force of the spring on the arm, N, and on the arc, positive towards the cam."""
@@ -135,7 +160,7 @@ class OracleArm:
         """Unloaded cam at an angle; see `oracle_states.shape_at`."""
         rate, preload, prime = (free[k] for k in range(3))
         level = ca.SX.sym("level")
-        by_energy = [self.lift_of(level, rate, preload)]
+        by_energy = [self.lift_of(level, rate, preload, prime)]
         for _ in range(3):
             by_energy.append(ca.gradient(by_energy[-1], level))
         f0, f1, f2, f3 = ca.substitute(by_energy, [level], [energy[0]])
@@ -143,17 +168,16 @@ class OracleArm:
         lift, slope, lift_d2 = f0, f1 * e1, f2 * e1**2 + f1 * e2
         jerk = f3 * e1**3 + 3 * f2 * e1 * e2 + f1 * e3
         rates = [each / self.length for each in (slope, lift_d2, jerk)]
-        if self.offset is None:
-            start = ca.acos(
-                (self.centre**2 + self.length**2 - prime**2) / (2 * self.centre * self.length)
-            )
-        else:
-            start = ca.asin((prime + self.offset) / self.centre)
+        start = self._start(prime)
+        if self.radius is not None:
+            p = SimpleNamespace(**vars(p) | {"roller_radius": self.radius})
         cam = SimpleNamespace(
             p=p, lift=lift, slope=slope, lift_d2=lift_d2, jerk=jerk, rate=rate, preload=preload,
             prime_radius=prime, start=start, rates=rates, psi=start + lift / self.length,
         )  # fmt: skip
         known = self._roller(cam, p) if self.offset is None else self._face(cam)
+        if self.radius is not None:
+            known |= self._slid(cam, known)
         return SimpleNamespace(**vars(cam), **known)
 
     def _roller(self, cam, p):
@@ -174,11 +198,30 @@ class OracleArm:
         out = ca.vertcat(ca.sin(cam.psi), self.sense * ca.cos(cam.psi))
         across = ca.vertcat(out[1], -out[0])
         return {
-            "curvature": curvature, "curvature_slope": slope, "stretch": stretch, "push": normal,
+            "centre": z[0], "curvature": curvature, "curvature_slope": slope,
+            "stretch": stretch, "push": normal,
             "cosine": ca.dot(normal, out), "tangent": ca.dot(normal, across) / ca.dot(normal, out),
             "sharpness": p.roller_radius * curvature, "lever": self.length * ca.dot(normal, out),
             "contour_radius": ca.norm_2(z[0] - p.roller_radius * normal), "rubbed": 0,
             "turning": 1 - self.sense * cam.rates[0], "sliding": 0, "place": None,
+        }  # fmt: skip
+
+    def _slid(self, cam, rolled):
+        """Contact of a round face at the end of the arm, which the surface of the cam, clockwise,
+        drags with it where it is the faster.
+        """
+        normal, pivot = rolled["push"], ca.vertcat(self.centre, 0.0)
+        contact, along = rolled["centre"] - self.radius * normal, -_turned(normal)
+        slip = ca.dot(
+            self.sense * cam.rates[0] * _turned(contact - pivot) - _turned(contact), along
+        )
+        push = normal + self.friction * ca.sign(slip) * along
+        arm = ca.vertcat(-ca.cos(cam.psi), self.sense * ca.sin(cam.psi))
+        return {
+            "push": push, "lever": -self.sense * _cross(contact - pivot, push),
+            "sliding": ca.fabs(slip), "work": -_cross(contact, push), "height": self.radius,
+            "place": ca.dot(contact - pivot, arm),
+            "radius": self.radius * (1 - rolled["sharpness"]),
         }  # fmt: skip
 
     def _face(self, cam):
@@ -219,13 +262,16 @@ class OracleArm:
         mass = scenario.mass * p.mass_factor
         rate, preload = cam.rate * scenario.rate_factor, cam.preload * scenario.preload_factor
         pulled, spring = self._spring(cam, cam.psi, rate, preload)
+        swinging = self.mass * mass / self.reduced  # both in the tolerance of the mass
+        weight, closing = self._weight(cam.psi, swinging)
+        pulled, spring = pulled + weight, spring + closing
         angle = ca.SX.sym("angle")
         there = self._point(self.mass_distance, angle + self.mass_angle)
         acceleration = ca.substitute(_along(there, angle, cam.rates)[1], angle, cam.psi)
-        total = pulled - self.mass * speed**2 * acceleration
+        total = pulled - swinging * speed**2 * acceleration
         inertia = mass * speed**2 * cam.lift_d2
         unrubbed = spring + inertia + scenario.viscous_damping * speed * cam.slope
-        moment, circle = self.length * unrubbed, self.mu * p.friction_factor * self.pin
+        moment, circle = self.length * unrubbed, scenario.friction_a * p.friction_factor * self.pin
         push, lever = cam.push, cam.lever
         square = lever**2 - circle**2 * ca.dot(push, push)
         middle = lever * moment + circle**2 * ca.dot(push, total)
@@ -235,7 +281,7 @@ class OracleArm:
         load = ca.norm_2(normal * push + total)
         if self.offset is None:
             axial = normal * cam.cosine
-            torque = axial * cam.slope
+            torque = axial * cam.slope if self.radius is None else normal * cam.work
         else:  # reduced to the end of the arm, of the normal force alone
             axial = normal * cam.place / self.length
             torque = normal * cam.work
@@ -246,7 +292,7 @@ class OracleArm:
             unrubbed=unrubbed, axial=axial, normal=normal, mass=mass, least_spring=least,
             highest=highest, pivot_load=load, jam=jam, torque=torque,
             surged=ca.fmax(normal, 0), velocity=speed * cam.slope,
-            spin=0 if self.offset is not None
+            spin=0 if self.offset is not None or self.radius is not None
             else speed * (cam.stretch / p.roller_radius - cam.turning),
         )  # fmt: skip
 
@@ -262,8 +308,8 @@ class OracleArm:
         ]  # fmt: skip
         if self.offset is None:
             names += ["pressure_angle", "curvature_ratio", "undercut", "concave_radius",
-                      "curvature_rate", "contact_pressure", "roller_static", "roller_speed",
-                      "roller_life"]  # fmt: skip
+                      "curvature_rate", "contact_pressure"]  # fmt: skip
+            names += [] if self.radius else ["roller_static", "roller_speed", "roller_life"]
         pivot = {
             "pivot_jam_index": ("loads", lambda at: at.jam / self.bounds["jam_index"]),
             "pivot_static": ("loads", lambda at: at.pivot_load / self.bounds["pivot_static"]),
@@ -282,7 +328,9 @@ class OracleArm:
                 at, self.bounds["face_pv"] / (ca.pi / 4 * at.scenario.cam_speed * at.sliding))),
             "face_width": ("loads", self._width),
         }  # fmt: skip
-        own = pivot if self.offset is None else face | pivot
+        if self.radius is not None:
+            face = {name: face[name] for name in ("bore_pressure", "face_pv", "face_width")}
+        own = pivot if self.offset is None and self.radius is None else face | pivot
         bound = {"pivot_jam_index": "jam_index"}
         there = {
             name: each for name, each in own.items()

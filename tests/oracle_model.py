@@ -62,7 +62,10 @@ def operated(scenarios):
     return [[(k, item.duty) for k, item in running if item.corner == each] for each in corners]
 
 
-STEM = SimpleNamespace(lift_of=lift_of, shape_at=shape_at, loads_at=loads_at, limits=LIMITS)
+STEM = SimpleNamespace(
+    lift_of=lambda energy, rate, preload, _: lift_of(energy, rate, preload),
+    shape_at=shape_at, loads_at=loads_at, limits=LIMITS,
+)  # fmt: skip
 """Formulas of a roller on a stem; of an arm `OracleArm` has them."""
 
 
@@ -140,7 +143,7 @@ class CamModel:
         self._jerk = ca.Function("jerk", [energy, free], [cam.jerk]).map(
             self.points, [False, True], [False]
         )
-        lift = self.follower.lift_of(energy[0], free[0], free[1])
+        lift = self.follower.lift_of(energy[0], *ca.vertsplit(free))
         self._lift = ca.Function("lift", [energy[0], free], [lift])
 
     def _of_rows(self, of, taken=None):

@@ -97,6 +97,7 @@ def scenario_numbers(item, theta):
     in_operation = 1.0 if item.duty is None else float(item.duty > 0.0)
     of_guides = ("worst_a", "worst_b", "friction_a", "friction_b", "guide_spacing", "overhang")
     own |= {name: own[name] or 0.0 for name in of_guides}
+    own["friction_a"] = item.numbers.get("follower.pivot.friction") or own["friction_a"]
     own["in_operation"] = in_operation
     numbers = [float(own[name]) for name in SCENARIO]
     turn = np.linspace(0, 2 * np.pi, item.correction.contact.size, endpoint=False)

@@ -15,11 +15,20 @@ ARMS = (
     ("roller", "bush", "link", "with"), ("roller", "needle_bearing", "link", "against"),
     ("roller", "bush", "torsion_pivot", "against"), ("flat", "bush", "link", "with"),
     ("flat", "needle_bearing", "coil", "against"), ("flat", "bush", "torsion_pivot", "with"),
+    ("curved", "bush", "coil", "with"), ("curved", "needle_bearing", "link", "against"),
 )  # fmt: skip
+HEAVY = (
+    ("roller", "bush", "coil", "with"), ("flat", "bush", "torsion_pivot", "against"),
+    ("curved", "bush", "coil", "against"),
+)  # fmt: skip
+"""Arms with weight, each also at the tolerance corners of its load case."""
+CORNERS = ("running, ",)
 OF_PIVOT = {
     "bush": {"pivot_pressure", "pivot_pv"}, "needle_bearing": {"pivot_static"},
 }  # fmt: skip
-SMOOTH = 2e-2  # of the jerk's weight, with which the limits bind
+SMOOTH = {"roller": 2e-2, "flat": 2e-2, "curved": 0.3}
+"""Share of the jerk's weight, with which the limits bind; with 0.02 to 0.1 of it a curved face has
+several optima, and the objective of the product's was 0.15 % below to 0.12 % above the other's."""
 
 
 def on_the_rise(utilisations):
@@ -30,10 +39,14 @@ def on_the_rise(utilisations):
     }
 
 
-@pytest.mark.parametrize("arm", ARMS, ids=" ".join)
-def test_utilisations_of_an_arm_are_those_of_the_formulas(arm):
+LOADED = [(arm, {}) for arm in ARMS]
+LOADED += [(arm, {"weight": True, "corners": CORNERS}) for arm in HEAVY]
+
+
+@pytest.mark.parametrize(("arm", "loads"), LOADED, ids=str)
+def test_utilisations_of_an_arm_are_those_of_the_formulas(arm, loads):
     """At a smooth random cam; 1e-8: round-off of both, to the third power."""
-    problem, follower = arm_problem(*arm, coefficients=24, points=120)
+    problem, follower = arm_problem(*arm, coefficients=24, points=120, **loads)
     oracle = Oracle(problem, follower)
     for seed in (1, 2):
         energy, _ = oracle.random_start(seed)
@@ -48,12 +61,12 @@ def test_utilisations_of_an_arm_are_those_of_the_formulas(arm):
         assert state.jerk == pytest.approx(jerk, rel=1e-6)
 
 
-def ends_at_the_optimum(problem, follower, *start):
+def ends_at_the_optimum(problem, follower, *start, kind="roller"):
     """Limits that bind at the optimum, where the product ends, too: 0.1 % of ripple and objective.
 
-    start: seed of a random one; none: the exact energy.
+    start: seed of a random one; none: the exact energy. kind: of the follower.
     """
-    problem = replace(problem, jerk_weight=SMOOTH * problem.jerk_weight)
+    problem = replace(problem, jerk_weight=SMOOTH[kind] * problem.jerk_weight)
     oracle = Oracle(problem, follower)
     optimum = oracle.solved(*(oracle.random_start(*start) if start else ()))
     design, unmet = missed(problem, optimum)
@@ -84,11 +97,28 @@ def test_flat_face_on_an_arm_ends_at_the_optimum():
 @pytest.mark.parametrize("arm", ARMS, ids=" ".join)
 def test_arm_ends_at_the_optimum(arm):
     """On twice as many splines; a face at angles half as far apart, see above."""
-    points = {"roller": 360, "flat": 720}[arm[0]]
-    assert ends_at_the_optimum(*arm_problem(*arm, coefficients=48, points=points, **WIDE))
+    points = {"roller": 360, "flat": 720, "curved": 360}[arm[0]]
+    problem = arm_problem(*arm, coefficients=48, points=points, **WIDE)
+    assert ends_at_the_optimum(*problem, kind=arm[0])
 
 
 @pytest.mark.slow
 def test_arm_ends_at_one_optimum_from_a_random_start():
     arm = arm_problem(*ARMS[0], coefficients=48, points=360, **WIDE)
     assert ends_at_the_optimum(*arm, 1)
+
+
+def test_curved_face_with_weight_ends_at_the_optimum():
+    """Sliding in the plane of the cam, on a pivot that carries the weight."""
+    arm = arm_problem(*HEAVY[2], coefficients=24, points=240, weight=True, **WIDE)
+    assert ends_at_the_optimum(*arm, kind="curved")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arm", HEAVY, ids=" ".join)
+def test_arm_with_weight_ends_at_the_optimum_of_its_corners(arm):
+    """Within the limits at the ends of rate, preload, friction, mass and phase."""
+    loads = {"weight": True, "corners": CORNERS}
+    points = {"roller": 240, "flat": 360, "curved": 240}[arm[0]]
+    problem = arm_problem(*arm, coefficients=36, points=points, **loads, **WIDE)
+    assert ends_at_the_optimum(*problem, kind=arm[0])
