@@ -581,6 +581,20 @@ def test_a_point_that_passes_keeps_one_without_data_off_the_front():
     assert redesign_study._split([fails, refused], "size")[0] == []
 
 
+def test_the_front_behind_one_that_fails_has_other_rollers_springs_or_rooms():
+    tried = [
+        (Choice(roller, spring, bush, room), {"feasible": True})
+        for roller, spring in (("a", "x"), ("a", "y"))
+        for bush in ("d", "e")
+        for room in (None, 0.05)
+    ]
+    left = redesign_study._beyond(tried, [(Choice("a", "x", "d", 0.05), {"feasible": True})])
+    assert [choice for choice, _ in left] == [
+        choice for choice, _ in tried if (choice.spring, choice.cam_radius) != ("x", 0.05)
+    ]
+    assert len(left) == 6
+
+
 def shortfall(check, demand=3.0, limit=2.0, unit="N"):
     """A failing check of a point."""
     used = None if demand is None else demand / limit

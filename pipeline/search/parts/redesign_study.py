@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -50,6 +50,7 @@ AGAINST: Mapping[Against, Literal["cam_radius_mm", "mass_g"]] = {
 }
 RECORD = "redesign.json"
 MOST_POINTS = 12  # of a front, solved in full
+_FURTHER_FRONTS = 5  # of what the first leaves, where all of its points fail in full
 ALIKE = 1e-3  # relative size or ripple below which two points are equal
 _BUSY = 64  # maximum number of processes
 _OURS = re.compile(rf"redesign\.(json|html|png)|point_\d+\.toml|inputs|{STORED}")
@@ -137,7 +138,7 @@ def redesign(
         with pool(workers_for(jobs, _BUSY)) as workers:
             progress.stage("search the catalogue")
             tried = _searched(search, parts, workers, progress)
-            given, judged = _judged_whole(search, _chosen(tried, other), workers, progress)
+            given, judged = _fronts_judged(search, tried, other, workers, progress)
             kept, refused = _split(judged, other)
             excluded = None
             if not kept:
@@ -247,6 +248,35 @@ def _chosen(tried: Sequence[Tried], against: Against) -> list[Choice]:
     figures = [(record[AGAINST[against]], record["ripple_left_share"]) for _, record in feasible]
     places = front(figures, ALIKE, ALIKE)  # the ripple is relative to that of the engine
     return [feasible[k][0] for k in thinned(places, figures, MOST_POINTS)]
+
+
+def _fronts_judged(
+    search: RedesignTask,
+    tried: Sequence[Tried],
+    against: Against,
+    workers: ProcessPoolExecutor,
+    progress: Progress,
+) -> tuple[PreviewJudgement | RefusedJudgement, list[Judged]]:
+    """Judgements in full of the case as it is and of the front by the synthesis alone; where all
+    its points fail, of the fronts behind it, too.
+    """
+    given, judged = _judged_whole(search, _chosen(tried, against), workers, progress)
+    for _ in range(_FURTHER_FRONTS):
+        chosen = _chosen(_beyond(tried, judged), against)
+        if not chosen or _split(judged, against)[0]:
+            break
+        judged += _judged_whole(search, chosen, workers, progress)[1]
+    return given, judged
+
+
+def _beyond(tried: Sequence[Tried], judged: Sequence[Judged]) -> list[Tried]:
+    """Choices tried by the synthesis alone that differ from those judged in full in more than the
+    bush.
+
+    Where all balance as much as required, the front is the smallest alone.
+    """
+    judged_already = {replace(choice, bush="") for choice, _ in judged}
+    return [pair for pair in tried if replace(pair[0], bush="") not in judged_already]
 
 
 def _judged_whole(
