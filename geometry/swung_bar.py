@@ -13,6 +13,7 @@ from camwright.geometry.arm_path import Arm
 from camwright.geometry.arrays import Array, Value, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import Extremum, refined
+from camwright.geometry.lift import Lift
 
 _BAR_SAMPLES, _BAR_ZOOMS = 360, 4
 """Cam angles, and points of the contour at each; the zooms leave 3e-7 rad, of a smooth minimum."""
@@ -46,12 +47,12 @@ class SwungBar(NamedTuple):
         )
         return nearest
 
-    def from_contour(self, contour: Contour) -> Extremum:
+    def from_contour(self, contour: Contour, lift: Lift | None = None) -> Extremum:
         """Least distance of a contour from the piece over the turn, m, and its cam angle.
 
-        Zero where the contour crosses it.
+        Zero where the contour crosses it. The lift of the arm is that of the contour, or stated.
         """
-        return _from_contour(contour, self.arm, self.low, self._at)
+        return _from_contour(contour, lift or contour.lift, self.arm, self.low, self._at)
 
     def _at(self, angle: Value, towards: Value, aside: Value) -> Value:
         """Distance, m, of a point from the piece of the centre line at an arm angle, rad; towards,
@@ -98,9 +99,11 @@ class SwungLink(NamedTuple):
         nearest: Value = reduce(np.minimum, (self._at(each, towards, aside) for each in swings))
         return nearest
 
-    def from_contour(self, contour: Contour) -> Extremum:
-        """Least distance of a contour from the bar over the turn, m, and its cam angle."""
-        return _from_contour(contour, self.arm, self.low, self._at)
+    def from_contour(self, contour: Contour, lift: Lift | None = None) -> Extremum:
+        """Least distance of a contour from the bar over the turn, m, and its cam angle; the lift of
+        the arm is that of the contour, or stated.
+        """
+        return _from_contour(contour, lift or contour.lift, self.arm, self.low, self._at)
 
     def _through(self, towards: Value, aside: Value) -> tuple[Value, Value]:
         """Directions from the pivot, rad, to the circle of the end on the arm along the line from
@@ -139,16 +142,21 @@ def _from_pivot(arm: Arm, along: Value, across: Value) -> tuple[Value, Value]:
 
 
 def _from_contour(
-    contour: Contour, arm: Arm, low: Value, at: Callable[[Value, Value, Value], Value]
+    contour: Contour,
+    lift: Lift,
+    arm: Arm,
+    low: Value,
+    at: Callable[[Value, Value, Value], Value],
 ) -> Extremum:
     """Least distance of a contour from a bar over the turn, m, and its cam angle.
 
     Parameters
     ----------
+    lift : Lift     of the arm
     low : float     arm angle at the lowest lift, rad
     at : function   arm angle, rad, and coordinates of a point from the pivot, m, to its distance, m
     """
-    lift, places = contour.lift, uniform_turn(_BAR_SAMPLES)
+    places = uniform_turn(_BAR_SAMPLES)
     lowest = lift.lowest.value
     polygon = contour.points(places)
 

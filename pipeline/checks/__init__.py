@@ -30,6 +30,7 @@ In the order of the calculation:
 | `pivot_bearing`         | jam index, rating of an arm's pivot        | L10, s                   |
 | `assembly`              | gaps between parts that pass one another   | m                        |
 | `arm_assembly`          | gaps of an arm and the boss of its pivot   | m                        |
+| `pair_assembly`         | gaps of a second disc, roller, arm, face   | m                        |
 | `manufacture`           | space, waviness, chord error, phase        | m                        |
 | `solution_verification` | plane strain, meshes, certificate          | relative; half-widths    |
 | `error_bars`            | error bars of the demands                  | relative                 |

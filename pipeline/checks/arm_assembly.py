@@ -42,7 +42,7 @@ _OUTER_OF_BEARING = 3.1
 _WORDS = {"arm": "arm", HUB: "hub", FORK: "fork", SPRING: "spring"}
 
 
-class _Disc(NamedTuple):
+class PartOnShaft(NamedTuple):
     """Part about an axis at u and v: radius, m; middle and half width along
     the camshaft from the middle of the cam, None: all along it."""
 
@@ -51,7 +51,7 @@ class _Disc(NamedTuple):
     ends: tuple[Value, Value] | None
 
 
-class _Pair(NamedTuple):
+class PartGap(NamedTuple):
     """Gaps of two parts, m: in the plane, half of one and radius of the other, and axial."""
 
     plane: Value
@@ -64,14 +64,14 @@ class _Pair(NamedTuple):
         return np.where(apart >= limit, apart, np.maximum(self.plane, self.axial))
 
 
-def _discs(tip: Value, numbers: Numbers) -> dict[str, _Disc]:
+def about_camshaft(tip: Value, numbers: Numbers) -> dict[str, PartOnShaft]:
     """Parts about the camshaft, and the pinion of its gear, by name; the cam has its maximum radius
     `tip`, m; the radius of bearings is NaN without a diameter of the camshaft.
     """
     case, centre = numbers.known_case, (0.0, 0.0)
     discs = {
-        "cam": _Disc(centre, tip, (0.0, 0.5 * numbers["cam.width"])),
-        "camshaft": _Disc(centre, shaft_radius(numbers), None),
+        "cam": PartOnShaft(centre, tip, (0.0, 0.5 * numbers["cam.width"])),
+        "camshaft": PartOnShaft(centre, shaft_radius(numbers), None),
     }
     shaft = case.camshaft
     if shaft is None:
@@ -80,32 +80,32 @@ def _discs(tip: Value, numbers: Numbers) -> dict[str, _Disc]:
     wide = bore if shaft.bearing_width is None else shaft.bearing_width
     for number, at in enumerate((0.0, shaft.bearing_spacing), 1):
         ends = at - shaft.cam_position, 0.5 * wide
-        discs[f"bearing {number}"] = _Disc(centre, 0.5 * _OUTER_OF_BEARING * bore, ends)
+        discs[f"bearing {number}"] = PartOnShaft(centre, 0.5 * _OUTER_OF_BEARING * bore, ends)
     if shaft.gear is not None and case.scope.covers("gear"):
         gear = gear_of(shaft)
         module = 2.0 * shaft.gear_radius / gear.teeth
         ends = shaft.gear_position - shaft.cam_position, 0.5 * gear.width
         pinion = centre_distance(shaft) - shaft.gear_radius + module
-        discs["gear"] = _Disc(centre, shaft.gear_radius + module, ends)
-        discs["pinion"] = _Disc(machine_shaft_axis(shaft), pinion, ends)
+        discs["gear"] = PartOnShaft(centre, shaft.gear_radius + module, ends)
+        discs["pinion"] = PartOnShaft(machine_shaft_axis(shaft), pinion, ends)
     return discs
 
 
-def _pairs(tip: Value, numbers: Numbers) -> Iterator[tuple[str, _Pair]]:
+def _pairs(tip: Value, numbers: Numbers) -> Iterator[tuple[str, PartGap]]:
     """Gaps of arm, fork, hub and spring to each part about the camshaft, with the names of both;
     but for the hub those to the cam are judged apart.
     """
     bodies = swung_bodies(numbers)
-    for name, disc in _discs(tip, numbers).items():
+    for name, disc in about_camshaft(tip, numbers).items():
         for which, words in _WORDS.items():
             if which in bodies and not (name == "cam" and which != HUB):
-                yield f"{words} to {name}", _pair(bodies[which], disc)
+                yield f"{words} to {name}", pair_of(bodies[which], disc)
 
 
-def _pair(body: SwungBody, disc: _Disc) -> _Pair:
+def pair_of(body: SwungBody, disc: PartOnShaft) -> PartGap:
     plane = body.from_disc(*disc.axis, disc.radius)
     axial = -np.inf if disc.ends is None else body.beyond(disc.ends)
-    return _Pair(plane, (body.half, disc.radius), axial)
+    return PartGap(plane, (body.half, disc.radius), axial)
 
 
 def _least(tip: Value, numbers: Numbers) -> Value:
@@ -118,7 +118,7 @@ def _least(tip: Value, numbers: Numbers) -> Value:
     return least
 
 
-def _stated(pair: _Pair) -> dict[str, float]:
+def numbers_of(pair: PartGap) -> dict[str, float]:
     """Numbers of the formula by symbol; where the parts have no axial gap, "a" is the gap in the
     plane.
     """
@@ -143,7 +143,7 @@ def _in_words(demand: Demand, solution: Solution) -> Demand:
     tip, limit = solution.contour.radius_max().value, numbers.limit(ASSEMBLY_GAP)
     pairs = dict(_pairs(tip, numbers))
     name = min(pairs, key=lambda each: one(pairs[each].gap(limit)))
-    return replace(demand, at=None, note=name, stated=_stated(pairs[name]))
+    return replace(demand, at=None, note=name, stated=numbers_of(pairs[name]))
 
 
 _LEVERS = (
@@ -217,7 +217,7 @@ def arm_cam_gap(solution: Solution) -> Demand | None:
             return None
     elif "arm" not in bodies:
         return Demand(None, limit, missing=(ARM_DEPTH,))
-    pairs, angles = dict[str, _Pair](), dict[str, float]()
+    pairs, angles = dict[str, PartGap](), dict[str, float]()
     if solution.machine.follower.parts.get("pin") is None:
         bodies.pop(FORK, None)  # what it lacks is told by the check of its data
     for name in ("arm", FORK, SPRING):
@@ -225,13 +225,13 @@ def arm_cam_gap(solution: Solution) -> Demand | None:
             body = bodies[name]
             nearest = body.bar.from_contour(solution.contour)
             beside = cheek_to_cam(numbers) if name == FORK else body.beyond((0.0, half))
-            pairs[name] = _Pair(nearest.value - body.half, (body.half, 0.0), beside)
+            pairs[name] = PartGap(nearest.value - body.half, (body.half, 0.0), beside)
             angles[name] = float(np.mod(nearest.theta, FULL_TURN))
     gaps = {name: one(pair.gap(limit)) for name, pair in pairs.items()}
     if any(map(np.isnan, gaps.values())):
         return Demand(None, limit, missing=(ARM_WIDTH,))
     name = min(gaps, key=gaps.__getitem__)
-    stated = {key: value for key, value in _stated(pairs[name]).items() if key != "r"}
+    stated = {key: value for key, value in numbers_of(pairs[name]).items() if key != "r"}
     in_plane = pairs[name].plane >= pairs[name].axial
     at = Extreme(np.nan, "", angles[name]) if in_plane else None
     return Demand(gaps[name], limit, at, note=f"{_WORDS[name]} to cam", stated=stated)

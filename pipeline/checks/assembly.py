@@ -599,9 +599,11 @@ def counterweight_unbalance(solution: Solution) -> Demand | None:
     return Demand(product, capacity if capacity > 0.0 else 0.0, note=note, stated=stated)
 
 
-def shaft_radius(numbers: Numbers) -> Value:
+def shaft_radius(numbers: Numbers, place: Value = 0.0) -> Value:
     """Greatest radius of the camshaft beside the cam (...), m, within the width of the follower;
     that of the bore without a diameter.
+
+    place : of the middle of the disc from that of the first one, m
     """
     shaft, radius = numbers.known_case.camshaft, numbers["cam.bore_radius"]
     if shaft is None:
@@ -609,7 +611,7 @@ def shaft_radius(numbers: Numbers) -> Value:
     half = numbers["follower.half_depth"] + aside(numbers)
     radius = np.maximum(radius, 0.5 * (shaft.diameter or 0.0))
     for each in shaft.sections:
-        beside = abs(each.position - shaft.cam_position) <= half
+        beside = np.abs(each.position - shaft.cam_position - place) <= half
         radius = np.where(beside, np.maximum(radius, 0.5 * each.diameter), radius)
     return radius
 

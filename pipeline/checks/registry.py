@@ -28,6 +28,7 @@ from camwright.pipeline.checks import (
     jump_and_jamming,
     key_strength,
     manufacture,
+    pair_assembly,
     part_data,
     part_strength,
     pivot_bearing,
@@ -75,6 +76,7 @@ MODULES: tuple[ModuleType, ...] = (
     pivot_bearing,
     assembly,
     arm_assembly,
+    pair_assembly,
     manufacture,
     solution_verification,
 )

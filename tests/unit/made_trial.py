@@ -147,6 +147,7 @@ def pair_case() -> Case:
     second = {"roller_radius": "8 mm", "distance": "110 mm", "clearance": "0.02 mm"}
     second |= {"spacing": "30 mm", "source": "second"}
     tables["cam"] |= {"closure": "conjugate", "conjugate": second}
+    tables["camshaft"]["bearing_spacing"] = "100 mm"
     tables["follower"]["stem_length"] = "300 mm"
     return case_of(tables)
 

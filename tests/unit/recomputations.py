@@ -41,6 +41,9 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_GROOVE, "test_the_slip_of_the_roller_by_its_own_equation"): ("slip_temperature",),
     (_YOKE, "test_the_breadth_by_the_points_of_the_cam"): ("yoke_breadth",),
     (_PAIR, "test_both_discs_are_judged"): ("second_disc_gap",),
+    ("verification/test_pair_gaps.py", "test_the_check_names_what_is_within_the_bearing"): (
+        "second_track_gap",
+    ),
     (_PAIR, "test_the_preload_is_judged_on_both_discs"): ("preload_least", "preload_pressure"),
     (_GROOVE, "test_the_rim_is_a_cantilever_plate"): ("groove_wall",),
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (

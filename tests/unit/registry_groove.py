@@ -313,6 +313,14 @@ by_limit(
     base=made.on_two_discs,
 )
 by_limit(
+    "second_track_gap",
+    "assembly_gap",
+    lambda: spaced(np.nan),
+    15.0,
+    "discs 30 mm apart, less half of a disc of 10 mm and of a roller in its fork, 20 mm",
+    base=made.on_two_discs,
+)
+by_limit(
     "preload_least",
     "contact_force_margin",
     unpressed,
