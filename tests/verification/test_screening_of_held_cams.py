@@ -17,6 +17,7 @@ from camwright.pipeline.screening.screened_checks import SCREENED
 ROOT = Path(__file__).parents[2]
 FILES = {
     "groove": ROOT / "cases" / "motions" / "feeder-groove.toml",
+    "groove_arm": ROOT / "tests" / "data" / "groove_arm.toml",
     "gravity": ROOT / "tests" / "data" / "gravity_lift.toml",
     "stem": ROOT / "tests" / "data" / "conjugate_feeder.toml",
     "arm": ROOT / "tests" / "data" / "conjugate_arm.toml",
@@ -29,6 +30,11 @@ RANGES = {
         "cam.groove.clearance": (12e-6, 28e-6), "cam.groove.outer_radius": (0.118, 0.132),
         "cam.groove.depth": (0.0176, 0.02), "follower.mass": (2.7, 3.3),
         "roller.radius": (0.0235, 0.0242), "limits.landing_speed": (0.01, 0.05),
+    },
+    "groove_arm": {
+        "cam.prime_radius": (0.061, 0.063), "follower.arm.length": (0.089, 0.091),
+        "cam.groove.clearance": (12e-6, 28e-6), "cam.groove.outer_radius": (0.11, 0.116),
+        "follower.pivot.swinging_mass": (1.7, 2.0), "follower.pivot.bush.friction": (0.04, 0.07),
     },
     "gravity": {
         "cam.prime_radius": (0.066, 0.07), "follower.mass": (7.5, 8.5),
@@ -70,6 +76,7 @@ segment = [
 _LANDS = {"landing_speed", "landing_pressure", "crossover_slip"}
 OF_FORM = {
     "groove": _LANDS | {"outer_undercut", "groove_wall", "groove_clearance", "groove_radius"},
+    "groove_arm": _LANDS | {"outer_undercut", "groove_wall", "groove_radius", "pivot_pressure"},
     "gravity": {"contact_force_margin", "jump"},
     "stem": _LANDS | {"second_disc_gap", "cam_radius"},
     "arm": _LANDS | {"second_disc_gap", "pivot_pressure"},
@@ -84,7 +91,7 @@ def case_without_rest(name):
         return parse_case(text)
     begin, end = text.index("[lift]"), text.index("[mechanism]")
     lift = LIFT
-    if name in ("arm", "pressed"):
+    if name in ("arm", "pressed", "groove_arm"):
         lift = LIFT.replace("12 mm", "5.5 deg").replace("10 mm", "5 deg")
     return parse_case(text[:begin] + lift + text[end:])
 
@@ -95,7 +102,7 @@ def designs(name, count):
     return case, factors
 
 
-THOROUGH = "stem", "gravity", "pressed"
+THOROUGH = "stem", "gravity", "pressed", "groove_arm"
 """Cams of which a slow test alone compares the previews."""
 
 
