@@ -77,39 +77,55 @@ class Flights(NamedTuple):
         """Energy over the turn; NaN where a flight does not end within a turn. Of a follower that
         does not come to rest in it from the first take-off to the last landing.
 
-        While a track carries, its force and the velocity that it imposes; in flight the tracks do
-        no work; a landing of a mass m at v that leaves at e v is an impulse m (1 + e) v at the
-        velocity of the track. Splines through the angles are integrated.
+        While a track carries, its force is that against spring, weight, external and viscous force
+        with the rate of the momentum; in flight the tracks do no work; a landing of a mass m at v
+        that leaves at e v is an impulse m (1 + e) v at the velocity of the track.
         """
+        if any(np.isnan(one.landing) for one in self.landings):
+            return LandingEnergy(np.nan, np.nan, np.nan, np.nan, self._exchanged)
         walls, required, mass = self.walls, self.required, self.walls.mass
-        drawn, gap = required.lift_slope * self.cam_speed, np.array(self.walls.gap)
-        opening = (np.roll(gap, -1) - np.roll(gap, 1)) / (2.0 * walls.step)
-        resting = required.resisting_force
+        drawn, gap = required.lift_slope * self.cam_speed, np.array(walls.gap)
+        opening, resting = np.array(walls.opening), required.resisting_force
         beside = walls.stiffness * gap + walls.damping * opening
-        moving = {INNER: drawn, OUTER: drawn + opening}
-        resisted = {INNER: resting, OUTER: resting + beside}
-        pushed = {side: _Integral(np.array(walls.on(side)) * moving[side], walls.step)
-                  for side in moving}  # fmt: skip
-        drained = {side: _Integral(resisted[side] * moving[side], walls.step) for side in moving}
-
-        def velocity(wall: float, angle: float) -> float:
-            return float(np.interp(angle, required.theta, moving[wall], period=FULL_TURN))
-
+        drained = {
+            INNER: _Integral(resting * drawn, walls.step),
+            OUTER: _Integral((resting + beside) * (drawn + opening), walls.step),
+        }
         work = taken = lost = gained = 0.0
         for number, one in enumerate(self.landings):
-            driven, after = velocity(one.wall, one.landing), (*self.landings, None)[number + 1]
+            driven, after = (
+                self._velocity(one.wall, one.landing),
+                (*self.landings, None)[number + 1],
+            )
             if after is None and one.rebound > 0.0:
-                begun = velocity(self.landings[0].start, self.landings[0].take_off)
-                left = driven + one.wall * one.rebound
-                gained = 0.5 * mass * (left**2 - begun**2)
+                first = self.landings[0]
+                begun = self._velocity(first.start, first.take_off)
+                gained = 0.5 * mass * ((driven + one.wall * one.rebound) ** 2 - begun**2)
             else:
-                span = one.landing, (after or self.landings[0]).take_off
-                work += pushed[one.wall].between(*span)
-                taken += drained[one.wall].between(*span)
+                end = (after or self.landings[0]).take_off
+                spent = drained[one.wall].between(one.landing, end)
+                faster = self._velocity(one.wall, end) ** 2 - driven**2
+                work += spent + 0.5 * mass * faster
+                taken += spent
             work += mass * (one.speed + one.rebound) * one.wall * driven
             lost += one.loss(mass)
             taken += self._flown(one, resting, drawn)
         return LandingEnergy(work, taken, lost, gained, self._exchanged)
+
+    def _velocity(self, wall: float, angle: float) -> float:
+        """Velocity of the follower on a track at a cam angle, rad, m/s: on the inner one by the
+        accelerations of the step.
+        """
+        walls, required, count = self.walls, self.required, len(self.walls.gap)
+        index = angle / FULL_TURN * count
+        k, share = floor(index) % count, index - floor(index)
+        resting = required.resisting_force[k], required.resisting_force[(k + 1) % count]
+        first, last = (
+            (force[k] - rest) / walls.mass for force, rest in zip(walls.ends, resting, strict=True)
+        )
+        mean = first + 0.5 * share * (last - first)
+        drawn = required.lift_slope[k] * self.cam_speed + mean * share * walls.step
+        return float(drawn + (0.0 if wall == INNER else walls.at(walls.opening, index)))
 
     @property
     def _exchanged(self) -> float:
@@ -125,8 +141,6 @@ class Flights(NamedTuple):
         resting, drawn : array (n,)   these forces, N, and the velocity, m/s, on the inner track
         """
         walls, count = self.walls, drawn.size
-        if np.isnan(flight.landing):
-            return np.nan
         force, speed = resting.tolist(), drawn.tolist()
         start = flight.take_off / FULL_TURN * count
         end, taken = start + flight.time / walls.step, 0.0
@@ -179,6 +193,7 @@ def flights(machine: Machine, contour: Contour) -> Flights | None:
         machine.cam_speed,
         machine.spring.rate,
         machine.viscous_damping,
+        (required.resisting_force, required.lift, required.lift_slope * machine.cam_speed),
     )
     return Flights(walls, walls.landings(machine.rebound_share), required, machine.cam_speed)
 

@@ -95,12 +95,15 @@ class Walls(NamedTuple):
     """Two walls with a rigid follower between them, over a turn in equal steps of time, s.
 
     force : of each wall on the follower that it guides, N, positive outward: inner, outer
-    gap : clearance along the travel, m; mass, kg; stiffness, N/m, and damping, N s/m, against the
-    motion in the clearance
+    ends : that of the inner wall at begin and end of each step, linear in it, N
+    gap, opening : clearance along the travel, m, and its rate, m/s
+    mass, kg; stiffness, N/m, and damping, N s/m, against the motion in the clearance
     """
 
     force: tuple[list[float], list[float]]
+    ends: tuple[list[float], list[float]]
     gap: list[float]
+    opening: list[float]
     mass: float
     step: float
     stiffness: float
@@ -108,10 +111,21 @@ class Walls(NamedTuple):
 
     @classmethod
     def of(
-        cls, required: Array, clearance: Array, mass: float, cam_speed: float,
-        stiffness: float = 0.0, damping: float = 0.0,
-    ) -> Walls:  # fmt: skip
-        """Walls by the force of the inner one; see `landings`."""
+        cls,
+        required: Array,
+        clearance: Array,
+        mass: float,
+        cam_speed: float,
+        stiffness: float = 0.0,
+        damping: float = 0.0,
+        motion: tuple[Array, Array, Array] | None = None,
+    ) -> Walls:
+        """Walls by the force of the inner one; see `landings`.
+
+        motion : force without that of inertia (n,), N, lift, m, and velocity, m/s, on the inner
+            wall, which give the inertia of each step where the acceleration jumps; None: the force
+            is linear
+        """
         positive("follower.mass", mass, "kg")
         positive("cam_speed", cam_speed, "rad/s")
         force, gap = finite("required_force", required), finite("clearance", clearance)
@@ -121,7 +135,21 @@ class Walls(NamedTuple):
         before, after = np.roll(gap, 1), np.roll(gap, -1)
         opening, bend = (after - before) / (2.0 * step), (after - 2.0 * gap + before) / step**2
         outer = force + stiffness * gap + damping * opening + mass * bend
-        return cls((force.tolist(), outer.tolist()), gap.tolist(), mass, step, stiffness, damping)
+        ends = force, np.roll(force, -1)
+        if motion is not None:
+            resting, lift, velocity = motion
+            first, last = _accelerations(lift, velocity, step)
+            ends = resting + mass * first, np.roll(resting, -1) + mass * last
+        return cls(
+            (force.tolist(), outer.tolist()),
+            (ends[0].tolist(), ends[1].tolist()),
+            gap.tolist(),
+            opening.tolist(),
+            mass,
+            step,
+            stiffness,
+            damping,
+        )
 
     def on(self, wall: float) -> list[float]:
         """Force (n,) of a wall on the follower that it guides, N."""
@@ -244,9 +272,7 @@ class Walls(NamedTuple):
         """
         if wall == INNER:
             return start, 0.0, off
-        k, count = floor(start), len(self.gap)
-        opening = (self.gap[(k + 1) % count] - self.gap[k % count]) / self.step
-        return start, self.at(self.gap, start), opening - off
+        return start, self.at(self.gap, start), self.at(self.opening, start) - off
 
     def _free(self, k: int, last: int, position: float, speed: float) -> tuple[float, float, float]:
         """Place, distance and speed, see `_off`, at the begin of the step in which the roller
@@ -254,17 +280,17 @@ class Walls(NamedTuple):
 
         last : step that it does not enter
         """
-        force, gap, step = self.force[0], self.gap, self.step
+        (begins, ends), gap, step = self.ends, self.gap, self.step
         spring, drag = self.stiffness / self.mass, self.damping / self.mass
         count, sixth = len(gap), step * step / 6.0
         while k < last:
             i, j = k % count, (k + 1) % count
             pulled = spring * position + drag * speed
-            first = -force[i] / self.mass - pulled
-            guess = -force[j] / self.mass - pulled
+            first = -begins[i] / self.mass - pulled
+            guess = -ends[i] / self.mass - pulled
             ahead = position + speed * step + (2.0 * first + guess) * sixth
             faster = speed + 0.5 * (first + guess) * step
-            end = -force[j] / self.mass - spring * ahead - drag * faster
+            end = -ends[i] / self.mass - spring * ahead - drag * faster
             ahead = position + speed * step + (2.0 * first + end) * sixth
             beyond = _LEAVING_ROUND_OFF * gap[j]
             if ahead < -beyond or ahead > gap[j] + beyond:
@@ -299,7 +325,9 @@ class Walls(NamedTuple):
         """
         end_of_step = floor(index) + 1.0
         span = (end_of_step - index) * self.step
-        before, after = self.at(self.force[0], index), self.at(self.force[0], end_of_step)
+        k = floor(index) % len(self.gap)
+        before, after = self.ends[0][k], self.ends[1][k]
+        before += (index - floor(index)) * (after - before)
 
         def rate(force: float, at: float, moving: float) -> float:
             return -(force + self.stiffness * at + self.damping * moving) / self.mass
@@ -335,7 +363,7 @@ class Walls(NamedTuple):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if arc.room(middle, side) < 0.0 else (middle, high)
         count, there = len(self.gap), index + high * (floor(index) + 1.0 - index)
-        opening = 0.0 if side == INNER else (arc.gaps[1] - arc.gaps[0]) / arc.span
+        opening = 0.0 if side == INNER else self.at(self.opening, there)
         speed = max(side * (opening - arc.velocity(high)), 0.0)
         left, landed = (each % count / count * FULL_TURN for each in (start, there))
         force = side * self.at(self.on(side), there)
@@ -344,6 +372,16 @@ class Walls(NamedTuple):
         if 0.5 * self.mass * rebound**2 < max(force, 0.0) * least:
             rebound = 0.0
         return Landing(left, landed, wall, side, time, speed, force, rebound)
+
+
+def _accelerations(lift: Array, velocity: Array, step: float) -> tuple[Array, Array]:
+    """Acceleration at begin and end of each step (n,), m/s2, linear in it, that gives the lifts,
+    m, and velocities, m/s, of a turn in equal steps of time, s.
+    """
+    after, faster = np.roll(lift, -1), np.roll(velocity, -1)
+    mean = (faster - velocity) / step
+    bend = 6.0 * (after - lift - velocity * step) / step**2
+    return bend - 2.0 * mean, 4.0 * mean - bend
 
 
 class FlightStep(NamedTuple):

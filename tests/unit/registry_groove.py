@@ -78,15 +78,16 @@ def without_flight() -> Solution:
 
 
 def struck(share: float = 1e-3, limit: float | None = None) -> Solution:
-    """The groove with a force of its inner wall that is too large by a share."""
+    """The groove with the landing on its inner wall faster by a share than the flight before it."""
     base = made.in_groove() if limit is None else with_limits(friction_balance=limit)
     (cycle,) = base.cycles
     assert cycle.flights is not None
-    inner, outer = cycle.flights.walls.force
-    more = [(1.0 + share) * each for each in inner]
-    wrong = cycle.flights._replace(walls=cycle.flights.walls._replace(force=(more, outer)))
+    wrong = tuple(
+        one._replace(speed=(1.0 + share) * one.speed) if one.wall > 0.0 else one
+        for one in cycle.flights.landings
+    )
     bare = made.changed_cycle(cycle)
-    bare.results["flights"] = wrong
+    bare.results["flights"] = cycle.flights._replace(landings=wrong)
     return replace(base, cycles=(bare,))
 
 
@@ -216,13 +217,14 @@ def oiled(**values) -> Solution:
     return made.changed_solution(base, case=made.changed(base.case, lubricant=oil))
 
 
-def struck_share() -> float:
-    """Work of the inner wall while it carries over half of that of both without its sign.
-
-    The mass is accelerated from the landing on it to the highest speed: h/2 w sin(theta).
+def struck_share(share: float = 1e-3) -> float:
+    """Impulse beyond that of the flight at the velocity of the wall, less the energy beyond it,
+    over the greatest kinetic energy of the follower twice.
     """
-    theta, _, _ = landing(outer=False)
-    return float((1.0 - np.sin(theta) ** 2) / 2.0)
+    theta, speed, _ = landing(outer=False)
+    swing = made.in_groove().machine.cam_speed * HALF
+    left = share * speed * (swing * np.sin(theta) - (1.0 + 0.5 * share) * speed)
+    return float(abs(left)) / swing**2
 
 
 def wall_stress() -> float:
@@ -384,8 +386,8 @@ tried(
     limited("landing_balance", lambda limit: struck(limit=limit), struck),
     None,
     without_flight,
-    1e-3 * struck_share(),
-    "a thousandth of the work of the inner wall, over half of that without its sign",
+    struck_share(),
+    "a landing a thousandth too fast: work of its impulse less its energy",
     struck,
 )
 by_limit(

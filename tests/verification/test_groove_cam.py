@@ -18,6 +18,8 @@ from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.form_closure import PLATE_MOMENT
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.closed_form import closed_form_history
@@ -352,6 +354,16 @@ def test_energy_of_a_turn_with_landings(restitution):
     assert demand("landing_balance").demand < 1e-6
     assert energy.lost > 1e-4 * energy.exchanged
     assert (energy.gained == 0.0) == (restitution != 0.99)
+
+
+def test_energy_of_landings_where_the_acceleration_jumps():
+    """landing_balance of parabolic strokes in a wide groove: far within 1e-6."""
+    text = FILE.read_text(encoding="utf-8").replace('"modified_sine"', '"parabolic"')
+    case = parse_case(text.replace('clearance = "0.02 mm"', 'clearance = "0.3 mm"', 1))
+    machine = next(each for each in machines(case) if each.load_case == "running")
+    found = flights(machine, case.contour(given_lift(case)))
+    assert len(found.landings) > 3
+    assert found.energy.left < 1e-8
 
 
 def test_the_energy_of_the_landings_by_an_integrator_of_events():
