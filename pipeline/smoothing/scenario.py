@@ -93,14 +93,15 @@ class Ratings:
     def kinds(self) -> frozenset[str]:
         """Words for the kind of follower by which checks and constraints are selected: of a roller
         "roller", "round"; of a face "face", and on an arm "swung_face", of a curved one "round" as
-        well. See `FollowerKind`.
+        well; of either "stem" or "arm". See `FollowerKind`.
         """
+        body = "stem" if self.numbers.get("follower.arm.length") is None else "arm"
         if self.numbers.get("follower.face.width") is None:
-            return frozenset({"roller", "round"})
+            return frozenset({"roller", "round", body})
         shapes = {"radius": {"round", "swung_face"}, "offset": {"swung_face"}}
         stated = (words for name, words in shapes.items()
                   if self.numbers.get(f"follower.face.{name}") is not None)  # fmt: skip
-        return frozenset({"face"}.union(*stated))
+        return frozenset({"face", body}.union(*stated))
 
     @property
     def tilting(self) -> float:

@@ -4,7 +4,7 @@ The references take nothing from the formulas of an arm: a circular disc, points
 arm lowered onto them, and the translating follower that a long arm is.
 """
 
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 import pytest
@@ -254,21 +254,21 @@ def test_the_contour_of_points_alone_has_the_curvature():
 
 
 def test_complex_steps_are_the_differences():
-    step = 1e-30
+    """Differences of fourth order in the step."""
+    h = 1e-3
     for cam in arms()[::15]:
-        jet = cam.lift.jet(THETA)
-        rise = Jet(*(each + 1j * step * k for k, each in enumerate(jet, 1)))
-        exact_rate = partial(rates, cam)
-        whole = exact_rate(rise)
-        near = [
-            exact_rate(Jet(*(each + sign * 1e-7 * k for k, each in enumerate(jet, 1))))
-            for sign in (1.0, -1.0)
-        ]
-        for name, value in whole.items():
-            difference = (near[0][name] - near[1][name]) / 2e-7
-            scale = 1.0 + np.abs(difference).max()
+        jet, size = cam.lift.jet(THETA), cam.lift.stroke
+
+        def at(step, jet=jet, cam=cam, size=size):
+            return rates(cam, Jet(*(each + step * size * k for k, each in enumerate(jet, 1))))
+
+        exact, near = at(1e-30j), [at(k * h) for k in (-2.0, -1.0, 1.0, 2.0)]
+        for name, value in exact.items():
+            a, b, c, d = (each[name] for each in near)
+            difference = (a - 8.0 * b + 8.0 * c - d) / (12.0 * h)
+            scale = np.abs(value.real).max() + np.abs(difference).max()
             np.testing.assert_allclose(
-                np.imag(value) / step, difference, rtol=0, atol=3e-6 * scale, err_msg=name
+                np.imag(value) / 1e-30, difference, rtol=0, atol=1e-8 * scale, err_msg=name
             )
 
 
@@ -276,7 +276,7 @@ def rates(cam, jet):
     motion = cam.motion(jet)
     names = ("height", "pressure_angle", "path_curvature", "sharpness", "gain", "side", "sliding",
              "contour_radius", "contour_speed", "rolling")  # fmt: skip
-    return {name: np.asarray(getattr(motion, name)) for name in names}
+    return {name: np.asarray(getattr(motion, name), dtype=complex) for name in names}
 
 
 def plain(sense=WITH):
@@ -320,10 +320,11 @@ def test_cam_and_spring_exchange_their_energy(sense):
     loads = follower_loads(cam.pitch, system(), 0.0, theta)
     energy = 150.0 * loads.lift + 10e3 * loads.lift**2
     assert turn_integral(theta, loads.cam_torque) == pytest.approx(0.0, abs=1e-9 * energy.max())
-    step = 1e-4
-    ahead, behind = cam.lift(theta + step), cam.lift(theta - step)
-    rate = (150.0 * (ahead - behind) + 10e3 * (ahead**2 - behind**2)) / (2.0 * step)
-    np.testing.assert_allclose(loads.cam_torque, rate, rtol=0, atol=1e-8 * np.abs(rate).max())
+    step = 1e-3
+    lifts = [cam.lift(theta + k * step) for k in (-2.0, -1.0, 1.0, 2.0)]
+    a, b, c, d = (150.0 * lift + 10e3 * lift**2 for lift in lifts)
+    rate = (a - 8.0 * b + 8.0 * c - d) / (12.0 * step)
+    np.testing.assert_allclose(loads.cam_torque, rate, rtol=0, atol=1e-9 * np.abs(rate).max())
 
 
 @pytest.mark.parametrize("sense", [WITH, AGAINST])

@@ -375,7 +375,8 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
         **dict.fromkeys(
             ("roller_pin_fatigue", "case_depth", "shaft_fatigue", "shaft_yield",
              "shaft_deflection", "shaft_slope", "shaft_bearing_static", "shaft_bearing_life",
-             "arm_fatigue_pivot", "arm_fatigue_roller", "pivot_edge_pressure"),
+             "arm_fatigue_pivot", "arm_fatigue_roller", "rocker_fatigue", "rocker_yield",
+             "pivot_edge_pressure"),
             "roller_static",
         ),
         # a bound of the power that heats the bush, as of the guides
