@@ -21,6 +21,10 @@ from camwright.pipeline.cycle.certificate_angles import positions_to_certify
 from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
 from camwright.pipeline.cycle.pressed_discs import pressed_discs
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.recomputation import recompute
+from camwright.pipeline.results.field_output import Shown
+from camwright.pipeline.results.run_reader import read_run
+from camwright.pipeline.run import run_case
 from camwright.pipeline.solver import solve
 
 DATA = Path(__file__).parents[1] / "data"
@@ -219,3 +223,19 @@ def test_preloaded_discs_have_a_contact_each():
     reached = cycle.rolling.envelope.von_mises.max(axis=1)[:: 1440 // loads.theta.size]
     # 0.5577 of the pressure below a line contact of steel; within 0.5 %: depths and body stress
     assert reached == pytest.approx(0.5577 * np.maximum(*most), rel=5e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [ARM, PRESSED, YOKE])
+def test_a_run_is_recomputed_without_difference(name, tmp_path):
+    """Both tracks in the tables of contour and cycle, and every file as its case gives it."""
+    case = read_case(DATA / f"{name}.toml").with_positions(72)
+    run_case(case, tmp_path / "run", depth=Tier.CYCLE, fields=Shown.WORST)
+    cycle, _ = loaded(name)
+    final = read_run(tmp_path / "run").final
+    second = np.array([final.contour[f"second_contour_{axis}_mm"] for axis in "xy"])
+    theta = np.radians(final.contour["cam_angle_deg"])
+    points, _ = loaded(name)[1].pulling.touched(theta)
+    assert second == pytest.approx(1e3 * points, abs=1e-9)
+    assert ("idle_p0_fe_MPa" in final.cycle) == (cycle.machine.disc_preload is not None)
+    assert recompute(tmp_path / "run").differences == ()
