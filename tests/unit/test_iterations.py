@@ -24,6 +24,7 @@ TOLD = {
     "pipeline/screening/screened_cam.py: _settled": "NaN of what has not settled",
     "pipeline/search/machine/synthesised_points.py: promising": "a count of designs",
     "pipeline/search/parts/part_search.py: searched": "a count of limits",
+    "pipeline/search/parts/redesign_study.py: _fronts_judged": "a count of fronts",
     "pipeline/search/remedies/remedy_search.py: _confirmed": "the best attempt, judged anew",
     "pipeline/search/sizes/sizing.py: _stiffened": "the first attempt, whose checks are shown",
     "pipeline/search/sizes/sizing.py: sized": "the last attempt, whose checks are shown",

@@ -261,7 +261,7 @@ def test_the_refusal_names_field_value_in_its_unit_and_bounds() -> None:
     assert str(refusal.value) == message
     with pytest.raises(InputError) as refusal:
         Spring(rate=24e3, preload=nan)
-    assert str(refusal.value) == "spring.preload = nan, must be > 0 and <= 1e+09 N"
+    assert str(refusal.value) == "spring.preload = nan, must be >= -1e+09 and <= 1e+09 N"
 
 
 def test_a_number_that_has_to_be_given_is_not_none() -> None:
