@@ -43,7 +43,7 @@ def pushed(follower, speed):
 
 
 def test_periodic_response_by_integration_in_time():
-    """Collocation against the fourth turn from rest, with e^-20 of its start.
+    """Collocation against the fourth turn from rest, with e^-18 of its start.
 
     The mass is that at the lift of the foot, 0.3 mm beyond that of the mass itself, and the speed
     of the shortening counts to first order: 3e-4 of the force. With the mass at zero lift it is 3 %
