@@ -36,6 +36,8 @@ from camwright.pipeline.checks.extremes import (
     worst_case,
 )
 from camwright.pipeline.checks.missing_keys import unset
+from camwright.pipeline.contact.contact_history import ContactHistory
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.numbers import Numbers
@@ -298,14 +300,23 @@ def pressure_torque(cycle: Cycle) -> Array:
     """Cam torque (n,) from contact pressures and the friction of a face, N m.
 
     The normal of the contour is that of its points. The pressure of a position acts along one
-    normal: its change over the contact is of the order of half-width over radius.
+    normal: its change over the contact is of the order of half-width over radius. Of preloaded
+    discs that of both contacts.
     """
-    contact, theta = cycle.contact, cycle.theta
+    torque = _torque_of(cycle, cycle.pair, cycle.contact)
+    if cycle.idle is None:
+        return torque
+    return torque + _torque_of(cycle, cycle.pair.other_track, cycle.idle)
+
+
+def _torque_of(cycle: Cycle, carrying: ContactPair, contact: ContactHistory) -> Array:
+    """Cam torque (n,), N m, of the contacts of a pair on the surface that carries at each angle."""
+    theta = cycle.theta
     (x, y), (tx, ty) = np.empty((2, 2, theta.size))
-    for pair, at in cycle.pair.on_walls(theta):
+    for pair, at in carrying.on_walls(theta):
         (x[at], y[at]), _ = pair.touched(theta[at])
         tx[at], ty[at] = _tangent_of_points(pair.contour, pair.angle(theta[at]))
-    xi, width = contact.pressure_xi, cycle.pair.width
+    xi, width = contact.pressure_xi, carrying.width
     force = width * _integral(contact.pressure, xi)
     # xi runs clockwise, against the tangent of the contour
     couple = width * _integral(contact.pressure * xi, xi)

@@ -220,6 +220,10 @@ def test_preloaded_discs_have_a_contact_each():
         assert history.p0_hertz == pytest.approx(pressure, rel=1e-9)
         assert history.p0 == pytest.approx(pressure, rel=1e-4)
         most.append(pressure)
+    # the torque of both contacts is that of the axial force alone: to 1e-4 of its greatest
+    assert pressure_torque(cycle) == pytest.approx(
+        loads.cam_torque, abs=1e-4 * np.abs(loads.cam_torque).max()
+    )
     reached = cycle.rolling.envelope.von_mises.max(axis=1)[:: 1440 // loads.theta.size]
     # 0.5577 of the pressure below a line contact of steel; within 0.5 %: depths and body stress
     assert reached == pytest.approx(0.5577 * np.maximum(*most), rel=5e-3)
