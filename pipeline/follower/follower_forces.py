@@ -144,9 +144,13 @@ class FollowerSystem:
     preload: DiscPreload | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a spacing that is not positive, and a negative mass, overhang, friction or
-        damping.
+        """Refuse a spacing that is not positive, a negative mass, overhang, friction or damping,
+        and a preload that is not positive of a cam that does not pull.
         """
+        if not (self.held or self.spring.preload > 0.0):
+            raise InputError(
+                "spring.preload", self.spring.preload, "> 0 N of a cam that only pushes"
+            )
         if not 0.0 < self.guide_spacing < np.inf:
             raise InputError("follower.guide_spacing", self.guide_spacing, "> 0 m")
         for name, unit in (
