@@ -218,7 +218,7 @@ CAM_RADIUS = OpenLimit(
     found="installation space", example="90 mm",
 )  # fmt: skip
 LANDING_SPEED = OpenLimit(  # of a roller in a groove
-    "landing_speed", "landing speed in the clearance of a groove",
+    "landing_speed", "landing speed in the clearance of two tracks",
     In("mm/s", above=0, at_most=1e5),
     Source("bound of the case, noise and wear of the walls", confirmed=True),
     found="requirement of the machine", example="50 mm/s",

@@ -529,7 +529,7 @@ _CLEARANCE = (
 
 @check(
     LANDING_SPEED,
-    title="Maximum landing speed on the walls",
+    title="Maximum landing speed on a track",
     tier=Tier.SCREENING,
     method=_FLIGHT,
     lift_can_help=True,

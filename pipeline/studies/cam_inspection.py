@@ -40,11 +40,12 @@ _POLAR = (("polar_angle_deg", "measured_radius_mm"), ("angle_deg", "radius_mm"))
 
 @dataclass(frozen=True, eq=False)
 class RealPart:
-    """Measured cam: fit to the nominal contour, real contour, and trial on it; track: the measured
+    """Measured cam: fit to the nominal surface, real contour, and trial on it; track: the measured
     one, where it was stated.
     """
 
     fit: Inspection
+    surface: Contour
     contour: Contour
     trial: Trial
     track: str | None = None
@@ -119,7 +120,7 @@ def inspect_part(
     real = real_contour(surface, fit, keep_phase=keep_phase)
     real = real_cam(case, contour, track, real)
     trial = solve(case, real, jobs=jobs, progress=progress)
-    return RealPart(fit, real, replace(trial, why="measured contour"), track)
+    return RealPart(fit, surface, real, replace(trial, why="measured contour"), track)
 
 
 def write_inspection(
@@ -140,10 +141,14 @@ def write_inspection(
     """
     fit = part.fit
     order = np.argsort(fit.theta)
+    theta = fit.theta[order]
+    nominal, normal = part.surface.points(theta), part.surface.normal(theta)
     deviation = {
-        CAM_ANGLE: fit.theta[order],
+        CAM_ANGLE: theta,
         Column("deviation", "um"): fit.deviation[order],
-        Column("form", "um"): fit.form(fit.theta[order]),
+        Column("form", "um"): fit.form(theta),
+        **{Column(f"nominal_{axis}", "mm"): each for axis, each in zip("xy", nominal, strict=True)},
+        **{Column(f"normal_{axis}"): each for axis, each in zip("xy", normal, strict=True)},
     }
     write_atomic(folder / "deviation.csv", table(deviation).to_csv())
     write_atomic(folder / "cycle.csv", table(cycle_columns(part.trial.cycles)).to_csv())

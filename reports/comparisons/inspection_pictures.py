@@ -57,7 +57,7 @@ def figure_of(run: Path, tolerance_um: float, folder: Path) -> Figure:
             Curve(angle, deviation["deviation_um"], "measured", "sky", "points"),
             Curve(angle, deviation["form_um"], "form", "vermillion"),
         ), band, height=1.6),
-        _part(nominal.contour, deviation),
+        _part(deviation),
     ]  # fmt: skip
     for header, quantity, unit in (("normal_force_N", "normal force", "N"),
                                    ("p0_fe_MPa", "peak contact pressure", "MPa")):  # fmt: skip
@@ -69,21 +69,20 @@ def figure_of(run: Path, tolerance_um: float, folder: Path) -> Figure:
     return Figure("inspection", "Inspected cam", "", tuple(panels), axis, columns=2)
 
 
-def _part(contour: Table, deviation: Table) -> Panel:
-    """Panel of the nominal contour and of the inspected one, whose form deviation is exaggerated
+def _part(deviation: Table) -> Panel:
+    """Panel of the nominal surface and of the inspected one, whose form deviation is exaggerated
     along the normals.
 
     Parameters
     ----------
-    contour : Table     3_contour.csv of the drawn cam
-    deviation : Table   cam angle, deg, and form deviation, um, positive outwards
+    deviation : Table   nominal points, mm, with their normals and the form deviation, um, positive
+                        out of the material
     """
     drawn, normal = (
-        np.array([contour[name] for name in names])
-        for names in (("contour_x_mm", "contour_y_mm"), ("normal_x", "normal_y"))
+        np.array([deviation[name] for name in names])
+        for names in (("nominal_x_mm", "nominal_y_mm"), ("normal_x", "normal_y"))
     )
-    form = np.interp(contour["cam_angle_deg"], deviation["cam_angle_deg"], deviation["form_um"],
-                     period=360.0)  # fmt: skip
+    form = deviation["form_um"]
     greatest = float(np.abs(form).max())
     scale = _EXAGGERATED * float(np.hypot(*drawn).mean()) / greatest if greatest > 0 else 0.0
     part = drawn + scale * form * normal

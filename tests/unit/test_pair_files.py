@@ -4,6 +4,7 @@ import csv
 import json
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import ezdxf
 import numpy as np
@@ -13,6 +14,7 @@ from camwright.geometry.arrays import rotation, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.measured_contour import inspected, real_contour
 from camwright.meshes.gmsh_mesher import session
+from camwright.pipeline.base.tables import read_table
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
@@ -24,6 +26,8 @@ from camwright.pipeline.results.workshop_files import (
     second_track_notes,
     write_workshop,
 )
+from camwright.pipeline.studies import cam_inspection
+from camwright.pipeline.studies.cam_inspection import RealPart, write_inspection
 
 DATA = Path(__file__).parents[1] / "data"
 PAIRS = ("conjugate_feeder", "conjugate_arm")
@@ -170,3 +174,22 @@ def test_tables_of_a_disc_are_on_it(workshops):
     assert 1e-3 * points == pytest.approx(
         second.points(theta) - 23.52e-3 * second.normal(theta), abs=1e-12
     )
+
+
+def test_the_record_of_an_inspection_has_the_nominal_of_the_measured_disc(tmp_path, monkeypatch):
+    """Points of the second disc, smaller by the clearance: roller 23.5 mm, clearance 0.02 mm."""
+    case, contour = judged("conjugate_feeder")
+    surface, theta = measured_surface(case, contour, "second"), uniform_turn(360)
+    fit = inspected(surface, surface.points(theta) + 4e-6 * surface.normal(theta))
+    trial = preview_case(case, corners=False)
+    part = RealPart(fit, surface, contour, trial, "second")
+    run = SimpleNamespace(final=SimpleNamespace(cycle=None))
+    monkeypatch.setattr(cam_inspection.run_reader, "read_run", lambda _: run)
+    monkeypatch.setattr(cam_inspection, "_figures_of", lambda _: {})
+    record = write_inspection(tmp_path, part, 8e-6, tmp_path)
+    assert (record["track"], record["size_um"]) == ("second", pytest.approx(4.0, abs=0.01))
+    written = read_table(tmp_path / "deviation.csv")
+    path = case.cam.second.path(contour.pitch)
+    at = np.radians(written["cam_angle_deg"])
+    points = np.stack([written["nominal_x_mm"], written["nominal_y_mm"]])
+    assert points == pytest.approx(1e3 * (path.points(at) - 23.52e-3 * path.normal(at)), abs=1e-9)
