@@ -6,7 +6,7 @@
   const readout = document.getElementById("readout"), play = document.getElementById("play");
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const STEEL = "#c3cbd4", DARK = "#8b95a1", MARK = "#d55e00";
-  const LIGHT = { ambient: 0.75, diffuse: 0.4, specular: 0.05, roughness: 0.8, fresnel: 0.02 };
+  const LIGHT = { ambient: 0.75, diffuse: 0.4, specular: 0.05, roughness: 0.8, fresnel: 0.02, facenormalsepsilon: 0 };
   const EVEN = { ambient: 0.92, diffuse: 0.1, specular: 0, roughness: 1, fresnel: 0 };
   const PLAIN = { ambient: 1, diffuse: 0, specular: 0, roughness: 1, fresnel: 0 };
   const EYES = { oblique: [1.15, 0.5, 0.95], front: [0, 0, 1.6], side: [1.55, 0.12, 0.35] };
