@@ -279,7 +279,7 @@ def _pivot(turn: SheetTurn) -> Figure | None:
     pressures = [*curves_of(turn, *names, dashed=(1,))]
     if sizes[0] and sizes[1]:
         mean = load / (sizes[0] * sizes[1])
-        pressures.append(Curve(turn.crank, mean, "mean over the projected area", "green"))
+        pressures.append(Curve(turn.crank, mean, "mean", "green"))
     rating = turn.static_rating(
         "static rating", "pivot_static", "follower", "pivot", "needle_bearing", "C0"
     )
@@ -289,8 +289,8 @@ def _pivot(turn: SheetTurn) -> Figure | None:
     return angle_figure(
         turn, "pivot", "Load, pressure and friction of the pivot",
         "Reaction of the pivot to contact, spring, inertia and all that acts on the arm; pressure "
-        "of its pin in the bush, at the edge with the couple of the contact; its friction as a "
-        "force on the arc of the reference point.",
+        "of its pin in the bush, at the edge with the couple of the contact, and mean over the "
+        "projected area; its friction as a force on the arc of the reference point.",
         Panel("load", "N", curves_of(turn, ("pivot_load_N", "")), rating),
         Panel("pressure", "MPa", tuple(pressures), limits, height=0.9),
         Panel("friction", "N", curves_of(turn, ("pivot_friction_N", "")), height=0.6),
