@@ -1,4 +1,4 @@
-"""Contact of faces on an arm by finite elements: Hertz, meshes, certificate."""
+"""Contact of faces and of a roller on an arm by finite elements: Hertz, meshes, certificate."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from camwright.geometry.arm_face import (
     CurvedFaceContour,
     CurvedFacePath,
 )
-from camwright.geometry.arm_path import Arm
+from camwright.geometry.arm_path import Arm, ArmContour, ArmPath
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
@@ -19,19 +19,24 @@ from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.contact.certificate import EDGES, certificate_point, mesh_figures
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
-from camwright.pipeline.contact.follower_body import FaceBody
+from camwright.pipeline.contact.follower_body import FaceBody, RollerBody
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 
 STEEL = Elastic(210e9, 0.3)
 MODULUS = 0.5 * 210e9 / (1.0 - 0.3**2)
 WIDTH, FORCE = 0.02, 1000.0
+ROLLER = 0.012
+BOWED = {"flat": 0.0, "curved": 1.0 / 0.025, "roller": 1.0 / ROLLER}  # 1/m
 
 
 def pair(kind, sense=1.0):
-    """A cam of 40 mm under a face with a swing of 8 deg, on a block 20 mm thick."""
+    """A cam of 40 mm with a swing of 8 deg, under a face on a block 20 mm thick or a roller."""
     theta = uniform_turn(720)
     lift = Lift(theta, 0.08 * np.radians(4.0) * (1.0 - np.cos(theta)))
     arm, radius = Arm(0.09, 0.08, sense), None
+    if kind == "roller":
+        contour = ArmContour(ArmPath(lift, arm, float(arm.angle(0.04 + ROLLER))), ROLLER)
+        return ContactPair(contour, WIDTH, 0.003, None, STEEL, RollerBody(ROLLER, 0.002, STEEL))
     if kind == "flat":
         start = float(arm.face_angle(0.04, 0.006))
         contour = ArmFaceContour(ArmFacePath(lift, arm, start, 0.006))
@@ -46,17 +51,19 @@ def pair(kind, sense=1.0):
 BOTH = pytest.mark.parametrize("kind", ["flat", "curved"])
 
 
-@BOTH
-def test_the_pressure_is_that_of_hertz(kind):
+@pytest.mark.parametrize(("kind", "sense"), [
+    ("flat", 1.0), ("curved", 1.0), ("roller", 1.0), ("roller", -1.0),
+])  # fmt: skip
+def test_the_pressure_is_that_of_hertz(kind, sense):
     """Half-widths of a hundredth of the bodies: p0 = sqrt(P' E*/(pi R)) within 0.1 %."""
-    one, theta = pair(kind), np.array([0.0, 1.2, 4.0])
+    one, theta = pair(kind, sense), np.array([0.0, 1.2, 4.0])
     force = np.full(3, FORCE)
     solved = two_scale_history(one, CycleBodies.meshed(one), theta, force)
     step = 1e-3
     a, b, c = (one.contour.points(theta + k * step) for k in (-1.0, 0.0, 1.0))
     u, v, w = b - a, c - b, c - a
     bend = 2.0 * (u[0] * v[1] - u[1] * v[0]) / (np.hypot(*u) * np.hypot(*v) * np.hypot(*w))
-    radius = 1.0 / (bend + (0.0 if kind == "flat" else 1.0 / 0.025))
+    radius = 1.0 / (bend + BOWED[kind])
     peak = np.sqrt(FORCE / WIDTH * MODULUS / (np.pi * radius))
     np.testing.assert_allclose(solved.p0, peak, rtol=1e-3)
     assert solved.residual_equilibrium.max() < 1e-9
