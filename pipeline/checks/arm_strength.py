@@ -163,7 +163,7 @@ def arm_forces(cam: LoadedCam) -> ArmForces:
         pressed=across * cam.motion.pressing,
         along=np.asarray(-sense * across * cam.motion.side),
         normal=cam.normal,
-        closing=cam.closing,
+        closing=np.asarray(cam.closing - cam.output_closing),
         inertia=np.asarray(cam.inertia - cam.output_inertia),
         couple=cam.follower_moment,
     )

@@ -467,6 +467,15 @@ class LoadedCam:
         return self.output.whole_inertia(self.jet.lift, self.velocity, acceleration)
 
     @property
+    def output_closing(self) -> Value:
+        """Share of `closing` that acts on the second arm of a rocker, N: of a constant force on the
+        output and of a spring there; 0 without them.
+        """
+        sprung = isinstance(self.spring_shape, SpringBehindRocker)
+        force: Value = self.spring_force if sprung else 0.0
+        return force if self.output is None else force + self.output.reduced_force
+
+    @property
     def output_force(self) -> Array:
         """Force on the output of a rocker against its lift, N: of its mass, of a constant force and
         of a spring on it.

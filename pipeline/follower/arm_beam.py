@@ -181,9 +181,10 @@ class ArmForces(NamedTuple):
     """Forces on the arm (...), N.
 
     across, closing, inertia: moments about the pivot over the length of the arm, of the contact, of
-    spring, weight and machine, and of the mass; pressed, along: of the contact across and along the
-    arm where it acts, along > 0 in tension; normal: of the contact; couple: of the contact about
-    the middle of the roller in the plane of its normal and the cam axis, N m, >= 0.
+    spring, weight and machine, and of the mass, the two latter without what acts on a second arm;
+    pressed, along: of the contact across and along the arm where it acts, along > 0 in tension;
+    normal: of the contact; couple: of the contact about the middle of the roller in the plane of
+    its normal and the cam axis, N m, >= 0.
     """
 
     across: Array

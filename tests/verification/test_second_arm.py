@@ -95,6 +95,20 @@ def test_the_moment_of_the_output_passes_the_pivot():
     assert max(shares) > 0.01
 
 
+def test_the_force_of_the_output_passes_a_spring_on_the_first_arm():
+    """At the pivot the first arm bears what moves the output, of a constant ratio r with a force F
+    and a mass m: l r (F + m r s'') and the viscous force; the spring at 60 mm bears itself alone.
+    """
+    stated = '[rocker]\nratio = 0.5\nforce = "2 kN"\nmass = "1.4 kg"\n\n'
+    held = with_values(case(rocker=stated), {"follower.arm.spring_distance": "60 mm"})
+    of = preview_case(held, corners=False).solution
+    for cam in of.cams.values():
+        moved = 2000.0 + 1.4 * 0.5 * cam.speed**2 * cam.contour.lift(cam.loads.theta, 2)
+        wanted = 0.1 * (cam.viscous + 0.5 * moved)
+        moment = bar_of(of.numbers).bending(0.0, arm_forces(cam))
+        np.testing.assert_allclose(moment, wanted, rtol=0, atol=1e-9 * wanted.max())
+
+
 def test_a_second_arm_is_described_or_left_out():
     bare = case(rocker='[rocker]\nlength = "55 mm"\nmass = "1.4 kg"\n\n')
     checks = {each.id: each for each in preview_case(bare, corners=False).checks}
