@@ -131,7 +131,8 @@ def _strength_data(machine: Machine) -> _Shaft | tuple[str, ...]:
     key_length = 0.0 if cam.key is None else cam.key.length or 0.0
     reach = 0.5 * max(cam.width, key_length)
     gear_reach = 0.0 if shaft.gear is None else 0.5 * shaft.gear.width
-    sections = judged_sections(shaft, shaft.diameter, reach, gear_reach)
+    spacing = 0.0 if cam.conjugate is None else cam.conjugate.spacing
+    sections = judged_sections(shaft, shaft.diameter, reach, gear_reach, spacing)
     return _Shaft(shaft, shaft.material, shaft.thinnest, sections)
 
 
@@ -243,8 +244,10 @@ def _entry(values: Callable[[Cycle], Array], k: int) -> Callable[[Cycle], float]
 
 def _at_sections(cycle: Cycle, shaft: _Shaft, sections: Sections) -> tuple[Array, Array]:
     """Bending moment (k, 2, n) and torque (k, n) at the sections, N m."""
-    moment = bending_moment(_loads(cycle), shaft.camshaft, sections.place)
-    return moment, torque_at(cycle.loads.cam_torque, shaft.camshaft, sections.place)
+    loads = _loads(cycle)
+    moment = bending_moment(loads, shaft.camshaft, sections.place)
+    torque = cycle.loads.cam_torque
+    return moment, torque_at(torque, shaft.camshaft, sections.place, loads.second)
 
 
 def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -14,9 +14,11 @@ from camwright.geometry.form_closure import Groove
 from camwright.geometry.second_track import discs_of
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.cycle.pressed_discs import pressed_discs
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
     CounterHole,
+    SecondDisc,
     ShaftLoads,
     Unbalance,
     counter_hole,
@@ -103,16 +105,20 @@ def undrilled(cam: CamBody, contour: Contour) -> Unbalance:
     """
     density = cam.material.density
     if cam.groove is None:
-        first, *others = (
-            unbalance(each.contour, cam.bore_radius, cam.keyway, cam.width, density)
-            for each in discs_of(contour, cam.second)
-        )
+        first, *others = _each_disc(cam, contour)
         return sum(others, first)
     walls = groove_of(cam, contour)
     area, moment = walls.section()
     share = cam.groove.depth / cam.width
     left = np.pi * cam.groove.outer_radius**2 - share * area
     return less_bore(left, -share * moment, cam.bore_radius, cam.keyway, cam.width, density)
+
+
+@lru_cache(maxsize=8)
+def _each_disc(cam: CamBody, contour: Contour) -> tuple[Unbalance, ...]:
+    """Unbalance of each disc of a cam with bore and keyway."""
+    stated = cam.bore_radius, cam.keyway, cam.width, cam.material.density
+    return tuple(unbalance(each.contour, *stated) for each in discs_of(contour, cam.second))
 
 
 def groove_of(cam: CamBody, contour: Contour) -> Groove:
@@ -142,20 +148,27 @@ def camshaft_loads(
     """Forces on the camshaft and its bearings over a turn, with the centrifugal forces of cam and
     counterweight; cam_speed : rad/s.
 
-    A second disc presses the bearings from its own place; the centrifugal force is there with it.
+    Each disc of a pair presses the bearings from its own place, of preloaded ones both at once.
     """
     manufactured, weight = _as_made(cam, contour), shaft.counterweight
     thrown = rotating_force(manufactured.product, manufactured.angle, cam_speed, loads.theta)
-    held = np.zeros_like(thrown)
+    held, pressed, second = np.zeros_like(thrown), np.array(loads.on_shaft), None
     if weight is not None:
         held = rotating_force(*weight.set_against(manufactured), cam_speed, loads.theta)
-    along, across = loads.on_shaft
-    acting = along, across, loads.cam_torque
-    first = shaft_loads(*acting, shaft, thrown, held)
-    if cam.conjugate is None:
-        return first
-    beside = replace(shaft, cam_position=shaft.cam_position + cam.conjugate.spacing)
-    return first.where(loads.wall < 0.0, shaft_loads(*acting, beside, thrown, held))
+    if cam.conjugate is not None:
+        disc, alone = pressed_discs(contour, loads)[1], _each_disc(cam, contour)[1]
+        push = disc.force * _seen(disc.contour.normal(disc.theta), loads.theta)
+        there = rotating_force(alone.product, alone.angle, cam_speed, loads.theta)
+        pressed, thrown = pressed - push, thrown - there
+        second = SecondDisc(cam.conjugate.spacing, there - push, disc.torque)
+    along, across = pressed
+    return shaft_loads(along, across, loads.cam_torque, shaft, thrown, held, second)
+
+
+def _seen(vector: Array, theta: Array) -> Array:
+    """Vector (2, n) of the cam frame at cam angles (n,), rad, in the frame of `ShaftLoads`."""
+    (x, y), cos, sin = vector, np.cos(theta), np.sin(theta)
+    return np.stack([x * cos + y * sin, x * sin - y * cos])
 
 
 def rotor_unbalance(made: Unbalance, shaft: Camshaft | None) -> float:

@@ -8,7 +8,7 @@ from math import pi
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, finite, freeze
 from camwright.geometry.contour import Contour
@@ -511,10 +511,27 @@ class Camshaft(Part):
 
 
 @dataclass(frozen=True, eq=False)
+class SecondDisc:
+    """Load of the second disc of a cam.
+
+    spacing : from the first disc, m; force (2, n) : on it, N, in the frame of `ShaftLoads`;
+    torque (n,) : of that on the cam, what drives it, N m
+    """
+
+    spacing: float
+    force: Array
+    torque: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, force=finite("force", self.force), torque=finite("torque", self.torque))
+
+
+@dataclass(frozen=True, eq=False)
 class ShaftLoads:
     """Forces on the camshaft in the engine frame, x along the follower outwards; (2, n), N.
 
-    Loads of `cam`, `gear` and `counterweight`, reactions `bearing_1` and `bearing_2`.
+    Loads of `cam`, its first disc, `gear` and `counterweight`, reactions `bearing_1` and
+    `bearing_2`; `second`: load of a second disc.
     """
 
     cam: Array
@@ -522,15 +539,11 @@ class ShaftLoads:
     counterweight: Array
     bearing_1: Array
     bearing_2: Array
+    second: SecondDisc | None = None
 
     def __post_init__(self) -> None:
-        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
-
-    def where(self, pulls: NDArray[np.bool_], other: ShaftLoads) -> ShaftLoads:
-        """Forces of the disc that carries (n,): those of another one where that does."""
-        names = self.__dataclass_fields__
-        pairs = {name: (getattr(other, name), getattr(self, name)) for name in names}
-        return ShaftLoads(**{name: np.where(pulls, *pair) for name, pair in pairs.items()})
+        arrays = (name for name in self.__dataclass_fields__ if name != "second")
+        freeze(self, **{name: getattr(self, name) for name in arrays})
 
     @property
     def load_1(self) -> Array:
@@ -550,6 +563,7 @@ def shaft_loads(
     shaft: Camshaft,
     unbalance_force: ArrayLike = 0.0,
     counterweight_force: ArrayLike = 0.0,
+    second: SecondDisc | None = None,
 ) -> ShaftLoads:
     """Bearing loads of the camshaft from contact force and gear force.
 
@@ -561,6 +575,8 @@ def shaft_loads(
     shaft : Camshaft
     unbalance_force : array (2, n)   N, on the cam
     counterweight_force : array (2, n)   N, on the counterweight, if the shaft has one
+    second : SecondDisc      of a pair; the forces before are then those of the first disc, the
+                             torque that of both
 
     Raises
     ------
@@ -576,9 +592,11 @@ def shaft_loads(
     acting = [(shaft.cam_position, cam), (shaft.gear_position, gear)]
     if shaft.counterweight is not None:
         acting.append((shaft.counterweight.position, weight))
-    second = -np.sum([force * (at / shaft.bearing_spacing) for at, force in acting], axis=0)
-    first = -np.sum([force for _, force in acting], axis=0) - second
-    return ShaftLoads(cam, gear, weight, first, second)
+    if second is not None:
+        acting.append((shaft.cam_position + second.spacing, second.force))
+    far = -np.sum([force * (at / shaft.bearing_spacing) for at, force in acting], axis=0)
+    near = -np.sum([force for _, force in acting], axis=0) - far
+    return ShaftLoads(cam, gear, weight, near, far, second)
 
 
 def gear_force(torque: Array, shaft: Camshaft) -> Array:

@@ -16,6 +16,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import from_unit, in_unit
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
+    SecondDisc,
     ShaftLoads,
     ShaftSection,
     Surface,
@@ -61,7 +62,7 @@ class Sections:
 
 @lru_cache(maxsize=8)
 def judged_sections(
-    shaft: Camshaft, diameter: float, cam_reach: float, gear_reach: float
+    shaft: Camshaft, diameter: float, cam_reach: float, gear_reach: float, spacing: float = 0.0
 ) -> tuple[ShaftSection, ...]:
     """Judged shaft sections: cam, gear, bearings, counterweight, and those of the case.
 
@@ -72,6 +73,7 @@ def judged_sections(
     ----------
     diameter : float                  of seats that the case does not list, m
     cam_reach, gear_reach : float     half of the length of the seats, m
+    spacing : float                   from the cam to a second disc, m; 0 without one
     """
     keyed = (shaft.notch_bending, shaft.notch_torsion)
     shouldered = (shaft.seat_notch_bending, shaft.seat_notch_torsion)
@@ -81,6 +83,8 @@ def judged_sections(
         ("bearing 1", 0.0, 0.0, shouldered),
         ("bearing 2", shaft.bearing_spacing, 0.0, shouldered),
     )
+    if spacing > 0.0:
+        seats = (*seats, ("second disc", shaft.cam_position + spacing, cam_reach, keyed))
     weight = shaft.counterweight
     if weight is not None:
         seats = (*seats, ("counterweight", weight.position, 0.0, keyed))
@@ -120,23 +124,36 @@ def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: ArrayLike) -> Arra
     ]
     if shaft.counterweight is not None:
         acting.append((shaft.counterweight.position, loads.counterweight))
+    if loads.second is not None:
+        acting.append((shaft.cam_position + loads.second.spacing, loads.second.force))
     return np.asarray(sum(force * np.maximum(reach - at, 0.0) for at, force in acting))
 
 
-def torque_at(torque: Array, shaft: Camshaft, place: ArrayLike) -> Array:
+def torque_at(
+    torque: Array, shaft: Camshaft, place: ArrayLike, second: SecondDisc | None = None
+) -> Array:
     """Torque of the camshaft (..., n), N m: between gear and cam that on the cam and the drag,
-    elsewhere 0.
+    elsewhere 0; between gear and a second disc its own.
 
     Parameters
     ----------
-    torque : array (n,)   on the cam, N m
+    torque : array (n,)   on the cam, of both discs, N m
     shaft : Camshaft      with the places of gear and cam
     place : array (...)   from the first bearing, m
+    second : SecondDisc   of a pair
     """
-    low, high = sorted((shaft.cam_position, shaft.gear_position))
     at = np.asarray(place, dtype=float)[..., None]
-    within = (low - _SAME_PLACE <= at) & (at <= high + _SAME_PLACE)
-    return np.where(within, torque + shaft.drag, 0.0)
+
+    def passed(torque: Array, position: float) -> Array:
+        """Torque between the gear and a position, elsewhere 0."""
+        low, high = sorted((position, shaft.gear_position))
+        within = (low - _SAME_PLACE <= at) & (at <= high + _SAME_PLACE)
+        return np.where(within, torque, 0.0)
+
+    if second is None:
+        return passed(torque + shaft.drag, shaft.cam_position)
+    first = passed(torque - second.torque + shaft.drag, shaft.cam_position)
+    return first + passed(second.torque, shaft.cam_position + second.spacing)
 
 
 def surface_factor(surface: Surface, tensile: float) -> float:
@@ -263,7 +280,9 @@ def greatest_stress(moment: Array, torque: Array, sections: Sections) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class ShaftBending:
-    """Deflection at the cam (2, n), m, and slopes at both bearings (2, n), rad, engine frame."""
+    """Deflection at the cam (2, n), m, of two discs the greater one, and slopes at both bearings
+    (2, n), rad, engine frame.
+    """
 
     deflection: Array
     slope_1: Array
@@ -288,21 +307,31 @@ def shaft_bending(
     Unit-load method: integral of m M/(E I); exact, since both moments are linear between forces.
     """
     span, cam = shaft.bearing_spacing, shaft.cam_position
+    discs = [cam] if loads.second is None else [cam, cam + loads.second.spacing]
     stiffness = elastic_modulus * np.pi * diameter**4 / 64.0
     weight = shaft.counterweight
     beside = cam if weight is None else weight.position
-    corners = distinct([0.0, span, cam, shaft.gear_position, beside])
+    corners = distinct([0.0, span, *discs, shaft.gear_position, beside])
     start, end = corners[:-1, None], corners[1:, None]
     places = np.hstack([start, 0.5 * (start + end), end])
-    # moment of a unit force at the cam, and of unit couples at the bearings
-    acting = ((0.0, -(1.0 - cam / span)), (span, -cam / span), (cam, 1.0))
-    under_cam = sum(force * np.maximum(places - at, 0.0) for at, force in acting)
+
+    def under(disc: float) -> Array:
+        """Moment of a unit force at a disc."""
+        acting = ((0.0, -(1.0 - disc / span)), (span, -disc / span), (disc, 1.0))
+        return np.asarray(sum(force * np.maximum(places - at, 0.0) for at, force in acting))
+
+    # moments of unit couples at the bearings and of unit forces at the discs
     inside = (start >= 0.0) & (end <= span)  # a couple leaves the overhung ends without moment
-    units = np.stack([under_cam, inside * (1.0 - places / span), inside * (places / span)])
+    couples = inside * (1.0 - places / span), inside * (places / span)
+    units = np.stack([*couples, *map(under, discs)])
     simpson, step = np.array([1.0, 4.0, 1.0])[:, None, None], (end - start)[..., None, None]
     moment = bending_moment(loads, shaft, places) * simpson * step / 6.0
-    total = (units[..., None, None] * moment).reshape(3, places.size, *loads.cam.shape).sum(axis=1)
-    return ShaftBending(*(total / stiffness))
+    shape = (len(units), places.size, *loads.cam.shape)
+    total = (units[..., None, None] * moment).reshape(shape).sum(axis=1)
+    slope_1, slope_2, deflection, *others = total / stiffness
+    for other in others:
+        deflection = np.where(np.hypot(*other) > np.hypot(*deflection), other, deflection)
+    return ShaftBending(deflection, slope_1, slope_2)
 
 
 class CamSlope(NamedTuple):

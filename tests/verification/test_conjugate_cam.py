@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from held_cams import assert_as_closed_by_a_strong_spring
-from scipy.integrate import solve_ivp
+from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
@@ -21,10 +21,18 @@ from camwright.geometry.form_closure import groove_wall
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.contact.closed_form import in_full
 from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
+from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.crank_speed import mechanism_torque
 from camwright.pipeline.cycle.crossover_history import flights
+from camwright.pipeline.cycle.pressed_discs import pressed_discs
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
+from camwright.pipeline.follower.shaft_strength import (
+    bending_moment,
+    judged_sections,
+    shaft_bending,
+    torque_at,
+)
 from camwright.pipeline.preview import preview_case
 
 DATA = Path(__file__).parents[1] / "data"
@@ -535,3 +543,50 @@ def test_refusals_of_the_case(file, old, new, message):
     with pytest.raises(InputError) as error:
         parse_case(text.replace(old, new, 1))
     assert str(error.value).startswith(message)
+
+
+# --- camshaft ---------------------------------------------------------------------------------
+@pytest.mark.parametrize("name", ["stem", "arm", "pressed"])
+def test_each_disc_loads_the_camshaft_at_its_own_place(name):
+    """Statics of the shaft, and its bending integrated twice.
+
+    What is left of the force on the shaft for the first disc has the size of its normal force; the
+    moment ends with the last force. The forces hold to round-off, the deflection to the 1e-4 of
+    3401 places.
+    """
+    cycle, machine, _ = running(name)
+    shaft, cam, diameter, modulus = machine.camshaft, machine.cam, 0.03, 206e9
+    loads = camshaft_loads(cycle.loads, shaft, cam, cycle.contour, 0.0)
+    first, second = pressed_discs(cycle.contour, cycle.loads)
+    there, size = shaft.cam_position + cam.conjugate.spacing, first.force.max()
+    np.testing.assert_allclose(np.hypot(*loads.cam), first.force, atol=1e-9 * size)
+    np.testing.assert_allclose(np.hypot(*loads.second.force), second.force, atol=1e-9 * size)
+    np.testing.assert_allclose(
+        loads.cam + loads.second.force, -cycle.loads.on_shaft, atol=1e-9 * size
+    )
+    span = shaft.bearing_spacing
+    beyond = bending_moment(loads, shaft, max(span, there) + 0.1)
+    np.testing.assert_allclose(beyond, 0.0, atol=1e-9 * size * span)
+    x = np.linspace(min(0.0, shaft.gear_position), max(span, there), 3401)
+    bend = np.stack([bending_moment(loads, shaft, at) for at in x], axis=-1)
+    stiff = modulus * np.pi * diameter**4 / 64.0
+    slope = cumulative_trapezoid(bend / stiff, x, initial=0.0)
+    sag = cumulative_trapezoid(slope, x, initial=0.0)
+
+    def at(place):
+        near = np.argmin(np.abs(x - place))
+        return sag[..., near] + slope[..., near] * (place - x[near])
+
+    tilt = (at(span) - at(0.0)) / span
+    places = shaft.cam_position, there
+    sagged = [np.hypot(*(at(place) - at(0.0) - tilt * place)) for place in places]
+    bent = np.hypot(*shaft_bending(loads, shaft, diameter, modulus).deflection)
+    np.testing.assert_allclose(bent, np.max(sagged, axis=0), atol=1e-4 * bent.max())
+    turning = cycle.loads.cam_torque
+    between = torque_at(turning, shaft, 0.5 * sum(places), loads.second)
+    np.testing.assert_allclose(between, second.torque, atol=1e-12)
+    both = torque_at(turning, shaft, 0.0, loads.second) - shaft.drag
+    np.testing.assert_allclose(both, first.torque + second.torque, atol=1e-9 * size)
+    judged = judged_sections(shaft, diameter, 0.0, 0.0, cam.conjugate.spacing)
+    worst = max(np.hypot(*bending_moment(loads, shaft, one.position)).max() for one in judged)
+    assert worst == pytest.approx(np.hypot(bend[0], bend[1]).max(), rel=1e-3)
