@@ -48,7 +48,7 @@ from camwright.pipeline.follower.camshaft_loads import ShaftLoads
 from camwright.pipeline.follower.follower_forces import Loads, axial_of_surge, follower_loads
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions, guide_reactions
-from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
+from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of, slopes_of
 from camwright.pipeline.follower.spring import Spring
 
 LIFT = Column("lift", "mm", "Lift")
@@ -346,14 +346,21 @@ class Cycle(Tabled):
 
     @property
     def shaft_tilt(self) -> Array:
-        """Slope of the camshaft at the cam in the plane of the contact normal (n,), rad, signed.
+        """Slope of the camshaft at the cam in the plane of the contact normal (n,), rad, signed; of
+        a pair at the disc that carries.
 
         Zero where the case does not state the diameter and material of a camshaft.
         """
         slope, loads = slope_of(self.machine.camshaft), self.shaft
         if slope is None or loads is None:
             return np.zeros(self.theta.size)
-        bent = slope.under(loads.cam, loads.gear, loads.counterweight)
+        bent, second = slope.under(loads.cam, loads.gear, loads.counterweight), loads.second
+        discs = None if second is None else slopes_of(self.machine.camshaft, second.spacing)
+        if second is not None and discs is not None:
+            beside = loads.gear, loads.counterweight
+            first = discs[0].under(loads.cam, *beside, second.force)
+            other = discs[1].under(second.force, *beside, loads.cam)
+            bent = np.where(self.loads.wall < 0.0, other, first)
         return in_the_normal(bent, self.loads.normal_direction)
 
     @KeptResult

@@ -37,7 +37,7 @@ from camwright.pipeline.follower.pivot_forces import (
     arm_pivot,
 )
 from camwright.pipeline.follower.rocker import RockerOutput
-from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
+from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of, slopes_of
 from camwright.pipeline.follower.spring import end_travel, lever
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise
 from camwright.pipeline.follower.spring_link import SpringBehindRocker
@@ -642,7 +642,12 @@ class LoadedCam:
         cos, sin = np.cos(travel), np.sin(travel)
         along, across = self.axial * self.motion.pressing, self.axial * self.motion.side
         pushed = -np.stack([along * cos + across * sin, across * cos - along * sin])
-        bent = slope.under(pushed + on_cam, gear_force(self.torque, shaft), held)
+        acting = pushed + on_cam, gear_force(self.torque, shaft), held
+        pair = None if self.numbers.case is None else self.numbers.case.cam.conjugate
+        discs = None if pair is None else slopes_of(shaft, pair.spacing)
+        bent = slope.under(*acting)
+        if discs is not None:
+            bent = np.where(self.wall < 0.0, discs[1].under(*acting), bent)
         return in_the_normal(bent, self.motion.pressure_angle - travel - self.turned)
 
     @property

@@ -337,22 +337,28 @@ def shaft_bending(
 class CamSlope(NamedTuple):
     """Slope of the shaft at the cam per force at cam, gear and counterweight, rad/N.
 
-    couple: per moment at the cam, rad/(N m), > 0.
+    couple: per moment at the cam, rad/(N m), > 0; beside: per force at the other disc of a pair.
     """
 
     cam: float
     gear: float
     counterweight: float
     couple: float
+    beside: float = 0.0
 
-    def under(self, cam: Array, gear: Array, counterweight: ArrayLike = 0.0) -> Array:
+    def under(
+        self, cam: Array, gear: Array, counterweight: ArrayLike = 0.0, beside: ArrayLike = 0.0
+    ) -> Array:
         """Slope (2, ...), rad, under forces (2, ...), N: rise of the deflection from bearing 1."""
-        weight = np.asarray(counterweight, dtype=float)
-        return np.asarray(self.cam * cam + self.gear * gear + self.counterweight * weight)
+        weight = self.counterweight * np.asarray(counterweight, dtype=float)
+        other = self.beside * np.asarray(beside, dtype=float)
+        return np.asarray(self.cam * cam + self.gear * gear + weight + other)
 
 
 @lru_cache(maxsize=32)
-def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSlope:
+def cam_slope(
+    shaft: Camshaft, diameter: float, elastic_modulus: float, beside: float = 0.0
+) -> CamSlope:
     """Slopes of a uniform camshaft at the cam per unit force at cam, gear and counterweight, and
     per unit moment at the cam; the cam is between the bearings or overhung.
 
@@ -361,6 +367,7 @@ def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSl
     shaft : Camshaft          with the places of the forces
     diameter : float          m
     elastic_modulus : float   E, Pa
+    beside : float            from the cam to the other disc of a pair, m
 
     References
     ----------
@@ -369,7 +376,7 @@ def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSl
     span, cam = shaft.bearing_spacing, shaft.cam_position
     weight = cam if shaft.counterweight is None else shaft.counterweight.position
     stiffness = elastic_modulus * np.pi * diameter**4 / 64.0
-    corners = distinct([0.0, span, cam, shaft.gear_position, weight])
+    corners = distinct([0.0, span, cam, shaft.gear_position, weight, cam + beside])
     start, end = corners[:-1], corners[1:]
     places = np.stack([start, 0.5 * (start + end), end])
 
@@ -384,21 +391,35 @@ def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSl
 
     couple = reacted(cam, 1.0 / span, -1.0 / span) - (start >= cam)
     weights = (end - start) * np.array([[1.0], [4.0], [1.0]]) / (6.0 * stiffness)
-    under_cam, under_gear, under_weight = (
+    under_cam, under_gear, under_weight, under_other = (
         float(np.sum(weights * couple * reacted(at, at / span - 1.0, -at / span)))
-        for at in (cam, shaft.gear_position, weight)
+        for at in (cam, shaft.gear_position, weight, cam + beside)
     )
-    return CamSlope(under_cam, under_gear, under_weight, float(np.sum(weights * couple**2)))
+    yields = float(np.sum(weights * couple**2))
+    return CamSlope(under_cam, under_gear, under_weight, yields, under_other)
 
 
-def slope_of(shaft: Camshaft | None) -> CamSlope | None:
+def slope_of(shaft: Camshaft | None, beside: float = 0.0) -> CamSlope | None:
     """Slope at the cam per force of a shaft at its least diameter.
 
     None without a shaft, or where the case does not state its diameter or material.
+
+    Parameters
+    ----------
+    beside : float   from the cam to the other disc of a pair, m
     """
     if shaft is None or shaft.thinnest is None or shaft.material is None:
         return None
-    return cam_slope(shaft, shaft.thinnest, shaft.material.E)
+    return cam_slope(shaft, shaft.thinnest, shaft.material.E, beside)
+
+
+def slopes_of(shaft: Camshaft | None, spacing: float) -> tuple[CamSlope, CamSlope] | None:
+    """Slopes at the first and at the second disc of a pair, a spacing, m, apart; see `slope_of`."""
+    if shaft is None:
+        return None
+    there = replace(shaft, cam_position=shaft.cam_position + spacing)
+    first, second = slope_of(shaft, spacing), slope_of(there, -spacing)
+    return None if first is None or second is None else (first, second)
 
 
 def in_the_normal(slope: Array, pressure_angle: Array) -> Array:

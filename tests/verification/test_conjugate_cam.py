@@ -31,6 +31,7 @@ from camwright.pipeline.follower.shaft_strength import (
     bending_moment,
     judged_sections,
     shaft_bending,
+    slopes_of,
     torque_at,
 )
 from camwright.pipeline.preview import preview_case
@@ -551,11 +552,12 @@ def test_each_disc_loads_the_camshaft_at_its_own_place(name):
     """Statics of the shaft, and its bending integrated twice.
 
     What is left of the force on the shaft for the first disc has the size of its normal force; the
-    moment ends with the last force. The forces hold to round-off, the deflection to the 1e-4 of
-    3401 places.
+    moment ends with the last force. The forces hold to round-off, deflection and slope to the
+    1e-4 of 3401 places.
     """
     cycle, machine, _ = running(name)
-    shaft, cam, diameter, modulus = machine.camshaft, machine.cam, 0.03, 206e9
+    shaft, cam = machine.camshaft, machine.cam
+    diameter, modulus = shaft.diameter, shaft.material.E
     loads = camshaft_loads(cycle.loads, shaft, cam, cycle.contour, 0.0)
     first, second = pressed_discs(cycle.contour, cycle.loads)
     there, size = shaft.cam_position + cam.conjugate.spacing, first.force.max()
@@ -582,6 +584,13 @@ def test_each_disc_loads_the_camshaft_at_its_own_place(name):
     sagged = [np.hypot(*(at(place) - at(0.0) - tilt * place)) for place in places]
     bent = np.hypot(*shaft_bending(loads, shaft, diameter, modulus).deflection)
     np.testing.assert_allclose(bent, np.max(sagged, axis=0), atol=1e-4 * bent.max())
+    discs = slopes_of(shaft, cam.conjugate.spacing)
+    forces = (loads.cam, loads.second.force), (loads.second.force, loads.cam)
+    for place, disc, (here, other) in zip(places, discs, forces, strict=True):
+        near = np.argmin(np.abs(x - place))
+        turned = slope[..., near] + bend[..., near] / stiff * (place - x[near])
+        tilted = disc.under(here, loads.gear, beside=other)
+        np.testing.assert_allclose(tilted, turned - tilt, atol=1e-4 * np.abs(tilted).max())
     turning = cycle.loads.cam_torque
     between = torque_at(turning, shaft, 0.5 * sum(places), loads.second)
     np.testing.assert_allclose(between, second.torque, atol=1e-12)
