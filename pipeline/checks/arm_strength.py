@@ -156,12 +156,12 @@ def _second_arm(numbers: Numbers) -> tuple[_JudgedSection, ...]:
 
 
 def arm_forces(cam: LoadedCam) -> ArmForces:
-    """Forces on the arm of a loaded cam (..., n)."""
-    across, sense = cam.axial, _arm_of(cam.numbers).sense
+    """Forces on the arm of a loaded cam (..., n), of two arms those on the first."""
+    (motion, across), sense = cam.on_first, _arm_of(cam.numbers).sense
     return ArmForces(
         across=across,
-        pressed=across * cam.motion.pressing,
-        along=np.asarray(-sense * across * cam.motion.side),
+        pressed=across * motion.pressing,
+        along=np.asarray(-sense * across * motion.side),
         normal=cam.normal,
         closing=np.asarray(cam.closing - cam.output_closing),
         inertia=np.asarray(cam.inertia - cam.output_inertia),

@@ -467,6 +467,13 @@ class LoadedCam:
         return self.output.whole_inertia(self.jet.lift, self.velocity, acceleration)
 
     @property
+    def on_first(self) -> tuple[Motion, Array]:
+        """Motion of the first roller or face and axial force of its contact, N: of two discs that
+        of the first alone, 0 where the second carries all.
+        """
+        return self.motion, self.axial
+
+    @property
     def output_closing(self) -> Value:
         """Share of `closing` that acts on the second arm of a rocker, N: of a constant force on the
         output and of a spring there; 0 without them.

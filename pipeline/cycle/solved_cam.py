@@ -71,6 +71,11 @@ class ContourCam(LoadedCam):
 
     @cached_property
     def motion(self) -> Motion:
+        return self._of_first
+
+    @property
+    def _of_first(self) -> Motion:
+        """Motion of the first roller or face."""
         friction = self.numbers.get("follower.face.friction")
         return self.contour.motion(self.jet, 0.0 if friction is None else friction)
 
@@ -122,7 +127,7 @@ class ForcesCam(ContourCam):
 
     @cached_property
     def motion(self) -> Motion:
-        unloaded, loads = super().motion, self.loads
+        unloaded, loads = self._of_first, self.loads
         if loads.second is None:
             return on_wall(unloaded, self.wall) if self.pulls else unloaded
         track = loads.second.track(self.contour.pitch)
@@ -181,6 +186,15 @@ class ForcesCam(ContourCam):
     @property
     def axial(self) -> Array:
         return self.loads.axial_force
+
+    @property
+    def on_first(self) -> tuple[Motion, Array]:
+        loads = self.loads
+        if loads.second is None:
+            return super().on_first
+        motion = self._of_first
+        pressed = np.where(self.wall > 0.0, loads.normal_force, loads.idle_force)
+        return motion, np.asarray(pressed / motion.gain)
 
     @property
     def pivot_load(self) -> Array:

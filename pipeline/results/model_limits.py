@@ -123,9 +123,10 @@ MODEL_LIMITS = (
     ),
     ModelLimit(
         "A cam that holds its follower on both sides carries it by one side at a time, unless two"
-        " arms are preloaded. Lift and contours are those without clearance, which no tolerance"
-        " corner changes; a landing has neither rebound nor heat, and the preload no torque. The"
-        " wear of clearance is that of one side, and both rollers load the life of one bearing."
+        " arms are preloaded. Lift and contours are those without clearance; a landing heats the"
+        " mechanism, not the place where it strikes, and the preload has no torque. The wear of"
+        " clearance is that of one side, and both rollers load the life of one bearing. Of two"
+        " arms the strength of the first alone is judged, as if the inertia of both were its own."
     ),
     ModelLimit(
         "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference"

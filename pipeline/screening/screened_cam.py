@@ -178,6 +178,14 @@ class ScreenedCam(LoadedCam):
             return pivot.between(required, pressed, pull, direction)
         return pivot.squeezed(required, pressed, squeeze, pull, direction)
 
+    @property
+    def on_first(self) -> tuple[Motion, Array]:
+        if self.block.second is None:
+            return super().on_first
+        squeeze, axial = self.block.squeezed(), self.axial
+        alone = np.where(self.wall > 0.0, axial, 0.0)
+        return self.block.motion, alone if squeeze is None else squeeze.forces(axial)[0]
+
     @cached_property
     def normal(self) -> Array:
         squeeze = self.block.squeezed() if self.pulls else None

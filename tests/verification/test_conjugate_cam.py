@@ -19,6 +19,8 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.form_closure import groove_wall
 from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.checks.arm_strength import arm_forces, bar_of
+from camwright.pipeline.checks.extremes import cam_of
 from camwright.pipeline.contact.closed_form import in_full
 from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
 from camwright.pipeline.cycle.cam_balance import camshaft_loads
@@ -310,6 +312,29 @@ def test_preloaded_discs_are_two_springs_on_the_arm():
     assert loads.normal_force == pytest.approx(carried, rel=1e-6)
     assert loads.idle_force == pytest.approx(idle, rel=1e-6)
     assert idle.min() > 0.0
+
+
+@pytest.mark.parametrize("name", ["arm", "pressed"])
+def test_the_first_arm_is_bent_by_its_own_contact(name):
+    """Moment at the pivot of the contact of the first roller by places, less that of the inertia.
+
+    Under a preload far above that of the axial force, which is the difference of both contacts.
+    """
+    cycle, machine, _ = running(name)
+    solution, loads, path = trial(name).solution, cycle.loads, cycle.contour.pitch
+    theta, arm = loads.theta, path.arm
+    normal = np.where(loads.wall > 0.0, loads.normal_force, loads.idle_force)
+    centre, contact = path.points(theta), cycle.contour.points(theta)
+    pivot = arm.centre_distance * np.stack([np.cos(theta), np.sin(theta)])
+    assert np.hypot(*(centre - pivot)) == pytest.approx(arm.length, rel=1e-12)
+    reach, pushed = centre - pivot, normal * (centre - contact) / machine.roller.radius
+    moment = -arm.sense * (reach[0] * pushed[1] - reach[1] * pushed[0])
+    wanted = moment - arm.length * loads.inertia_force
+    forces = arm_forces(cam_of(solution, cycle))
+    bent = bar_of(solution.numbers).bending(0.0, forces)
+    assert bent == pytest.approx(wanted, rel=1e-9, abs=1e-9 * np.abs(wanted).max())
+    assert np.abs(bent).max() > (10.0 if name == "pressed" else 1.0)
+    assert (forces.across > 0.0).all() == (name == "pressed")
 
 
 def test_a_vanishing_interference_is_a_pair_without_clearance():
