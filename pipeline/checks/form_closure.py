@@ -44,7 +44,7 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.crossover import Landing
+from camwright.pipeline.follower.crossover import INNER, OUTER, Landing
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import Carried
 
@@ -467,11 +467,22 @@ class _Worst(NamedTuple):
         one = self.flight
         if np.isnan(one.landing):
             return f"the flight from {shown(one.take_off, 'deg')} does not end within a turn"
-        walls = {1.0: "inner", -1.0: "outer"}
+        second = self.cycle.machine.cam.second
+        words, each = ("inner", "outer"), "wall"
+        if second is not None:
+            words, each = ("first", "second"), "disc" if second.own_disc else "face"
+        tracks = dict(zip((INNER, OUTER), words, strict=True))
         return (
-            f"{len(self.cycle.impacts)} landings a turn; from the {walls[one.start]} wall at"
-            f" {shown(one.take_off, 'deg')} to the {walls[one.wall]}, {shown(one.time, 'ms')}"
+            f"{len(self.cycle.impacts)} landings a turn; from the {tracks[one.start]} {each} at"
+            f" {shown(one.take_off, 'deg')} to the {tracks[one.wall]}, {shown(one.time, 'ms')}"
         )
+
+
+def _no_landing(solution: Solution) -> str:
+    """Why there is no landing, in words."""
+    if solution.machine.disc_preload is not None:
+        return "the preloaded discs leave no clearance"
+    return "one track carries all over the turn"
 
 
 def _worst_impact(solution: Solution, measure: Callable[[WallImpact], float]) -> _Worst | None:
@@ -549,7 +560,7 @@ def landing_speed(solution: Solution) -> Demand:
     limit = solution.machine.limits[LANDING_SPEED]
     worst = _worst_impact(solution, lambda one: one.flight.speed)
     if worst is None:
-        return Demand(0.0, limit, note="one wall carries all over the turn", stated={"v": 0.0})
+        return Demand(0.0, limit, note=_no_landing(solution), stated={"v": 0.0})
     return Demand(worst.value, limit, worst.at, note=worst.words, stated={"v": worst.value})
 
 
@@ -670,7 +681,7 @@ def crossover_slip(solution: Solution) -> Demand:
     limit = solution.machine.limits[CROSSOVER_SLIP]
     worst = _worst_impact(solution, lambda one: one.slip)
     if worst is None:
-        return Demand(0.0, limit, note="one wall carries all over the turn")
+        return Demand(0.0, limit, note=_no_landing(solution))
     speed = worst.cycle.cam_speed
     stated = {"w": speed, "v": 0.5 * worst.value / speed}
     return Demand(worst.value, limit, worst.at, note=worst.words, stated=stated)

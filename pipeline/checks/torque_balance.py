@@ -560,9 +560,10 @@ def _heat(cycle: Cycle) -> float:
 
 
 def _loss(cycle: Cycle) -> str:
-    """Friction loss of a load case in words: power, and share of the stored energy."""
+    """Friction loss of a load case in words: power, and share of the energy stored in a spring."""
     heat, stored = _heat(cycle), _stored(cycle)
-    share = f" or {heat / stored:.1%} of the stored energy" if stored > 0 else ""
+    sprung = stored > 0 and not cycle.machine.spring.absent
+    share = f" or {heat / stored:.1%} of the stored energy" if sprung else ""
     return f"{cycle.load_case}: {shown(heat * cycle.cam_speed / FULL_TURN, 'W', 3)}{share}"
 
 

@@ -571,6 +571,22 @@ def test_refusals_of_the_case(file, old, new, message):
     assert str(error.value).startswith(message)
 
 
+# --- words ------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("name", "landings"),
+    [
+        ("stem", "from the first disc at|from the second disc at"),
+        ("pressed", "the preloaded discs leave no clearance"),
+        ("groove", "from the inner wall at|from the outer wall at"),
+    ],
+)
+def test_notes_name_the_tracks_and_no_energy_of_a_spring_that_is_not_there(name, landings):
+    notes = {one.id: one.note for one in trial(name).checks}
+    assert any(words in notes["landing_speed"] for words in landings.split("|"))
+    assert " W" in notes["friction_balance"]
+    assert "stored energy" not in notes["friction_balance"]
+
+
 # --- camshaft ---------------------------------------------------------------------------------
 @pytest.mark.parametrize("name", ["stem", "arm", "pressed"])
 def test_each_disc_loads_the_camshaft_at_its_own_place(name):
