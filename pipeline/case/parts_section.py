@@ -78,7 +78,7 @@ class Follower(Section):
     """stiffness from cam to follower mass"""
     damping_ratio: Annotated[float, In(at_least=0, below=1), Known("measured; 0.03 to 0.1")] = 0.05
     """damping of the elastic follower"""
-    restitution: Annotated[float | None, In(at_least=0, below=1), Known("measured", "0.5")] = None
+    restitution: Annotated[float | None, In(at_least=0, below=1), Known("measured", 0.5)] = None
     """of a cam that pulls: speed of the follower off a track after a landing over that before"""
     anti_rotation: Annotated[
         Literal["flat", "key", "square", "guided_fork", "not_needed"] | None,

@@ -210,6 +210,7 @@ def test_the_mesh_leaves_the_hole_out():
 )
 def test_a_hole_that_does_not_balance_the_cam_is_not_proposed(note, drilled, drawn):
     sizes = {"hole_x_mm": 20.0, "hole_y_mm": -37.0, "hole_diameter_mm": 56.0}
-    turn = SimpleNamespace(balance=sizes | {"hole_note": note, "hole_drilled": drilled})
+    balance = sizes | {"hole_note": note, "hole_drilled": drilled}
+    turn = SimpleNamespace(balance=balance, walls=None)
     hole = SheetTurn.counter_hole.fget(turn)
     assert hole == ((20.0, -37.0, 28.0, drilled) if drawn else None)
