@@ -333,7 +333,7 @@ def test_evidence_is_what_no_change_of_the_design_moves():
         *("mesh_angle", "mesh_jacobian", "mesh_edges", "mesh_p0", "mesh_half_width"),
         *("mesh_von_mises", "mesh_tau_max", "mesh_reaction", "benchmark_nafems"),
         *("benchmark_hertz", "tolerance_corners", "held_distance"),
-            "landing_balance",
+        "landing_balance",
         *("excluded_zone", "subsurface_depth"),
     }
     verifies_input = {"closure", "endurance_rules", "waivers_without_effect"}
