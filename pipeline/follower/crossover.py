@@ -11,12 +11,14 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, positive
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import shown
 
 INNER, OUTER = 1.0, -1.0
 _RIPPLE_SHARE = 1e-2
 """Share of the greatest force below which a force of the other sign is none: the ripple of the
 spline of a lift where its jerk steps, beside a dwell."""
 _LEAVING_ROUND_OFF = 1e-9  # of the clearance, of a roller that leaves a wall
+_BENT_MOST = 1e-4  # of the clearance, greatest part of the bend of a wall within a step
 _LANDING_BISECTIONS = 60  # of the landing within a step
 _LANDINGS_MAX = 1000  # a turn
 _SAME = 1e-9  # rad, between a landing and the take-off of its rebound
@@ -98,6 +100,8 @@ class Walls(NamedTuple):
     ends : that of the inner wall at begin and end of each step, linear in it, N
     gap, opening : clearance along the travel, m, and its rate, m/s
     mass, kg; stiffness, N/m, and damping, N s/m, against the motion in the clearance
+    slack : depth in a wall, m, that is none: by the bend of a wall, taken as straight in a step, a
+        roller that leaves it under a force near zero would land on it again at once
     """
 
     force: tuple[list[float], list[float]]
@@ -108,6 +112,7 @@ class Walls(NamedTuple):
     step: float
     stiffness: float
     damping: float
+    slack: float
 
     @classmethod
     def of(
@@ -140,6 +145,8 @@ class Walls(NamedTuple):
             resting, lift, velocity = motion
             first, last = _accelerations(lift, velocity, step)
             ends = resting + mass * first, np.roll(resting, -1) + mass * last
+        bent, widest = float(np.abs(after - 2.0 * gap + before).max()), float(gap.max())
+        slack = min(max(bent, _LEAVING_ROUND_OFF * widest), _BENT_MOST * widest)
         return cls(
             (force.tolist(), outer.tolist()),
             (ends[0].tolist(), ends[1].tolist()),
@@ -149,6 +156,7 @@ class Walls(NamedTuple):
             step,
             stiffness,
             damping,
+            slack,
         )
 
     def on(self, wall: float) -> list[float]:
@@ -211,7 +219,7 @@ class Walls(NamedTuple):
             wall, index = landed.wall, self._index(landed.landing, index)
             leaves = landed.rebound > 0.0 or landed.force < 0.0
             off = landed.rebound if leaves and index < end else None
-        raise InputError("cam.groove.clearance", max(self.gap), "of fewer landings a turn")
+        raise InputError("clearance", shown(max(self.gap), "mm"), "of fewer landings a turn")
 
     def _index(self, angle: float, after: float) -> float:
         """Index of a cam angle after another one, in steps."""
@@ -257,7 +265,7 @@ class Walls(NamedTuple):
         while index < start + count:
             arc = self._arc(index, position, speed)
             for side in (INNER, OUTER):
-                if arc.room(1.0, side) < -_LEAVING_ROUND_OFF * arc.gaps[1]:
+                if arc.room(1.0, side) < -self.slack:
                     landed = self._landed(start, index, wall, side, arc, restitution)
                     return landed._replace(leaving=off)
             index, position, speed = self._free(
@@ -292,8 +300,7 @@ class Walls(NamedTuple):
             faster = speed + 0.5 * (first + guess) * step
             end = -ends[i] / self.mass - spring * ahead - drag * faster
             ahead = position + speed * step + (2.0 * first + end) * sixth
-            beyond = _LEAVING_ROUND_OFF * gap[j]
-            if ahead < -beyond or ahead > gap[j] + beyond:
+            if ahead < -self.slack or ahead > gap[j] + self.slack:
                 break
             position, speed, k = ahead, speed + 0.5 * (first + end) * step, k + 1
         return float(k), position, speed

@@ -103,6 +103,46 @@ def test_a_large_clearance_against_an_adaptive_integrator(clearance):
     assert found.speed == pytest.approx(exact.y_events[0][0][1], rel=1e-4)
 
 
+@pytest.mark.parametrize("phase", [0.0, 1.0])
+def test_a_roller_leaves_a_wall_that_bends_away_from_a_straight_step_once(phase):
+    """Four flights a turn, from the outer wall, too, whose force goes through zero as it bends.
+
+    Take-off by the zero of the force of each wall, time and speed by an adaptive integrator between
+    the bent walls, within 1e-4.
+    """
+    width, wave, speed = 20e-6, 2e-6, 30.0
+
+    def force(theta):
+        return 100.0 * np.cos(2.0 * theta) + 20.0 * np.cos(theta)
+
+    def gap(theta):
+        return width + wave * np.cos(4.0 * theta + phase)
+
+    def opening(theta):
+        return -4.0 * wave * speed * np.sin(4.0 * theta + phase)
+
+    found = landings(force(THETA), gap(THETA), MASS, speed)
+    assert len(found) == 4
+    assert all(one.crosses for one in found)
+    for one in found:
+        outer, start = one.start == OUTER, one.take_off
+        bend = -16.0 * wave * speed**2 * np.cos(4.0 * start + phase) if outer else 0.0
+        assert force(start) + MASS * bend == pytest.approx(0.0, abs=1e-3)
+        begin = (gap(start), opening(start)) if outer else (0.0, 0.0)
+
+        def flown(time, state, start=start):
+            return state[1], -force(start + speed * time) / MASS
+
+        def lands(time, state, start=start, outer=outer):
+            return state[0] - (0.0 if outer else gap(start + speed * time))
+
+        lands.terminal, lands.direction = True, -1.0 if outer else 1.0
+        exact = solve_ivp(flown, (0.0, 0.1), begin, events=lands, rtol=1e-10, atol=1e-14)
+        time, (_, moving) = exact.t_events[0][0], exact.y_events[0][0]
+        against = -moving if outer else moving - opening(start + speed * time)
+        assert (one.time, one.speed) == pytest.approx((time, against), rel=1e-4)
+
+
 @pytest.mark.parametrize("restitution", [0.3, 0.7])
 def test_rebounds_against_an_integrator_of_events(restitution):
     """Times, walls and speeds of the flights after the first take-off within 1e-4, until rest.
