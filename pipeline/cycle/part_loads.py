@@ -221,7 +221,7 @@ class PivotPush(NamedTuple):
         normal = loads.pressure_angle - loads.turned
         cos, sin = np.cos(normal), np.sin(normal)
         along, across = loads.pivot_load
-        couple = moment + machine.arm.plane_offset * np.maximum(loads.normal_force, 0.0)
+        couple = moment + _beside(machine.arm.plane_offset, machine, loads)
         pressed, aside = along * cos + across * sin, across * cos - along * sin
         pin = SolidBar(card.E, card.nu)
         return cls(bush, pin, np.abs(pressed), couple, aside / bush.length)
@@ -246,6 +246,19 @@ class PivotPush(NamedTuple):
         """
         lines = bush_lines(self.bush, self.force, self.couple, places)
         return np.asarray(np.where(lines < 0.0, -1.0, 1.0) * np.hypot(lines, self.beside))
+
+
+def _beside(offset: float, machine: Machine, loads: Loads) -> Array:
+    """Moment (n,), N m, of contacts beside the middle of an arm at an offset, m, from its roller;
+    of two discs the second is their spacing less the offset from it, and the sum is of their sizes.
+    """
+    force, pair = np.maximum(loads.normal_force, 0.0), machine.cam.conjugate
+    if pair is None:
+        return offset * force
+    first, second = (
+        np.where(carries, force, loads.idle_force) for carries in (loads.wall > 0.0, loads.wall < 0)
+    )
+    return np.asarray(offset * first + abs(pair.spacing - offset) * second)
 
 
 def spring_surge(machine: Machine, lift: Array) -> Array | None:

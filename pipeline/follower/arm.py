@@ -85,7 +85,8 @@ class FollowerArm(Part):
     plane_offset: Annotated[float, In("mm", at_least=0, at_most=1000), Known("drawing", "0 mm")] = (
         0.0
     )
-    """distance of the middle of the arm from that of the roller along the cam axis"""
+    """distance of the middle of the arm from that of the roller along the cam axis; of conjugate
+    discs towards the second"""
     spring_distance: Annotated[
         float | None, In("mm", at_least=0, at_most=10_000), Known("drawing", "60 mm")
     ] = None

@@ -126,7 +126,8 @@ MODEL_LIMITS = (
         " arms are preloaded. Lift and contours are those without clearance; a landing heats the"
         " mechanism, not the place where it strikes, and the preload has no torque. The wear of"
         " clearance is that of one side, and both rollers load the life of one bearing. Of two"
-        " arms the strength of the first alone is judged, as if the inertia of both were its own."
+        " arms the strength of the first alone is judged, as if the inertia of both were its own;"
+        " the couples of both contacts on the pin of their pivot add up by their sizes."
     ),
     ModelLimit(
         "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference"

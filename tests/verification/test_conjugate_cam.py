@@ -26,6 +26,7 @@ from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persso
 from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.crank_speed import mechanism_torque
 from camwright.pipeline.cycle.crossover_history import flights
+from camwright.pipeline.cycle.part_loads import PivotPush
 from camwright.pipeline.cycle.pressed_discs import pressed_discs
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
@@ -335,6 +336,30 @@ def test_the_first_arm_is_bent_by_its_own_contact(name):
     assert bent == pytest.approx(wanted, rel=1e-9, abs=1e-9 * np.abs(wanted).max())
     assert np.abs(bent).max() > (10.0 if name == "pressed" else 1.0)
     assert (forces.across > 0.0).all() == (name == "pressed")
+
+
+@pytest.mark.parametrize("name", ["arm", "pressed"])
+@pytest.mark.parametrize("offset", [0.0, 0.015])
+def test_the_second_disc_bends_the_pin_of_the_pivot(name, offset):
+    """Couple of the contacts about the middle of the bush, by their places along the shaft; of both
+    at once the sum of sizes a + b, which with an angle f between them is |a + b|/cos(f/2) at most.
+    """
+    cycle, machine, track = running(name)
+    loads, spacing = cycle.loads, machine.cam.conjugate.spacing
+    moved = replace(machine, arm=replace(machine.arm, plane_offset=offset))
+    couple = PivotPush.of(moved, loads, np.zeros(loads.theta.size)).couple
+    sizes = [np.where(way * loads.wall > 0.0, loads.normal_force, loads.idle_force)
+             for way in (1.0, -1.0)]  # fmt: skip
+    ways = []
+    for contour in (cycle.contour, track.contour):
+        outward = contour.pitch.points(loads.theta) - contour.points(loads.theta)
+        ways.append(outward / np.hypot(*outward))
+    wanted = np.hypot(*((spacing - offset) * sizes[1] * ways[1] - offset * sizes[0] * ways[0]))
+    half = 0.5 * np.arccos(-np.sum(ways[0] * ways[1], axis=0))
+    both = name == "pressed" and offset > 0.0
+    assert (couple >= (1.0 - 1e-9) * wanted).all()
+    assert (couple <= (1.0 + 1e-9) * wanted / (np.cos(half) if both else 1.0)).all()
+    assert couple.max() > 0.5
 
 
 def test_a_vanishing_interference_is_a_pair_without_clearance():
