@@ -555,7 +555,11 @@ def _by_elements(demand: Demand, solution: Solution) -> Demand:
     """
     cycle, row = row_of(solution.cycles, demand.at or NOWHERE)
     if cycle.pivot is None:
-        return demand
+        pressed = cycle.contact.tier is Tier.CYCLE and cycle.end is None and demand.value
+        if not pressed:
+            return demand
+        words = "by slices: the contact is narrower than the grid of finite elements"
+        return replace(demand, note="; ".join(filter(None, (demand.note, words))))
     pivot = cycle.pivot
     notes = (
         f"{shown(float(pivot.foundation[row]), 'MPa', 3)} by a rigid pin in slices",

@@ -187,7 +187,17 @@ def test_edge_pressure_by_elements_has_the_foundation_and_two_meshes_beside_it()
     assert "finite elements along their axis" in check.method
     (barred,) = with_error_bars(solution, [check])
     assert barred.error_share == pytest.approx(0.15, abs=2e-3)
-    assert "finite elements" not in DECLARED["pivot_edge_pressure"](made.arm_solution()).note
+
+
+def test_a_contact_that_no_elements_resolve_is_told_to_be_by_slices():
+    """At the depth of a run; a preview has slices by its method."""
+    solution = made.arm_solution()
+    assert solution.cycles[0].contact.tier is Tier.CYCLE
+    check = DECLARED["pivot_edge_pressure"]
+    assert "by slices: the contact is narrower than the grid" in check(solution).note
+    contact = replace(solution.cycles[0].contact, tier=Tier.PREVIEW)
+    preview = made.arm_solution(cycles=(made.changed_cycle(solution.cycles[0], contact=contact),))
+    assert "finite elements" not in check(preview).note
 
 
 @pytest.mark.parametrize("name", ["equilibrium", "complementarity"])
