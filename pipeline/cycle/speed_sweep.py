@@ -16,6 +16,7 @@ from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.limits import OVERSPEED
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import (
     Carried,
     Rubbing,
@@ -324,7 +325,7 @@ class _Follower:
     linear spring of the rate at zero lift; inertia, viscous: per square and per first power of the
     cam speed; gain: normal force over axial force without friction; arm: cam torque over that
     force, m; with a pivot, whose friction is no share of that force, over the axial force. pulls:
-    on an arm, at rest and per square of the speed.
+    on an arm, at rest and per square of the speed; squeeze: of discs without clearance.
     """
 
     machine: Machine
@@ -342,6 +343,7 @@ class _Follower:
     second: Pressed | None
     direction: Array
     pulls: tuple[Pull, Pull, Pull] | None
+    squeeze: Squeezed | None
 
     @classmethod
     def of(cls, machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> _Follower:
@@ -393,6 +395,7 @@ class _Follower:
             pressed=Pressed.of(slide),
             direction=np.sign(loads.lift_slope),
             pulls=pulls,
+            squeeze=system.squeezed(pitch, theta),
         )
 
     def _pivoted(self, push: Array, speed: Array, surge: Array) -> Array:
@@ -412,7 +415,10 @@ class _Follower:
         along = still.along + speed**2 * thrown.along + surge * sprung.along
         pull = Pull(along, still.across + speed**2 * thrown.across + surge * sprung.across)
         if self.second is not None:
-            return pivot.between(push, (self.pressed, self.second), pull, self.direction)[0].axial
+            tracks, squeeze = (self.pressed, self.second), self.squeeze
+            if squeeze is not None:
+                return pivot.squeezed(push, tracks, squeeze, pull, self.direction)[0].axial
+            return pivot.between(push, tracks, pull, self.direction)[0].axial
         return pivot.balanced(push, self.pressed, pull, self.direction).axial
 
     def extremes(self, cam_speed: Array) -> dict[str, Array]:
@@ -432,7 +438,8 @@ class _Follower:
             torque *= self.arm
         else:  # a track for either sign
             gain, arm = self.pulled
-            normal = np.abs(push * np.where(push < 0.0, gain, self.gain))
+            first, second = (push, push) if self.squeeze is None else self.squeeze.forces(push)
+            normal = np.abs(np.where(push < 0.0, second * gain, first * self.gain))
             torque = push * np.where(push < 0.0, arm, self.arm)
         elastic = self.elastic(speed, moving)
         if self.machine.system.held:
