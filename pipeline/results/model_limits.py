@@ -113,9 +113,9 @@ MODEL_LIMITS = (
     ),
     ModelLimit(
         "The output of a rocker follows its second arm without lash; its friction and weight are"
-        " those of `rocker.force`. Its mass at the elastic follower, and in a flight, is that of"
-        " the ratio at the lift. The second arm is judged at its pivot on an arm alone, not on a"
-        " rocker that a stem moves."
+        " those of `rocker.force`. Its mass at the elastic follower of a load case, and in a"
+        " flight, is that of the ratio at the lift; over the speed range that at zero lift. The"
+        " second arm is judged at its pivot on an arm alone, not on a rocker that a stem moves."
     ),
     ModelLimit(
         "A face does not turn about its stem; its block is held by the stem, or over its whole back"
