@@ -67,6 +67,11 @@ def cam_torque(cam: LoadedCam) -> Array:
     return magnitude(cam.torque)
 
 
+def seat_torque(cam: LoadedCam) -> Array:
+    """Magnitude of the torque that the seat of a disc bears, N m."""
+    return magnitude(cam.seat_torque)
+
+
 def tooth_torque(cam: LoadedCam) -> Array:
     """Magnitude of the torque of the driving gear, with the drag of the camshaft, N m."""
     drag = cam.numbers.get("camshaft.drag")

@@ -33,7 +33,7 @@ from camwright.pipeline.checks.check import (
     Kept,
     check,
 )
-from camwright.pipeline.checks.demands import CAM_TORQUE, PerLoad, cam_torque, rating_over
+from camwright.pipeline.checks.demands import CAM_TORQUE, PerLoad, rating_over, seat_torque
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, row_of, worst_measure
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.cam_body import CamBody, ParallelKey
@@ -73,6 +73,7 @@ TINY = 1e-12
 _BORE = "cam.bore_radius", "cam.width"
 _RING = "cam.prime_radius", "roller.radius"
 _REVERSES = "cam.torque_reverses"
+PRESSED = "T_p: with which preloaded discs turn against one another then, else 0, "
 
 
 def _cam_of(numbers: Numbers) -> CamBody:
@@ -157,7 +158,7 @@ def _key_check(
             figures = (solution.machine.limits.source(KEY_REVERSAL), *figures)
         reversal = solution.machine.limits[KEY_REVERSAL] if reverses else 1.0
         yields = [card.core_yield for card in _cards(case.cam.key, mate)]
-        stated = {"f": reversal, "R_e": min(yields, default=np.nan)}
+        stated = {"f": reversal, "R_e": min(yields, default=np.nan)} | _pressed_at(demand, solution)
         judged = replace(demand, figures=figures, stated=stated)
         return judged if case.cam.key_flanks else replace(judged, value=None, at=None)
 
@@ -175,6 +176,7 @@ def _key_check(
         symbols={
             "K_A": "cam.key.application_factor",
             "T": "|cam_torque| [N m]",
+            "T_p": f"{STATED} [N m]",
             "d": "2 cam.bore_radius [mm]",
             "l_tr": "cam.key.bearing_length [mm]",
             "f": STATED,
@@ -196,7 +198,18 @@ def _key_check(
         remark=in_words,
         deviation=0.003,
         kept=Kept(group=CAM_TORQUE, unit="N m"),
-    )(cam_torque)
+    )(seat_torque)
+
+
+def _pressed_at(demand: Demand, solution: Solution) -> dict[str, float]:
+    """Torque of the preload on the seat of a disc by its symbol, N m, at the worst cam angle."""
+    if demand.at is None:
+        return {}
+    cycle, k = row_of(solution.cycles, demand.at)
+    seat, cam = (
+        float(magnitude(each[k])) for each in (cycle.loads.seat_torque, cycle.loads.cam_torque)
+    )
+    return {"T_p": seat - cam}
 
 
 def _cards(key: ParallelKey | None, mate: _Mate) -> list[Material]:
@@ -217,7 +230,9 @@ _DEPTH = {"t1": "cam.key_data.shaft_depth [mm]", "s": "cam.key_data.chamfer [mm]
 key_pressure = _key_check(
     CAM_TORQUE,
     "Key flank pressure on the cam",
-    "p = 2 K_A T/(d l_tr (h - t1 - s)) <= f S R_e; T: greatest cam torque, d: bore"
+    "p = 2 K_A (T + T_p)/(d l_tr (h - t1 - s)) <= f S R_e; T: greatest cam torque, "
+    + PRESSED
+    + "d: bore"
     " diameter, l_tr: bearing length, h, t1, s: height, shaft depth and chamfer of the key, "
     + ALLOWED,
     lambda stress: stress.hub,
@@ -228,7 +243,7 @@ key_pressure = _key_check(
 key_pressure_shaft = _key_check(
     "key_pressure_shaft",
     "Key flank pressure on the camshaft",
-    "p = 2 K_A T/(d l_tr (t1 - s)) <= f S R_e; as key_pressure, with the depth t1 of the"
+    "p = 2 K_A (T + T_p)/(d l_tr (t1 - s)) <= f S R_e; as key_pressure, with the depth t1 of the"
     " keyway in the shaft",
     lambda stress: stress.shaft,
     _shaft_beside,
@@ -238,7 +253,7 @@ key_pressure_shaft = _key_check(
 key_shear = _key_check(
     "key_shear",
     "Key shear stress",
-    "tau = 2 K_A T/(d b l_tr) <= f S R_e/sqrt(3); b: width of the key, R_e: yield strength"
+    "tau = 2 K_A (T + T_p)/(d b l_tr) <= f S R_e/sqrt(3); b: width of the key, R_e: yield strength"
     " of the key, else as key_pressure",
     lambda stress: stress.shear,
     lambda _: _Mate(None),
@@ -318,7 +333,8 @@ def _must_not_slip(numbers: Numbers) -> NDArray[np.bool_]:
 def _slip_in_words(demand: Demand, solution: Solution) -> Demand:
     """Demand with a note where the fit is a sliding one."""
     sliding = demand.value is not None and solution.numbers[_SLIP] == 0.0
-    return replace(demand, note="sliding fit" if sliding else "")
+    stated = {**demand.stated, **_pressed_at(demand, solution)}
+    return replace(demand, note="sliding fit" if sliding else "", stated=stated)
 
 
 cam_slip = check(
@@ -331,14 +347,15 @@ cam_slip = check(
     tier=Tier.SCREENING,
     part="camshaft",
     kept_as="cam torque at the slip of the cam's seat",
-    formula="T_slip/(K_A T) >= limits.cam_slip; T_slip: 2 pi mu p a^2 b of cam.fit, p: pressure at"
-    " its least interference, least radius and greatest speed, mu, a, b: friction, radius and width"
-    " of the seat, or the stated camshaft.slip_torque, 0 for a sliding fit, T: greatest cam torque,"
-    " K_A: application factor of the key, or 1 without one",
+    formula="T_slip/(K_A (T + T_p)) >= limits.cam_slip; T_slip: 2 pi mu p a^2 b of cam.fit, p:"
+    " pressure at its least interference, least radius and greatest speed, mu, a, b: friction,"
+    " radius and width of the seat, or the stated camshaft.slip_torque, 0 for a sliding fit, T:"
+    f" greatest cam torque, {PRESSED}K_A: application factor of the key, or 1 without one",
     symbols={
         "T_slip": "camshaft.slip_torque",
         "K_A": "cam.key.application_factor",
         "T": "|cam_torque| [N m]",
+        "T_p": f"{STATED} [N m]",
     },
     reason="where the torque reverses, a seat that slips within the clearance of its key"
     " frets, and fretting starts fatigue cracks",
@@ -355,7 +372,7 @@ cam_slip = check(
     remark=_slip_in_words,
     deviation=0.003,
     kept=Kept(group=CAM_TORQUE),
-)(cam_torque)
+)(seat_torque)
 
 
 def _wall_allowed(numbers: Numbers) -> Allowed:
@@ -459,7 +476,7 @@ def _loose_root(
     pulsating stress, Pa, as amplitude "a" and mean "m", and factors of its strength; wall, m.
     """
     cycle, k = row_of(solution.cycles, worst)
-    torque, force = abs(cycle.loads.cam_torque[k]), abs(cycle.loads.normal_force[k])
+    torque, force = abs(cycle.loads.seat_torque[k]), abs(cycle.loads.normal_force[k])
     counted = min(wall, float(root.thick))
     stress = root.by_torque * torque + root.by_force * force * (root.thick / counted)
     half = float(0.5 * np.ravel(stress)[0])
@@ -576,7 +593,7 @@ def keyway_root(cam: LoadedCam) -> Array:
     root = keyway_root_of(cam.numbers)
     wall = np.asarray(cam.least_radius - root.held_radius)
     counted = np.where(np.real(wall) < root.thick, wall, root.thick)
-    used: Array = root.used_by(magnitude(cam.torque), magnitude(cam.normal), counted)
+    used: Array = root.used_by(magnitude(cam.seat_torque), magnitude(cam.normal), counted)
     applicable = (np.real(wall) >= root.thin) & np.isfinite(used)
     return np.where(applicable, 1.0 / np.where(np.real(used) > TINY, used, TINY), np.nan)
 

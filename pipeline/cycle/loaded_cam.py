@@ -582,6 +582,16 @@ class LoadedCam:
         return self.axial * (self.slope + self.motion.sliding)
 
     @property
+    def seat_torque(self) -> Array:
+        """Torque that the seat of a disc bears, N m: that of the cam, or that of the preloaded disc
+        that bears more, which the other gives back.
+        """
+        case = self.numbers.case
+        if case is None or not self.pulls or case.cam.clearance > 0.0:
+            return self.torque
+        return np.asarray(self.wall * self.normal / self.motion.gain * self.slope)
+
+    @property
     def friction_work(self) -> Array:
         """Friction power of guides, pivot, roller bearing and face over the cam speed, N m."""
         guides = (self.axial - self.closing - self.inertia) * self.slope

@@ -311,7 +311,7 @@ def _key_pressure(machine: Machine, loads: Loads) -> Array | None:
     key, flanks = cam.key, cam.key_flanks
     if key is None or flanks is None:
         return None
-    return key_stress(key.application_factor * loads.cam_torque, 2.0 * cam.bore_radius, flanks).hub
+    return key_stress(key.application_factor * loads.seat_torque, 2.0 * cam.bore_radius, flanks).hub
 
 
 def shaft_of(turn: Turn, contour: Contour) -> ShaftLoads | None:

@@ -369,6 +369,17 @@ class Loads(Displayed):
         return np.asarray(self.closing_force + self.inertia_force + self.viscous_force)
 
     @property
+    def seat_torque(self) -> Array:
+        """Torque that the seat of a disc bears (n,), N m: that of the cam, or that of the preloaded
+        disc that bears more.
+        """
+        if not self.idle_force.any():
+            return self.cam_torque
+        along = self.normal_force * self.lever * np.cos(self.pressure_angle)
+        beyond = self.wall * along - self.axial_force
+        return np.asarray(self.cam_torque + beyond * self.lift_slope)
+
+    @property
     def frictionless_force(self) -> Array:
         """Axial force without guide friction, N; 0 where the follower leaves the cam."""
         required = self.required_force

@@ -667,3 +667,31 @@ def test_each_disc_loads_the_camshaft_at_its_own_place(name):
     judged = judged_sections(shaft, diameter, 0.0, 0.0, cam.conjugate.spacing)
     worst = max(np.hypot(*bending_moment(loads, shaft, one.position)).max() for one in judged)
     assert worst == pytest.approx(np.hypot(bend[0], bend[1]).max(), rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["stem", "arm", "pressed"])
+def test_the_seat_of_a_disc_bears_the_torque_of_its_own_contact(name):
+    """Seven times that of the cam with a preload; that of the cam without one.
+
+    Of the disc by the slope of its own lift, to 1e-9; the pressure of the key in its textbook form.
+    """
+    cycle, machine, _ = running(name)
+    seat = cycle.loads.seat_torque
+    discs = [each.torque for each in pressed_discs(cycle.contour, cycle.loads)]
+    most = np.where(cycle.loads.wall > 0.0, *discs)
+    np.testing.assert_allclose(seat, most, atol=1e-9 * np.abs(seat).max())
+    apart = np.abs(seat).max() / np.abs(cycle.loads.cam_torque).max()
+    assert apart == pytest.approx(6.9 if name == "pressed" else 1.0, rel=0.01)
+    key, (judged,) = (
+        machine.cam.key,
+        (one for one in trial(name).checks if one.id == "key_pressure"),
+    )
+    flanks = machine.cam.key_flanks
+    torque = max(np.abs(each.loads.seat_torque).max() for each in trial(name).cycles)
+    across = 2.0 * machine.cam.bore_radius * flanks.length * flanks.hub_height
+    pressure = 2.0 * key.application_factor * torque / across
+    assert judged.demand == pytest.approx(pressure, rel=1e-9)
+    turned = {each.load_case: each for each in trial(name).cycles}[judged.load_case].loads
+    at = np.argmin(np.abs(turned.theta - judged.cam_angle))
+    beyond = torque - np.abs(turned.cam_torque[at])
+    assert judged.stated["T_p"] == pytest.approx(beyond, abs=1e-9 * torque)
