@@ -765,11 +765,13 @@ def cam_unbalance(solution: Solution) -> Demand:
     angle = f"{np.degrees(manufactured.angle) % 360:.1f} deg"
     rotor_parts = "cam alone" if rotor == manufactured.mass else "cam, shaft and gear"
     unbalance = rotor_unbalance(manufactured, shaft)
+    # a cam that pulls has no counter-hole
+    hole = "" if solution.machine.cam.pulls else _hole(balanced)
     return Demand(
         unbalance / rotor * speed,
         solution.machine.limits[UNBALANCE],
         note=f"{shown(manufactured.product, 'g mm')} of the cam at {angle}{_set(shaft)};"
-        f" mass of {rotor_parts}, {shown(rotor, 'g')}{_hole(balanced)}",
+        f" mass of {rotor_parts}, {shown(rotor, 'g')}{hole}",
         stated={"U": unbalance, "m": rotor},
     )
 

@@ -612,6 +612,7 @@ def test_notes_name_the_tracks_and_no_energy_of_a_spring_that_is_not_there(name,
     assert any(words in notes["landing_speed"] for words in landings.split("|"))
     assert " W" in notes["friction_balance"]
     assert "stored energy" not in notes["friction_balance"]
+    assert "hole" not in notes["cam_unbalance"]  # refused in a cam that pulls
 
 
 # --- camshaft ---------------------------------------------------------------------------------
