@@ -304,7 +304,7 @@ def _steps(
         """Spin after a turn from one, rad/s; the turn is written."""
         before = float(rolling[-1])
         for k, (target, rolled, most, drag, way) in enumerate(rows):
-            if omega == before:
+            if omega == before and target * before >= 0.0:  # not where another wall turns it back
                 needed = rolled
             else:
                 needed = (inertia * (target - omega) / step + way * drag) / radius

@@ -159,3 +159,28 @@ def test_the_spin_of_a_heavy_roller_recurs(inertia: float) -> None:
     gained = (radius * rolling.force - np.sign(spin) * 0.02) * step / inertia
     np.testing.assert_allclose(np.diff(turning), gained[1:], rtol=0, atol=1e-6 * 300.0)
     assert abs(turning[0] - turning[-1] - gained[0]) < 1e-6 * 300.0
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_roller_between_two_walls_is_turned_back_by_friction_alone(seed: int) -> None:
+    """Its spin recurs after a turn, and changes by no more than friction and drag can turn it.
+
+    Within 2 %: while it rolls its torque is that of the acceleration at the end of a step of 1 deg.
+    """
+    draw = np.random.default_rng(seed)
+    theta = np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False)
+    pull = np.sin(draw.integers(1, 4) * theta + draw.uniform(0.0, 6.0))
+    wall = np.where(pull >= 0.0, 1.0, -1.0)
+    spin = wall * draw.uniform(50.0, 200.0) * (1.0 + 0.2 * np.cos(theta))
+    force, period = draw.uniform(5.0, 2000.0) * np.abs(pull), 0.2
+    inertia, radius = draw.uniform(1e-6, 1e-3), 0.02
+    drag = Drag(inertia, 0.1, torque=draw.uniform(0.0, 0.05))
+    rate = -0.2 * wall * np.abs(spin).mean() * np.sin(theta) * 2.0 * np.pi / period
+    found = rolling_contact(
+        force, spin, rate, np.full(360, 3.0), np.full(360, 1e-4), np.full(360, 0.01),
+        drag=drag, radius=radius, period=period,
+    )  # fmt: skip
+    turning = spin - found.slip / radius
+    change = np.abs(turning - np.roll(turning, 1)) * inertia * 360 / period
+    assert (change <= 1.02 * (drag.friction * force * radius + drag.torque)).all()
+    assert (np.abs(found.force) <= drag.friction * force * (1.0 + 1e-12)).all()
