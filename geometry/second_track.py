@@ -47,7 +47,7 @@ class SecondFollower(ABC):
         """The first roller or face as that fixed to this one, from its contour."""
 
     @abstractmethod
-    def moved(self, first: Motion, highest: Value) -> SecondMotion:
+    def motion(self, first: Motion, highest: Value) -> SecondMotion:
         """Motion of the second roller or face from that of the first, of one cam or many.
 
         Parameters
@@ -100,7 +100,7 @@ class OppositeRoller(SecondFollower):
         contour = RollerContour(self.path(first), self.radius)
         return SecondTrack(first, contour, _HALF_TURN, 1.0, self.distance)
 
-    def moved(self, first: Motion, highest: Value) -> SecondMotion:
+    def motion(self, first: Motion, highest: Value) -> SecondMotion:
         if not isinstance(first, RollerMotion):
             raise InputError("cam.conjugate.distance", "stated", "left out without a stem")
         height = self.distance - first.base_height - highest
@@ -159,13 +159,13 @@ class ConjugateArm(SecondFollower):
         contour = ArmContour(self.path(first), self.radius)
         return SecondTrack(first, contour, 0.0, float(first.arm.length / self.length), 0.0)
 
-    def moved(self, first: Motion, highest: Value) -> SecondMotion:
+    def motion(self, first: Motion, highest: Value) -> SecondMotion:
         if not isinstance(first, ArmMotion):
             raise InputError("cam.conjugate.arm_length", "stated", "left out without an arm")
         linkage, leverage = first.linkage, first.linkage.length / self.length
         start = self.angle - (first.start + highest / linkage.length)
-        arm = Arm(linkage.centre_distance, self.length, -linkage.sense)
-        motion = ArmMotion(_sunk(first.jet, highest, 1.0 / leverage), arm, start, self.radius)
+        jet = _sunk(first.jet, highest, 1.0 / leverage)
+        motion = ArmMotion(jet, self.linkage(linkage), start, self.radius)
         return SecondMotion(motion, np.asarray(motion.travel - first.travel), leverage, 0.0)
 
     def seen_from(self, first: Contour) -> ConjugateArm:
@@ -193,7 +193,7 @@ class OppositeFace(SecondFollower):
         breadth = 2.0 * first.base_radius + first.lift.highest.value
         return SecondTrack(first, contour, _HALF_TURN, 1.0, breadth)
 
-    def moved(self, first: Motion, highest: Value) -> SecondMotion:
+    def motion(self, first: Motion, highest: Value) -> SecondMotion:
         if not isinstance(first, FaceMotion):
             raise InputError("cam.yoke", "a table", "left out without a flat face on a stem")
         count = first.jet.lift.shape[-1]
@@ -283,11 +283,9 @@ class SecondTrack:
         friction : float    of a face
         """
         jet = self.contour.lift.jet(theta + self.turn, 2)
-        second, touch = self.contour.motion(jet, friction), self.touch(theta, friction)
-        if isinstance(first, FaceMotion):
-            base = self.contour.pitch.height_base
-            return CarriedFaceMotion.of(first, base, jet, pulls)
-        return CarriedMotion.of(first, second, pulls, touch)
+        motion = self.contour.motion(jet, friction)
+        second = SecondMotion(motion, self.turned(theta), self.leverage, self.reach)
+        return second.carried(first, pulls)
 
 
 def _from_first(touch: Touch, turned: Array, leverage: Value) -> Touch:

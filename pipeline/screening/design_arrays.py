@@ -276,7 +276,7 @@ class Designs:
         second = cam.second
         if cam.conjugate is not None:
             second = Numbers(self.columns, self.case).of_part(cam.conjugate).roller
-        return None if second is None else second.moved(motion, self.highest[:, None])
+        return None if second is None else second.motion(motion, self.highest[:, None])
 
     @KeptResult
     def second(self) -> SecondMotion | None:
