@@ -105,14 +105,17 @@ class SwungLink(NamedTuple):
         """
         return _from_contour(contour, lift or contour.lift, self.arm, self.low, self._at)
 
+    @property
+    def _fixed(self) -> tuple[Value, Value]:
+        """Components of the fixed end from the pivot, m; see `_from_pivot`."""
+        radius, angle = self.fixed_radius, self.fixed_angle
+        return radius * np.cos(angle), radius * np.sin(angle)
+
     def _through(self, towards: Value, aside: Value) -> tuple[Value, Value]:
         """Directions from the pivot, rad, to the circle of the end on the arm along the line from
         the fixed end through a point from the pivot, m; where it misses the circle, square to it.
         """
-        x, y = (
-            self.fixed_radius * np.cos(self.fixed_angle),
-            self.fixed_radius * np.sin(self.fixed_angle),
-        )
+        x, y = self._fixed
         along = np.arctan2(aside - y, towards - x)
         # of the chord: distance from the pivot, to the left of the line
         off = np.clip((np.cos(along) * y - np.sin(along) * x) / self.radius, -1.0, 1.0)
@@ -127,8 +130,7 @@ class SwungLink(NamedTuple):
 
     def _at(self, angle: Value, towards: Value, aside: Value) -> Value:
         """Distance, m, of a point from the bar at an arm angle, rad; see `SwungBar`."""
-        turn, out = angle + self.angle, self.fixed_angle
-        x, y = self.fixed_radius * np.cos(out), self.fixed_radius * np.sin(out)
+        turn, (x, y) = angle + self.angle, self._fixed
         across, up = self.radius * np.cos(turn) - x, self.radius * np.sin(turn) - y
         square = across**2 + up**2
         share = np.clip(((towards - x) * across + (aside - y) * up) / square, 0.0, 1.0)
