@@ -1,4 +1,4 @@
-"""Deviations of a follower between two tracks from its drawing, and the clearance that they move.
+"""Deviations of a follower between two tracks from its drawing; change of the clearance by them.
 
 The clearance is square to the second track, or to the outer wall of a groove, while the first
 carries.
@@ -71,8 +71,8 @@ class TrackDeviation:
         rise = track.contour.lift.derivatives(theta + track.turn, 1)[1]
         travel = first.travel(theta)
         away = _from_the_axis(near, travel) * ratio + _from_the_axis(other, travel)
-        moved = self.apart - self.turn * rise
-        return np.asarray(moved * along[1] + self.centre * away - self._filled * (1.0 + ratio))
+        displaced = self.apart - self.turn * rise
+        return np.asarray(displaced * along[1] + self.centre * away - self._filled * (1.0 + ratio))
 
 
 def _from_the_axis(touch: Touch, travel: Array) -> Array:

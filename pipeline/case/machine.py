@@ -97,8 +97,8 @@ _MOST_REBOUND = 0.999  # of a follower without damping, which else never came to
 
 @dataclass(frozen=True)
 class Corner:
-    """Tolerance corner: factors on nominal values; phase, rad of crank; profile error, m; what
-    moves the clearance of two tracks, see `TrackDeviation`.
+    """Tolerance corner: factors on nominal values; phase, rad of crank; profile error, m;
+    deviations that change the clearance between two tracks, see `TrackDeviation`.
     """
 
     name: str
