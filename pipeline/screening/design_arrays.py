@@ -283,14 +283,16 @@ class Designs:
         """That at the cam angles of the loads."""
         return self.second_of(self.motion)
 
+    def both_tracks(self, first: Motion) -> tuple[Motion, Motion]:
+        """Motion (m, n) on each track of cams that pull, by that of the first roller or face."""
+        one = np.ones(first.jet.lift.shape)
+        return self.carried(first, one), self.carried(first, -one)
+
     @KeptResult
     def tracks(self) -> tuple[Motion, ...]:
         """Motion of the unloaded cams at the samples of the lift on each of their tracks."""
         first = self.whole.motion
-        if not self.case.cam.pulls:
-            return (first,)
-        one = np.ones(first.jet.lift.shape)
-        return tuple(self.carried(first, wall) for wall in (one, -one))
+        return self.both_tracks(first) if self.case.cam.pulls else (first,)
 
     @KeptResult
     def least_factor(self) -> Array:
@@ -521,6 +523,11 @@ class Designs:
         """Compliance of each roller with its arm (m, 1), m/N; see `DiscPreload`."""
         each = [machine(case, case.load_cases[0]).axial_stiffness for case in self.cases]
         return 1.0 / np.array(each)[:, None]
+
+    @KeptResult
+    def squeeze(self) -> Squeezed | None:
+        """Preload of both discs (m, n) with their interference; None without one."""
+        return self.squeezed()
 
     def squeezed(self, narrower: Value = 0.0) -> Squeezed | None:
         """Preload of both discs (m, n) with an interference larger by a length (m, 1), m; None

@@ -74,7 +74,9 @@ class Block(DesignValues, Protocol):
     def carried(self, motion: Motion, wall: Array) -> Motion: ...
     @property
     def second(self) -> SecondMotion | None: ...
-    def squeezed(self, narrower: Value = 0.0) -> Squeezed | None: ...
+    @property
+    def squeeze(self) -> Squeezed | None: ...
+    def both_tracks(self, first: Motion) -> tuple[Motion, Motion]: ...
     def supports_of(self, motion: Motion, reach: Value) -> SupportOfMany: ...
     @property
     def least_radius(self) -> Array: ...
@@ -120,10 +122,21 @@ class ScreenedCam(LoadedCam):
         return self.block.supports_of(self.motion, self.reach)
 
     @cached_property
-    def wall(self) -> Array:
+    def _between(self) -> tuple[PivotBalance, Array] | None:
+        """Equilibrium of arms between two tracks, and the track that carries (m, n); None of stems
+        and of cams that do not pull.
+        """
         if self.pivot is None or not self.pulls:
-            return super().wall
-        return self._swung(self.pivot, self.required, self._pull(self.pivot))[1]
+            return None
+        return self._swung(self.pivot, self.required, self._pull(self.pivot))
+
+    @cached_property
+    def wall(self) -> Array:
+        return super().wall if self._between is None else self._between[1]
+
+    @cached_property
+    def pivoted(self) -> PivotBalance | None:
+        return super().pivoted if self._between is None else self._between[0]
 
     @cached_property
     def relative_radius(self) -> Array:
@@ -169,11 +182,9 @@ class ScreenedCam(LoadedCam):
 
     def _swung(self, pivot: ArmPivot, required: Array, pull: Pull) -> tuple[PivotBalance, Array]:
         """Equilibrium of arms between two tracks, and the track that carries (m, n)."""
-        first = self.block.motion
-        one = np.ones(first.jet.lift.shape)
-        push, pulled = (Pressed.of(self.block.carried(first, wall)) for wall in (one, -one))
+        push, pulled = (Pressed.of(each) for each in self.block.both_tracks(self.block.motion))
         pressed, direction = (push, pulled), np.sign(self.slope)
-        squeeze = self.block.squeezed()
+        squeeze = self.block.squeeze
         if squeeze is None:
             return pivot.between(required, pressed, pull, direction)
         return pivot.squeezed(required, pressed, squeeze, pull, direction)
@@ -182,13 +193,13 @@ class ScreenedCam(LoadedCam):
     def on_first(self) -> tuple[Motion, Array]:
         if self.block.second is None:
             return super().on_first
-        squeeze, axial = self.block.squeezed(), self.axial
+        squeeze, axial = self.block.squeeze, self.axial
         alone = np.where(self.wall > 0.0, axial, 0.0)
         return self.block.motion, alone if squeeze is None else squeeze.forces(axial)[0]
 
     @cached_property
     def normal(self) -> Array:
-        squeeze = self.block.squeezed() if self.pulls else None
+        squeeze = self.block.squeeze if self.pulls else None
         if squeeze is None:
             return super().normal
         first, second = squeeze.forces(self.axial)
@@ -196,7 +207,7 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def surged(self) -> Array:
-        return self.normal if self.pulls and self.block.squeezed() is not None else super().surged
+        return self.normal if self.pulls and self.block.squeeze is not None else super().surged
 
     @cached_property
     def rubbing_share(self) -> OfGuides:

@@ -93,7 +93,7 @@ def _by_measure(declared: Declaration, measure: Measure, how: Measured) -> Scree
 
 
 _BOUNDED: Mapping[Bounded, Callable[[Designs], bool]] = {
-    "": lambda _: False,
+    "": never,
     "crown": lambda designs: designs.machine.is_crowned and has_many_shapes(designs),
     "line": has_many_shapes,
     "surge": lambda designs: designs.case.spring.design is not None,
@@ -408,19 +408,26 @@ def _landing_pressure(designs: Designs) -> Judged | None:
     """Greatest contact pressure at a landing and the least endurance pressure over its safety (m,),
     Pa; None where no design lands.
     """
-    how = contact_strength.contact_pressure.measured
-    if how is None or not any(designs.flights):
+    if not any(designs.flights):
         return None
-    demand, limit = _worst_landing(designs, lambda one: one.pressure), how.allowed(designs.numbers)
+    return _within_endurance(_worst_landing(designs, lambda one: one.pressure), designs)
+
+
+def _within_endurance(pressure: Array, designs: Designs) -> Judged | None:
+    """Contact pressure (m,), Pa, and its limit, that of the check `contact_pressure`."""
+    how = contact_strength.contact_pressure.measured
+    if how is None:
+        return None
+    limit = how.allowed(designs.numbers)
     allowed = _of_each(np.nan if limit.value is None else limit.value, designs)
-    return demand, np.where(demand > allowed, allowed, np.nan) if limit.if_exceeded else allowed
+    return pressure, np.where(pressure > allowed, allowed, np.nan) if limit.if_exceeded else allowed
 
 
 def _preload_least(designs: Designs) -> Judged | None:
     """Least force on either disc over the preload, with the narrowest interference, and its limit
     (m,); None without an interference.
     """
-    squeeze = designs.squeezed()
+    squeeze = designs.squeeze
     if squeeze is None:
         return None
     interference = designs.value("cam.conjugate.interference")
@@ -435,21 +442,16 @@ def _preload_pressure(designs: Designs) -> Judged | None:
     None without an interference.
     """
     squeeze = designs.squeezed(designs.value("cam.profile_tolerance"))
-    how = contact_strength.contact_pressure.measured
-    if squeeze is None or how is None:
+    if squeeze is None:
         return None
-    first = designs.motion
-    one = np.ones(first.jet.lift.shape)
-    tracks = [designs.carried(first, wall) for wall in (one, -one)]
+    tracks = designs.both_tracks(designs.motion)
     numbers, every = designs.numbers, []
     for cam in designs.cams:
         for force, track in zip(squeeze.forces(cam.axial), tracks, strict=True):
             load = force * track.gain / numbers["contact.width"]
             curved = 1.0 / designs.relative_radius_of(track)
             every.append(peak_pressure_square(load, curved, numbers["contact.modulus"]))
-    demand, limit = np.sqrt(np.max(every, axis=(0, 2))), how.allowed(numbers)
-    allowed = _of_each(np.nan if limit.value is None else limit.value, designs)
-    return demand, np.where(demand > allowed, allowed, np.nan) if limit.if_exceeded else allowed
+    return _within_endurance(np.sqrt(np.max(every, axis=(0, 2))), designs)
 
 
 def _yoke_breadth(designs: Designs) -> Judged | None:
