@@ -5,11 +5,12 @@ face lowered onto them, moments about pivot and shaft, and the translating face 
 """
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from itertools import islice
 
 import numpy as np
 import pytest
+from fourth_order import assert_complex_steps, fourth_order
 
 from camwright.geometry.arm_face import (
     ArmFaceContour,
@@ -24,7 +25,7 @@ from camwright.geometry.arrays import FULL_TURN, rotation, uniform_turn
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
-from camwright.geometry.lift import Jet, Lift
+from camwright.geometry.lift import Lift
 from camwright.geometry.measured_contour import inspected, real_contour
 from camwright.pipeline.follower.flat_face_motion import face_motion
 from camwright.pipeline.follower.follower_forces import (
@@ -225,21 +226,8 @@ def circle(a, b, c):
 @pytest.mark.parametrize("kind", KINDS)
 def test_complex_steps_are_the_differences(kind):
     """Differences of fourth order in the step."""
-    h = 1e-3
     for cam in faces(kind)[::3]:
-        jet, size = cam.lift.jet(THETA), cam.lift.stroke
-
-        def at(step, jet=jet, cam=cam, size=size):
-            return rates(cam, Jet(*(each + step * size * k for k, each in enumerate(jet, 1))))
-
-        exact, near = at(1e-30j), [at(k * h) for k in (-2.0, -1.0, 1.0, 2.0)]
-        for name, value in exact.items():
-            a, b, c, d = (each[name] for each in near)
-            difference = (a - 8.0 * b + 8.0 * c - d) / (12.0 * h)
-            scale = np.abs(value.real).max() + np.abs(difference).max()
-            np.testing.assert_allclose(
-                np.imag(value) / 1e-30, difference, rtol=0, atol=1e-8 * scale, err_msg=name
-            )
+        assert_complex_steps(partial(rates, cam), cam.lift.jet(THETA), cam.lift.stroke)
 
 
 def rates(cam, jet):
@@ -354,15 +342,14 @@ def turned(a):
 
 @BOTH
 def test_cam_and_spring_exchange_their_energy(kind, sense):
-    cam, theta, step = plain(kind, sense), uniform_turn(720), 1e-3
+    cam, theta = plain(kind, sense), uniform_turn(720)
     loads = follower_loads(cam.pitch, system(0.0, mass=0.0), 0.0, theta)
 
-    def energy(at):
-        lift = cam.lift(at)
+    def energy(by):
+        lift = cam.lift(theta + by)
         return 150.0 * lift + 10e3 * lift**2
 
-    a, b, c, d = (energy(theta + k * step) for k in (-2.0, -1.0, 1.0, 2.0))
-    rate = (a - 8.0 * b + 8.0 * c - d) / (12.0 * step)
+    rate = fourth_order(energy, 1e-3)
     scale = np.abs(rate).max()
     np.testing.assert_allclose(loads.cam_torque, rate, rtol=0, atol=1e-9 * scale)
 

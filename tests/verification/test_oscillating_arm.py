@@ -4,11 +4,12 @@ The references take nothing from the formulas of an arm: a circular disc, points
 arm lowered onto them, and the translating follower that a long arm is.
 """
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
 from cam_parts import mesh_area
+from fourth_order import assert_complex_steps, fourth_order
 
 from camwright.geometry.arc_polyline import arc_polyline
 from camwright.geometry.arm_path import Arm, ArmContour, ArmMotion, ArmPath, disc_lift
@@ -255,21 +256,8 @@ def test_the_contour_of_points_alone_has_the_curvature():
 
 def test_complex_steps_are_the_differences():
     """Differences of fourth order in the step."""
-    h = 1e-3
     for cam in arms()[::15]:
-        jet, size = cam.lift.jet(THETA), cam.lift.stroke
-
-        def at(step, jet=jet, cam=cam, size=size):
-            return rates(cam, Jet(*(each + step * size * k for k, each in enumerate(jet, 1))))
-
-        exact, near = at(1e-30j), [at(k * h) for k in (-2.0, -1.0, 1.0, 2.0)]
-        for name, value in exact.items():
-            a, b, c, d = (each[name] for each in near)
-            difference = (a - 8.0 * b + 8.0 * c - d) / (12.0 * h)
-            scale = np.abs(value.real).max() + np.abs(difference).max()
-            np.testing.assert_allclose(
-                np.imag(value) / 1e-30, difference, rtol=0, atol=1e-8 * scale, err_msg=name
-            )
+        assert_complex_steps(partial(rates, cam), cam.lift.jet(THETA), cam.lift.stroke)
 
 
 def rates(cam, jet):
@@ -320,10 +308,12 @@ def test_cam_and_spring_exchange_their_energy(sense):
     loads = follower_loads(cam.pitch, system(), 0.0, theta)
     energy = 150.0 * loads.lift + 10e3 * loads.lift**2
     assert turn_integral(theta, loads.cam_torque) == pytest.approx(0.0, abs=1e-9 * energy.max())
-    step = 1e-3
-    lifts = [cam.lift(theta + k * step) for k in (-2.0, -1.0, 1.0, 2.0)]
-    a, b, c, d = (150.0 * lift + 10e3 * lift**2 for lift in lifts)
-    rate = (a - 8.0 * b + 8.0 * c - d) / (12.0 * step)
+
+    def stored(by):
+        lift = cam.lift(theta + by)
+        return 150.0 * lift + 10e3 * lift**2
+
+    rate = fourth_order(stored, 1e-3)
     np.testing.assert_allclose(loads.cam_torque, rate, rtol=0, atol=1e-9 * np.abs(rate).max())
 
 
