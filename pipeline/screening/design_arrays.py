@@ -184,7 +184,7 @@ class Designs:
             dead_load = pivot.applied(machine.external.mean, pivot.direction(0.0))
         rate, preload = self.value("spring.rate"), self.value("spring.preload") + dead_load
         if self.case.cam.pulls and not (preload > 0.0).all():
-            return self._turned(rate, preload)
+            return self._lift_of_pulling_springs(rate, preload)
         if source.energy is not None:
             energy = source.energy[None, :]
         elif source.torque is not None:
@@ -198,7 +198,7 @@ class Designs:
         """Torque on the cam over the part of the crank torque that it is to balance (m, 1)."""
         return self.case.mechanism.gear_ratio * self.value("mechanism.compensation")
 
-    def _turned(self, rate: Array, preload: Array) -> Array:
+    def _lift_of_pulling_springs(self, rate: Array, preload: Array) -> Array:
         """Lift (m, N) of designs of which a spring may pull, see `signed_deflection`; (m, 1)."""
         if self.source.torque is None:
             raise InputError("smoothing.kind", "constrained", "a filter with a spring that pulls")

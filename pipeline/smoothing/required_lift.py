@@ -61,23 +61,15 @@ def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
     """
     target = case.mechanism.gear_ratio * required_torque(case, torque, smoother)
     _require_ripple(torque, target, smoother)
-    closing = closing_preload(case)
+    spring, closing = case.spring, closing_preload(case)
 
     def deflection(energy: ArrayLike) -> Array:
-        return turned_lift(case, np.asarray(energy), closing)
+        stored = np.asarray(energy)
+        if closing > 0.0:
+            return stored_lift(stored, spring.rate, closing, spring.shape)
+        return signed_deflection(stored, spring.rate, closing)  # a cam that pulls
 
     return lift_of_spring(uniform_turn(target.size), target, deflection)
-
-
-def turned_lift(case: Case, energy: Array, closing: float) -> Array:
-    """Lift (n,), m, at which the spring of a case has stored an energy (n,) over the turn, J.
-
-    closing : float   force at zero lift, N, <= 0 under a cam that pulls alone
-    """
-    spring = case.spring
-    if closing > 0.0:
-        return stored_lift(energy, spring.rate, closing, spring.shape)
-    return signed_deflection(energy, spring.rate, closing)
 
 
 def _require_ripple(torque: Torque, target: Array, smoother: Smoother) -> None:
