@@ -98,6 +98,7 @@ def pulling_at(turn: SheetTurn, angle: Array) -> tuple[Array, Array] | None:
     def at(name: str) -> Array:
         return np.interp(angle, table["cam_angle_deg"], table[name], period=360.0)
 
+    # of the drawn cam, which is turned by `cam_turn`, a right angle less the cam angle
     cos, sin = np.sin(np.radians(angle)), np.cos(np.radians(angle))
     pairs = (tuple(at(f"second_{name}") for name in names)
              for names in (("contour_x_mm", "contour_y_mm"), ("normal_x", "normal_y")))  # fmt: skip
@@ -117,14 +118,14 @@ def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
     guides = _guides(turn, stem, lowest + stroke)
     seat = turn.length("spring", "seat_thickness") or SEAT_MOST * stem
     spring = _spring(turn, stem, (lowest, stroke), guides, seat)
-    end = _stem_end(turn, stem, lowest, guides, spring)
+    end, second = _stem_end(turn, stem, lowest, guides, spring), _second(turn, lowest, stroke)
     roller = turn.length("roller", "radius") if turn.rolls else None
     return DrawnMechanism(
         contour, turn.length("cam", "bore_radius"), turn.keyway, _drilled(turn), axis, lowest,
         stroke, roller, _pin(turn, roller or 0.0), _face(turn) if roller is None else None, stem,
         end, guides, spring, seat,
-        _sizes(turn, (axis, lowest, stroke, stem, end - lowest), guides, spring, seat),
-        _counterweight(turn), _arm(turn), _groove(turn), _second(turn, lowest, stroke),
+        _sizes(turn, (axis, lowest, stroke, stem, end - lowest), guides, spring, seat, second),
+        _counterweight(turn), _arm(turn), _groove(turn), second,
     )  # fmt: skip
 
 
@@ -145,10 +146,10 @@ def _second(turn: SheetTurn, lowest: float, stroke: float) -> DrawnSecond | None
     def of(key: str, unit: str = "mm") -> float | None:
         return turn.length("cam", "conjugate", key, unit=unit)
 
-    spacing, distance, arm, angle = of("spacing"), of("distance"), of("arm_length"), _arm(turn)
-    between = of("arm_angle", "rad")
-    if angle is not None and arm is not None and between is not None:
-        centre = rotation(angle.sense * between) @ np.array([0.0, -arm])
+    spacing, distance, length = of("spacing"), of("distance"), of("arm_length")
+    arm, between = _arm(turn), of("arm_angle", "rad")
+    if arm is not None and length is not None and between is not None:
+        centre = rotation(arm.sense * between) @ np.array([0.0, -length])
     elif distance is not None:
         centre = np.array([0.0, -distance])
     else:
@@ -321,6 +322,7 @@ def _density(turn: SheetTurn) -> float:
 def _sizes(
     turn: SheetTurn, stem: tuple[float, float, float, float, float],
     guides: tuple[DrawnBush, DrawnBush], spring: DrawnSpring, seat: float,
+    second: DrawnSecond | None,
 ) -> MechanismSizes:  # fmt: skip
     """Sizes of all parts of the mechanism, mm; heights of guides and spring are over roller centre
     or face at maximum lift.
@@ -333,6 +335,7 @@ def _sizes(
     guides : tuple         guides A and B
     spring : DrawnSpring
     seat : float           thickness of the moving seat of the spring, mm
+    second : DrawnSecond   second roller or face; None: none
     """
     axis, lowest, lift, diameter, end = stem
     highest, cheeks = lowest + lift, turn.length("roller", "fork", "cheek_height") or 0.0
@@ -361,7 +364,7 @@ def _sizes(
     radius = turn.length("cam", "groove", "outer_radius") or float(edge.max())
     width = turn.length("cam", "width") or 0.0
     beside, below = [], 0.0
-    if (second := _second(turn, lowest, lift)) is not None:
+    if second is not None:
         reach = second.radius or _face(turn)[1]
         half, below = max(half, second.radius or 0.0), reach - float(second.centre[1])
         if second.disc is not None:

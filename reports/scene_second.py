@@ -24,10 +24,7 @@ from camwright.reports.scene_solids import (
 )
 
 _DISC_GREY, _ROLLER_GREY, _ARM_GREY = "#c3cbd4", "#e3e8ed", "#8b95a1"
-_PLATE_AT, _PLATE_THICK = (
-    0.6,
-    0.25,
-)  # plate from the middle, its thickness over the cam width
+_PLATE_AT, _PLATE_THICK = 0.6, 0.25  # of the cam width: plate from the middle, its thickness
 _PIN_END = 0.55  # half of a pin within its roller
 
 
