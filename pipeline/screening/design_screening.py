@@ -77,11 +77,11 @@ def screen_designs(
     solved as arrays: rate, preload, travel and winding of the spring, prime and roller radius,
     offset, widths, bore, bearing ratings, sizes, friction and PV limit of a flat face, follower
     mass, overhang and damping, spacing and friction of the guides, dimensions of an arm, of its
-    pivot and the link of its spring, inertia, share of compensation, width of a smoother and every
-    limit, dimensions of a groove, of a second roller and its place, clearance and interference.
-    Others are grouped by their values, with one case each. The rate is `spring.rate`, not that of
-    the winding: a check compares them. The lift of a constrained synthesis is that of the case:
-    every design keeps its stored energy.
+    pivot and the link of its spring, of a groove, of a second roller with its place, clearance and
+    interference, inertia, share of compensation, width of a smoother and every limit. Others
+    are grouped by their values, with one case each. The rate is `spring.rate`, not that of the
+    winding: a check compares them. The lift of a constrained synthesis is that of the case: every
+    design keeps its stored energy.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def exclusions(
     tried : sequence      choices with their judgements by the synthesis alone
     refused : sequence    choices with their judgements in full; none is on the front
     pruned : sequence     parts excluded without solution
-    conflict : callable   choice, None of the case as it is -> record of its infeasibility
+    conflict : callable   choice, None of the unchanged case -> record of its infeasibility
     """
     whole: dict[Choice, DraftJudgement | PreviewJudgement | RefusedJudgement] = dict(refused)
     reasons = [_reason(whole.get(choice, record)) for choice, record in tried]

@@ -92,7 +92,7 @@ class RedesignTask:
 
     def conflict(self, choice: Choice | None) -> ConflictJudgement | RefusedJudgement:
         """Limits in conflict in the case of a choice of parts, and the relaxations that make it
-        feasible; `choice` None: of the case as it is.
+        feasible; `choice` None: of the unchanged case.
         """
         judge = self.judge()
 
@@ -138,7 +138,7 @@ def redesign(
         with pool(workers_for(jobs, _BUSY)) as workers:
             progress.stage("search the catalogue")
             tried = _searched(search, parts, workers, progress)
-            given, judged = _fronts_judged(search, tried, other, workers, progress)
+            unchanged, judged = _fronts_judged(search, tried, other, workers, progress)
             kept, refused = _split(judged, other)
             excluded = None
             if not kept:
@@ -156,7 +156,7 @@ def redesign(
             "input_sha256": case.sha256,
             "version": search.version,
             "against": other,
-            "given": given,
+            "given": unchanged,
             "points": _written(search, kept),
             "refused": [
                 {**_named(choice), "why": _why(record, verdict)} for choice, record in refused
@@ -257,16 +257,16 @@ def _fronts_judged(
     workers: ProcessPoolExecutor,
     progress: Progress,
 ) -> tuple[PreviewJudgement | RefusedJudgement, list[Judged]]:
-    """Judgements in full of the case as it is and of the front by the synthesis alone; where all
+    """Judgements in full of the unchanged case and of the front by the synthesis alone; where all
     its points fail, of the fronts behind it, too.
     """
-    given, judged = _judged_whole(search, _chosen(tried, against), workers, progress)
+    unchanged, judged = _judged_whole(search, _chosen(tried, against), workers, progress)
     for _ in range(_FURTHER_FRONTS):
         chosen = _chosen(_beyond(tried, judged), against)
         if not chosen or _split(judged, against)[0]:
             break
         judged += _judged_whole(search, chosen, workers, progress)[1]
-    return given, judged
+    return unchanged, judged
 
 
 def _beyond(tried: Sequence[Tried], judged: Sequence[Judged]) -> list[Tried]:
@@ -282,8 +282,8 @@ def _beyond(tried: Sequence[Tried], judged: Sequence[Judged]) -> list[Tried]:
 def _judged_whole(
     search: RedesignTask, chosen: Sequence[Choice], workers: ProcessPoolExecutor, progress: Progress
 ) -> tuple[PreviewJudgement | RefusedJudgement, list[Judged]]:
-    """Judgement of the case as it is, and the chosen parts with theirs, by synthesis and preview at
-    the worst tolerance corners.
+    """Judgement of the unchanged case, and the chosen parts with theirs, by synthesis and preview
+    at the worst tolerance corners.
     """
     progress.stage(f"solve {len(chosen)} points of the front")
     waiting = [workers.submit(search.whole, choice) for choice in (None, *chosen)]
