@@ -18,12 +18,11 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.conforming_line import concave_line
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
-from camwright.pipeline.follower.crossover import INNER, OUTER, Landing, Walls
+from camwright.pipeline.follower.crossover import INNER, OUTER, SAME_ANGLE, Landing, Walls
 from camwright.pipeline.follower.follower_forces import Carried, RequiredForce
 
 FINE = 14400
 """Angles of a turn at which the force of a flight is evaluated."""
-_SAME = 1e-9  # rad, between a landing and the take-off of its rebound
 
 
 class WallImpact(NamedTuple):
@@ -173,7 +172,7 @@ class _Integral:
 
     def between(self, begin: float, end: float) -> float:
         """From one cam angle, rad, on to another; 0 between the same angle."""
-        if abs(end - begin) < _SAME or FULL_TURN - abs(end - begin) < _SAME:
+        if abs(end - begin) < SAME_ANGLE or FULL_TURN - abs(end - begin) < SAME_ANGLE:
             return 0.0
         turned = self._whole(FULL_TURN) if end < begin else 0.0
         return self._rate * float(turned + self._whole(end) - self._whole(begin))
@@ -221,29 +220,26 @@ def landed(machine: Machine, contour: Contour, flown: Flights | None) -> tuple[W
     spin with which it last left the disc. A mass m that lands at v under a force F on a
     stiffness k is stopped by F + sqrt(F^2 + k m v^2); contact and walls are taken as rigid.
     """
-    found = () if flown is None else flown.landings
-    ended = [k for k, one in enumerate(found) if np.isfinite(one.landing)]
-    force, pressure = np.full((2, len(found)), np.nan)
+    landings, second = () if flown is None else flown.landings, machine.cam.second
+    ended = [k for k, one in enumerate(landings) if np.isfinite(one.landing)]
+    force, pressure, slip = np.full((3, len(landings)), np.nan)
     if ended:
-        force[ended], pressure[ended] = _struck(machine, contour, [found[k] for k in ended])
-    slips = [
-        machine.cam_speed * _slip(contour, machine.cam.second, found, k)
-        if one.crosses
-        else one.landing * 0.0  # NaN where the flight does not end
-        for k, one in enumerate(found)
-    ]
-    every = zip(found, force.tolist(), pressure.tolist(), slips, strict=True)
+        force[ended], pressure[ended] = _struck(machine, contour, [landings[k] for k in ended])
+    for k in ended:
+        crosses = landings[k].crosses
+        slip[k] = machine.cam_speed * _slip(contour, second, landings, k) if crosses else 0.0
+    every = zip(landings, force.tolist(), pressure.tolist(), slip.tolist(), strict=True)
     return tuple(
-        WallImpact(one, pushed, pressed, slip, one.loss(machine.mass))
-        for one, pushed, pressed, slip in every
+        WallImpact(one, pushed, pressed, slid, one.loss(machine.mass))
+        for one, pushed, pressed, slid in every
     )
 
 
-def _struck(machine: Machine, contour: Contour, found: Sequence[Landing]) -> tuple[Array, Array]:
+def _struck(machine: Machine, contour: Contour, landings: Sequence[Landing]) -> tuple[Array, Array]:
     """Greatest normal force (n,), N, and pressure, Pa, of landings (n,), each on its track."""
-    theta = np.array([one.landing for one in found]) % FULL_TURN
-    wall, speed = np.array([one.wall for one in found]), np.array([one.speed for one in found])
-    pressed = np.maximum(np.array([one.force for one in found]), 0.0)
+    theta = np.array([one.landing for one in landings]) % FULL_TURN
+    wall, speed = np.array([(one.wall, one.speed) for one in landings]).T
+    pressed = np.maximum(np.array([one.force for one in landings]), 0.0)
     axial = pressed + np.sqrt(pressed**2 + machine.axial_stiffness * machine.mass * speed**2)
     second = machine.cam.second
     there = Carried.at(contour.pitch, machine.system, theta, wall)

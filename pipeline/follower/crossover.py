@@ -14,6 +14,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import shown
 
 INNER, OUTER = 1.0, -1.0
+SAME_ANGLE = 1e-9  # rad, between a landing and the take-off of its rebound
 _RIPPLE_SHARE = 1e-2
 """Share of the greatest force below which a force of the other sign is none: the ripple of the
 spline of a lift where its jerk steps, beside a dwell."""
@@ -21,7 +22,6 @@ _LEAVING_ROUND_OFF = 1e-9  # of the clearance, of a roller that leaves a wall
 _BENT_MOST = 1e-4  # of the clearance, greatest part of the bend of a wall within a step
 _LANDING_BISECTIONS = 60  # of the landing within a step
 _LANDINGS_MAX = 1000  # a turn
-_SAME = 1e-9  # rad, between a landing and the take-off of its rebound
 _REST_SHARE = 1e-3  # of the clearance: height of a rebound that counts as none
 
 
@@ -187,7 +187,7 @@ class Walls(NamedTuple):
         if not flown or not flown[-1].rebound > 0.0:
             return flown
         rests = [
-            ((after.take_off - one.landing + _SAME) % FULL_TURN, one)
+            ((after.take_off - one.landing + SAME_ANGLE) % FULL_TURN, one)
             for one, after in pairwise(flown)
             if one.rebound == 0.0
         ]
