@@ -115,7 +115,7 @@ def second_bar_of(numbers: Numbers) -> SecondArmBar | None:
 
 def second_loads(bar: SecondArmBar, cam: LoadedCam) -> SectionLoads:
     """Loads (..., n) of the section of the second arm of a loaded cam."""
-    return bar.loads(cam.output_force, cam.jet.lift, cam.speed**2 * cam.jet.lift_d2)
+    return bar.loads(cam.output_force, cam.jet.lift, cam.acceleration)
 
 
 class _JudgedSection(NamedTuple):

@@ -260,6 +260,11 @@ class LoadedCam:
         """Velocity of the follower, m/s."""
         return self.speed * self.slope
 
+    @property
+    def acceleration(self) -> Array:
+        """Acceleration of the follower, m/s2."""
+        return np.asarray(self.speed**2 * self.jet.lift_d2)
+
     @cached_property
     def spin(self) -> Array:
         """Angular speed of the roller on its pin, rad/s."""
@@ -393,9 +398,8 @@ class LoadedCam:
         """All forces on an arm but those of contact and pivot, see `ArmPivot.pull`; `added` as in
         `_about`.
         """
-        acceleration = self.speed**2 * self.jet.lift_d2
         spring = self.spring_force + added
-        return pivot.pull(spring, self.external, self.travel, self.velocity, acceleration)
+        return pivot.pull(spring, self.external, self.travel, self.velocity, self.acceleration)
 
     def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
         outward = np.asarray(np.sign(np.real(self.slope)))
@@ -463,8 +467,7 @@ class LoadedCam:
         """Inertia force of the output of a rocker on the follower, N; 0 without one."""
         if self.output is None:
             return 0.0
-        acceleration = self.speed**2 * self.jet.lift_d2
-        return self.output.whole_inertia(self.jet.lift, self.velocity, acceleration)
+        return self.output.whole_inertia(self.jet.lift, self.velocity, self.acceleration)
 
     @property
     def on_first(self) -> tuple[Motion, Array]:
@@ -487,10 +490,9 @@ class LoadedCam:
         """Force on the output of a rocker against its lift, N: of its mass, of a constant force and
         of a spring on it.
         """
-        shape, acceleration = self.spring_shape, self.speed**2 * self.jet.lift_d2
-        force = np.zeros_like(self.velocity)
+        shape, force = self.spring_shape, np.zeros_like(self.velocity)
         if self.output is not None:
-            force = force + self.output.push(self.jet.lift, self.velocity, acceleration)
+            force = force + self.output.push(self.jet.lift, self.velocity, self.acceleration)
         if isinstance(shape, SpringBehindRocker):
             force = force + self.spring_force / shape.lever(self.jet.lift)
         return np.asarray(force)
