@@ -137,6 +137,14 @@ class Allowed(NamedTuple):
     missing: tuple[str, ...] = ()
     if_exceeded: bool = False
 
+    def against(self, demand: float) -> float | None:
+        """Limit of a demand, SI; None: none stated, or that of the known parts alone, which the
+        demand does not exceed.
+        """
+        if self.value is None or (self.if_exceeded and not demand > self.value):
+            return None
+        return float(self.value)
+
 
 def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allowed]:
     """Function that gives the limit stated at a `key` of the case, or a share of it.
@@ -671,11 +679,11 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
     if how.known is not None:
         numbers = numbers | how.known(solution.cams.values())
     limit = how.allowed(numbers)
-    allowed = None if limit.value is None else float(limit.value)
     lacks = tuple(key for key in how.needed if numbers.get(key) is None)
     if not how.applies(np.nan, numbers):
         return None
     if lacks:
+        allowed = None if limit.value is None else float(limit.value)
         return how.remark(Demand(None, allowed, missing=(*lacks, *limit.missing)), solution)
 
     def worst_of(measured: Measure) -> Extreme:
@@ -707,9 +715,9 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
     worst = worst_of(measure)
     if not how.applies(worst.value, numbers):
         return None
-    if limit.if_exceeded and not (allowed is not None and worst.value > allowed):
-        allowed = None
-    return how.remark(Demand(worst.value, allowed, worst, limit.missing), solution)
+    return how.remark(
+        Demand(worst.value, limit.against(worst.value), worst, limit.missing), solution
+    )
 
 
 def _missing_words(keys: tuple[str, ...]) -> str:

@@ -425,10 +425,7 @@ def preload_pressure(solution: Solution) -> Demand | None:
         return None
     value, cycle, k = worst
     limit = contact_strength.contact_pressure.measured.allowed(solution.numbers)
-    allowed = None if limit.value is None else float(limit.value)
-    if limit.if_exceeded and not (allowed is not None and value > allowed):
-        allowed = None
-    stated = {"p": value}
+    allowed, stated = limit.against(value), {"p": value}
     if allowed is not None:
         stated["p_E"] = allowed * solution.machine.limits[CONTACT_SAFETY]
     at = Extreme(value, cycle.load_case, float(cycle.theta[k]))
@@ -596,10 +593,7 @@ def landing_pressure(solution: Solution) -> Demand | None:
     worst = _worst_impact(solution, lambda one: one.pressure)
     if worst is None:
         return None
-    stated = {"p": worst.value}
-    allowed = None if limit.value is None else float(limit.value)
-    if limit.if_exceeded and not (allowed is not None and worst.value > allowed):
-        allowed = None
+    allowed, stated = limit.against(worst.value), {"p": worst.value}
     if allowed is not None:
         stated["p_E"] = allowed * solution.machine.limits[CONTACT_SAFETY]
     missing = limit.missing
