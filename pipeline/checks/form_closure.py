@@ -706,14 +706,14 @@ def crossover_slip(solution: Solution) -> Demand:
     levers=(levers.one("cam.prime_radius", -1, 2.0),),
     page="Contact",
 )
-def slip_temperature(solution: Solution) -> Demand | None:
+def slip_temperature(solution: Solution) -> Demand:
     """Greatest temperature of the contact of a slipping roller over the load cases, degC."""
     machine = solution.machine
-    oil, allowed = machine.lubricant, machine.limits[SURFACE_TEMPERATURE]
-    limit = float(bulk_allowed(machine, allowed))
+    oil, limit = machine.lubricant, machine.limits[SURFACE_TEMPERATURE]
+    allowed = float(bulk_allowed(machine, limit))
     missing = heat_missing(machine, "temperature")
     if missing or oil is None or oil.temperature is None:
-        return Demand(None, limit, missing=missing)
+        return Demand(None, allowed, missing=missing)
     cold = oil.temperature
 
     def rises(cycle: Cycle) -> Array:
@@ -726,4 +726,4 @@ def slip_temperature(solution: Solution) -> Demand | None:
     worst = worst_case(solution.cycles, hot, integral=False)
     rise = rises(cycle_of(solution.cycles, worst))
     stated = {"T_m": float(rise.mean()), "T_f": float(rise.max())}
-    return Demand(worst.value, limit, worst, figures=(oil.source,), stated=stated)
+    return Demand(worst.value, allowed, worst, figures=(oil.source,), stated=stated)
