@@ -171,9 +171,7 @@ class PinInBush:
         set recurs, one place is exchanged at a time.
         """
         radius = self.seat.radius
-        targets = np.array(
-            [load.force, load.aside, load.couple / radius, 0.0]
-        ) / radius**2  # fmt: skip
+        targets = np.array([load.force, load.aside, load.couple / radius, 0.0]) / radius**2
         active = (self._first(load) if start is None else start).ravel()
         seen, recurred = set[bytes](), False
         for _ in range(_SWEEPS):

@@ -187,7 +187,8 @@ def pivot_history(push: PivotPush, mean_length: float, theta: Array) -> PivotHis
         return None
     # a narrow contact has a pressure in proportion to the root of its load
     effort, every = push.size + push.couple / push.bush.length, rows.solved
-    root, worst, searched = np.sqrt(effort), first_greatest(push.edge_pressure), False
+    root, foundation, searched = np.sqrt(effort), push.edge_pressure, False
+    worst = first_greatest(foundation)
     rows.solve(rows.spread())
     while not searched:
         if worst not in every:
@@ -202,7 +203,7 @@ def pivot_history(push: PivotPush, mean_length: float, theta: Array) -> PivotHis
     signed = {row: _signed(each.line) / effort[row] for row, each in every.items()}
     return PivotHistory(
         edge_pressure=scale * edge,
-        foundation=push.edge_pressure,
+        foundation=foundation,
         tilt=_linear({row: each.tilt for row, each in every.items()}, theta),
         line=effort[:, None] * _linear(signed, theta),
         places=coarse.places,
@@ -246,11 +247,11 @@ def _signed(line: Array) -> Array:
 def _linear(values: Mapping[int, Array | float], theta: Array) -> Array:
     """Values over the turn (n, ...), linear between those at the angles of the numbers stated."""
     rows = np.array(sorted(values))
-    given = np.array([values[int(row)] for row in rows])
+    solved = np.array([values[int(row)] for row in rows])
     before = np.searchsorted(rows, np.arange(theta.size), side="right") - 1
     after = (before + 1) % rows.size
     start = theta[rows[before]]
     wide = (theta[rows[after]] - start) % FULL_TURN
     share = (theta - start) % FULL_TURN / np.where(wide > 0.0, wide, FULL_TURN)
-    share = share.reshape(-1, *(1,) * (given.ndim - 1))
-    return np.asarray((1.0 - share) * given[before] + share * given[after])
+    share = share.reshape(-1, *(1,) * (solved.ndim - 1))
+    return np.asarray((1.0 - share) * solved[before] + share * solved[after])
