@@ -5,8 +5,9 @@ from __future__ import annotations
 from camwright.pipeline.base import units
 from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.toml_text import Tables, TomlValue
+from camwright.pipeline.contact.cam_body import TWO_TRACKS
 
-SPRINGLESS = ("gravity", "groove", "conjugate", "yoke")
+SPRINGLESS = ("gravity", *TWO_TRACKS)
 """Closures that need no spring."""
 _NONE = Source("none: cam or weight hold the follower", confirmed=True)
 _NO_RATE, _NO_PRELOAD = 1e-6, 1e-9  # N/m, N

@@ -18,7 +18,7 @@ from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.limits import SPEED_REDUCTION, TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
 from camwright.pipeline.case.value_sources import require_known
-from camwright.pipeline.contact.cam_body import CamBody, CamConjugate
+from camwright.pipeline.contact.cam_body import TWO_TRACKS, CamBody, CamConjugate
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_file import SpeedTable
@@ -245,8 +245,6 @@ def _start(case: Case) -> Iterator[Rule]:
 
 
 _LEAST_WEIGHT = 1e-6  # m/s2, above the round-off of a stem that lies level
-_TRACKS = ("groove", "conjugate", "yoke")
-"""Closures with a second track, each with a table of its own in [cam]."""
 
 
 def _closure(case: Case) -> None:
@@ -259,7 +257,7 @@ def _closure(case: Case) -> None:
         If something is stated that such a cam does not have, or that is not done for one.
     """
     cam = case.cam
-    for name in _TRACKS:
+    for name in TWO_TRACKS:
         if getattr(cam, name) is not None and cam.closure != name:
             raise InputError(f"cam.{name}", "a table", f'left out, or cam.closure = "{name}"')
     if cam.closure == "gravity":

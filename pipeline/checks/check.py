@@ -34,6 +34,7 @@ from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.case.scope_section import PartName, ScopeName
 from camwright.pipeline.checks.extremes import Extreme, Measure, Reduce, worst_measure
+from camwright.pipeline.contact.cam_body import TWO_TRACKS
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
@@ -302,7 +303,7 @@ class Measured(NamedTuple):
 
 
 ClosedBy = Literal["", "force", "form", "plate", "groove", "conjugate", "yoke"]
-HELD = ("form", "groove", "conjugate", "yoke")
+HELD = ("form", *TWO_TRACKS)
 """Of them those of a cam that pulls its follower."""
 
 

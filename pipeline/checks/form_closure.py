@@ -35,6 +35,7 @@ from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept,
 from camwright.pipeline.checks.extremes import Extreme, cycle_of, worst_case
 from camwright.pipeline.checks.flat_face_sliding import bulk_allowed, heat_missing
 from camwright.pipeline.checks.missing_keys import lacking_of_card
+from camwright.pipeline.contact.cam_body import TWO_TRACKS
 from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.contact.tiers import Tier
@@ -489,9 +490,8 @@ def _worst_impact(solution: Solution, measure: Callable[[WallImpact], float]) ->
     return every[first_greatest([each.value for each in every])] if every else None
 
 
-_HELD_BY = "groove", "conjugate", "yoke"
-_CLEARANCES = tuple(f"cam.{each}.clearance" for each in _HELD_BY)
-_WEARS = tuple(f"cam.{each}.wear_depth" for each in _HELD_BY)
+_CLEARANCES = tuple(f"cam.{each}.clearance" for each in TWO_TRACKS)
+_WEARS = tuple(f"cam.{each}.wear_depth" for each in TWO_TRACKS)
 
 
 @check(

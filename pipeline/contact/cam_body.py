@@ -135,6 +135,8 @@ class BalanceHole(Part):
 
 
 Closure = Literal["spring", "gravity", "groove", "conjugate", "yoke"]
+TWO_TRACKS = ("groove", "conjugate", "yoke")
+"""Closures of a cam that pulls as well, each with a table of its own in [cam]."""
 FitTolerance = Annotated[float, In("mm", at_least=0, at_most=1)]
 _AS_DRAWN = "none: as drawn"
 
@@ -335,7 +337,12 @@ class CamBody(Part):
     @property
     def pulls(self) -> bool:
         """Whether the cam pulls the follower as well, so that no force need close the contact."""
-        return self.closure in ("groove", "conjugate", "yoke")
+        return self.closure in TWO_TRACKS
+
+    @property
+    def _two_tracks(self) -> CamGroove | CamConjugate | CamYoke | None:
+        """Groove, second disc or yoke; None of one track."""
+        return self.groove or self.conjugate or self.yoke
 
     @property
     def closed_by(self) -> tuple[str, ...]:
@@ -353,7 +360,7 @@ class CamBody(Part):
     @property
     def clearance(self) -> float:
         """Clearance of the follower between both tracks, square to them, m; 0 of one track."""
-        stated = self.groove or self.conjugate or self.yoke
+        stated = self._two_tracks
         return 0.0 if stated is None else stated.clearance or 0.0
 
     @property
@@ -362,7 +369,7 @@ class CamBody(Part):
 
         Of an interference the tolerance of the contours is left out: its checks have it.
         """
-        stated = self.groove or self.conjugate or self.yoke
+        stated = self._two_tracks
         half = 0.5 * self.profile_tolerance if self.clearance > 0.0 else 0.0
         named = {
             "roller radius": ("rollers", "roller_tolerance"),
@@ -380,7 +387,7 @@ class CamBody(Part):
     @property
     def wear_depth(self) -> float:
         """Depth that each of two tracks loses with its roller, m."""
-        stated = self.groove or self.conjugate or self.yoke
+        stated = self._two_tracks
         return 0.0 if stated is None else stated.wear_depth or 0.0
 
     @property
