@@ -66,7 +66,8 @@ class PivotHistory:
     complementarity: float
 
     def __post_init__(self) -> None:
-        freeze(self, edge_pressure=self.edge_pressure, tilt=self.tilt, line=self.line)
+        names = "edge_pressure", "foundation", "tilt", "line", "places", "angles", "pressure"
+        freeze(self, **{name: getattr(self, name) for name in names})
 
     @property
     def error(self) -> float:
