@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.arrays import Array, rotation, uniform_turn
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case, with_values
 from camwright.pipeline.case.given_lift import given_lift
@@ -44,11 +44,6 @@ def judged(name: str, of: Solution) -> Check:
     assert made is not None
     assert made.demand is not None
     return made
-
-
-def turned(points: Array, angle: float) -> Array:
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([[cosine, -sine], [sine, cosine]]) @ points
 
 
 def away(points: Array, one: Array, other: Array) -> float:
@@ -98,7 +93,7 @@ def test_gaps_of_an_arm_by_polygons_over_the_turn(
         gaps.setdefault(name, []).append(max(plane, axial))
 
     def at(theta: float) -> None:
-        place = turned(of.contour.pitch.points(np.array([theta])), -theta)[:, 0]
+        place = (rotation(-theta) @ of.contour.pitch.points(np.array([theta])))[:, 0]
         bridge = place + 0.26 * (pivot - place)
         held = 11.5 + 2.5 + 0.3  # outer face of a cheek
         # bodies: line, half depth, half width along the camshaft, mm
@@ -108,7 +103,7 @@ def test_gaps_of_an_arm_by_polygons_over_the_turn(
             "fork": (bridge, place, 0.5 * cheeks, held),
             "roller": (place, place, max(23.5, 0.5 * cheeks), held),
         }  # fmt: skip
-        turning = turned(contour, -theta)
+        turning = rotation(-theta) @ contour
         for name, (one, other, half, wide) in bodies.items():
             if name in ("arm", "fork"):
                 clear = 9.0 if name == "fork" else -wide  # inner face of a cheek
@@ -177,18 +172,18 @@ def test_gaps_of_a_linked_spring_by_polygons_over_the_turn(
 
     def arm(theta: float) -> Array:
         """Unit vector from the pivot along the arm."""
-        line = turned(of.contour.pitch.points(np.array([theta])), -theta)[:, 0] - pivot
+        line = (rotation(-theta) @ of.contour.pitch.points(np.array([theta])))[:, 0] - pivot
         return np.asarray(line / np.hypot(*line))
 
     rest, away_from_rest = arm(lowest), arm(lowest + np.pi)
     outwards = np.sign(rest[0] * away_from_rest[1] - rest[1] * away_from_rest[0])
-    held = pivot + 1e-3 * float(radius.split()[0]) * turned(rest, outwards * out)
+    held = pivot + 1e-3 * float(radius.split()[0]) * (rotation(outwards * out) @ rest)
     cam, centre = list[float](), list[float]()
     worst, half = judged("arm_cam_gap", of), 0.5e-3 * thick
     near = (worst.cam_angle or 0.0) + np.linspace(-0.02, 0.02, 21)
     for theta in [*uniform_turn(180), *near]:
-        end = pivot + 0.080 * turned(arm(float(theta)), outwards * np.radians(4.0))
-        cam.append(away(turned(contour, -theta), held, end) - half)
+        end = pivot + 0.080 * (rotation(outwards * np.radians(4.0)) @ arm(float(theta)))
+        cam.append(away(rotation(-theta) @ contour, held, end) - half)
         centre.append(away(np.zeros(2), held, end) - half)
     assert worst.note == "spring to cam"
     assert worst.demand == pytest.approx(min(cam), abs=1e-6)
@@ -200,7 +195,7 @@ def test_gaps_of_a_linked_spring_by_polygons_over_the_turn(
 
 
 def test_a_gas_spring_on_an_arm_lacks_its_diameter_for_its_gaps() -> None:
-    """Coils that are described have theirs; the body of a gas spring is asked for."""
+    """That of coils follows from their winding; that of a gas spring is a key of its own."""
     link = {"arm_radius": "80 mm", "fixed_radius": "140 mm", "fixed_angle": "60 deg"}
     gas = {"pressure": "60 bar", "area": "150 mm^2", "volume": "9 cm^3"}
     text = first_case("swing", "arm").text

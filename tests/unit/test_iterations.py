@@ -117,14 +117,14 @@ def test_an_iteration_that_does_not_settle_says_so(
     names: Callable[[str], Iterator[str]], told: dict[str, str]
 ) -> None:
     """A new loop raises after its last step, or has its reason above; a mended one leaves it."""
-    found = {
+    loops = {
         f"{path.relative_to(ROOT).as_posix()}: {name}"
         for folder in FOLDERS
         for path in sorted((ROOT / folder).rglob("*.py"))
         if "for _ in range(" in (text := path.read_text(encoding="utf-8"))
         for name in names(text)
     }
-    assert found == set(told)
+    assert loops == set(told)
 
 
 def test_the_syntax_tree_sees_a_silent_end() -> None:
@@ -176,11 +176,11 @@ def test_a_roller_between_two_walls_is_turned_back_by_friction_alone(seed: int) 
     inertia, radius = draw.uniform(1e-6, 1e-3), 0.02
     drag = Drag(inertia, 0.1, torque=draw.uniform(0.0, 0.05))
     rate = -0.2 * wall * np.abs(spin).mean() * np.sin(theta) * 2.0 * np.pi / period
-    found = rolling_contact(
+    rolling = rolling_contact(
         force, spin, rate, np.full(360, 3.0), np.full(360, 1e-4), np.full(360, 0.01),
         drag=drag, radius=radius, period=period,
     )  # fmt: skip
-    turning = spin - found.slip / radius
+    turning = spin - rolling.slip / radius
     change = np.abs(turning - np.roll(turning, 1)) * inertia * 360 / period
     assert (change <= 1.02 * (drag.friction * force * radius + drag.torque)).all()
-    assert (np.abs(found.force) <= drag.friction * force * (1.0 + 1e-12)).all()
+    assert (np.abs(rolling.force) <= drag.friction * force * (1.0 + 1e-12)).all()

@@ -143,7 +143,7 @@ def test_notes_state_the_other_disc_and_the_faces(workshops):
     ],
 )
 def test_a_measured_disc_is_fitted_to_its_own_nominal(name, track):
-    """Size and a wave of 3 um are found; the roller on the disc runs on it, the other disc matches:
+    """Size and a wave of 3 um are fitted; the roller runs on the disc, the other disc matches:
     the second path that follows from the first one of the measured cam is the measured one.
     """
     case, contour = judged(name)

@@ -59,8 +59,8 @@ def test_a_value_that_cannot_be_meant_has_one_warning(old: str, new: str, words:
 def test_a_spring_that_pulls_is_judged_by_the_size_of_its_preload(preload: str, told: bool) -> None:
     text = (Path(__file__).parents[1] / "data" / "conjugate_feeder.toml").read_text()
     spring = f'[spring]\nrate = "1 N/mm"\npreload = "{preload}"\n\n[camshaft]\n'
-    found = implausible(parse_case(text.replace("[camshaft]\n", spring, 1)), {})
-    assert ("spring.preload" in {one.title for one in found}) is told
+    warned = implausible(parse_case(text.replace("[camshaft]\n", spring, 1)), {})
+    assert ("spring.preload" in {one.title for one in warned}) is told
 
 
 def test_a_motor_at_another_speed_than_the_load_case_has_one_warning() -> None:

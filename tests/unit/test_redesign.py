@@ -156,26 +156,26 @@ def test_front_against_every_pair():
 
 
 def test_roller_brings_along_what_hangs_on_it(case, parts):
-    found = variant(case, parts, CHOICE, None)
+    changed = variant(case, parts, CHOICE, None)
     card = parts.rollers[CHOICE.roller]
-    assert (found.roller.radius, found.roller.width) == (0.0175, pytest.approx(0.0159))
-    assert found.cam.width == found.roller.width
-    assert found.roller.pin.diameter == card.bore
-    assert (found.roller.bearing.C0, found.roller.bearing.radial_limit) == (card.C0, 3600.0)
-    longer = found.follower.overhang_at_max_lift - case.follower.overhang_at_max_lift
+    assert (changed.roller.radius, changed.roller.width) == (0.0175, pytest.approx(0.0159))
+    assert changed.cam.width == changed.roller.width
+    assert changed.roller.pin.diameter == card.bore
+    assert (changed.roller.bearing.C0, changed.roller.bearing.radial_limit) == (card.C0, 3600.0)
+    longer = changed.follower.overhang_at_max_lift - case.follower.overhang_at_max_lift
     assert longer == pytest.approx(0.0175 - 0.008)
     # 7.83 g/cm3 of a disc of 35 x 15.9 mm for one of 16 x 5 mm, and half of the springs' 264.0
     # against 242.4 g, the lightest of the catalogue within the case's rate
     disc = 7830.0 * np.pi * (0.0175**2 * 0.0159 - 0.008**2 * 0.005)
     springs = 0.5 * (parts.springs["60 x 42"].mass - parts.springs["40 x 25"].mass)
-    assert found.follower.mass == pytest.approx(case.follower.mass + disc + springs, rel=1e-9)
-    assert found.spring.rate == pytest.approx(parts.springs["60 x 42"].rate, rel=1e-12)
-    assert found.spring.design.rate == pytest.approx(found.spring.rate, rel=1e-12)
-    assert found.guides.b.pv_limit == pytest.approx(1.8e6)
-    assert found.guides.b.length == case.guides.b.length
-    assert found.limits[CAM_RADIUS] == 0.08
-    assert found.smoothing.kind == "constrained"
-    assert parse_case(found.to_toml()).sha256 == found.sha256
+    assert changed.follower.mass == pytest.approx(case.follower.mass + disc + springs, rel=1e-9)
+    assert changed.spring.rate == pytest.approx(parts.springs["60 x 42"].rate, rel=1e-12)
+    assert changed.spring.design.rate == pytest.approx(changed.spring.rate, rel=1e-12)
+    assert changed.guides.b.pv_limit == pytest.approx(1.8e6)
+    assert changed.guides.b.length == case.guides.b.length
+    assert changed.limits[CAM_RADIUS] == 0.08
+    assert changed.smoothing.kind == "constrained"
+    assert parse_case(changed.to_toml()).sha256 == changed.sha256
 
 
 def test_waivers_are_of_another_design(case, parts):
@@ -189,8 +189,8 @@ def test_waivers_are_of_another_design(case, parts):
 
 
 def test_bushes_as_given_stay(case, parts):
-    found = variant(case, parts, replace(CHOICE, bush=AS_GIVEN), None)
-    assert found.guides == case.guides
+    changed = variant(case, parts, replace(CHOICE, bush=AS_GIVEN), None)
+    assert changed.guides == case.guides
 
 
 # --- on an arm
@@ -201,8 +201,8 @@ def test_parts_of_an_arm_bring_along_what_hangs_on_them(parts):
     another.
     """
     case = read_case(CASES / "gx120-arm.toml")
-    found = variant(case, parts, Choice("track_roller_52x21", "80 x 50", "bronze"), None)
-    old, pivot = case.follower.pivot, found.follower.pivot
+    changed = variant(case, parts, Choice("track_roller_52x21", "80 x 50", "bronze"), None)
+    old, pivot = case.follower.pivot, changed.follower.pivot
     disc = 7830.0 * np.pi * (0.026**2 * 0.0206 - 0.0235**2 * 0.0175)
     arm = case.follower.arm
     wider = 0.0206 - 0.0175
@@ -212,17 +212,17 @@ def test_parts_of_an_arm_bring_along_what_hangs_on_them(parts):
     assert pivot.swinging_mass * pivot.mass_distance == pytest.approx(moment, rel=1e-9)
     springs = 0.5 * (parts.springs["80 x 50"].mass - case.spring.design.mass)
     mass = case.follower.mass + disc + springs + bar / 3.0
-    assert found.follower.mass == pytest.approx(mass, rel=1e-9)
+    assert changed.follower.mass == pytest.approx(mass, rel=1e-9)
     assert (pivot.bush.friction_max, pivot.bush.length) == (0.15, old.bush.length)
-    assert found.guides == case.guides  # which stand in for none
+    assert changed.guides == case.guides  # which stand in for none
     thicker = parts.rollers["track_roller_52x21"].bore - case.roller.pin.diameter
     hub = None if arm.roller_hub is None else arm.roller_hub + thicker
-    assert found.follower.arm == replace(arm, width=arm.width + wider, roller_hub=hub)
+    assert changed.follower.arm == replace(arm, width=arm.width + wider, roller_hub=hub)
     narrow = variant(case, parts, Choice("track_roller_35x16", AS_GIVEN, AS_GIVEN), None)
     assert narrow.follower.arm.width == arm.width
-    low, high = found.smoothing.prime_radius_range
+    low, high = changed.smoothing.prime_radius_range
     assert 10e-3 < low < high < 190e-3  # which the arm reaches
-    assert parse_case(found.to_toml()).sha256 == found.sha256
+    assert parse_case(changed.to_toml()).sha256 == changed.sha256
 
 
 EXCHANGES = {
@@ -295,9 +295,9 @@ def test_an_exchanged_part_leaves_all_that_is_not_its_own(parts, name, exchange)
 def test_what_stays_of_an_exchanged_bush_keeps_its_source(parts):
     case = read_case(CASES / "gx120-arm.toml")
     text = case.follower.pivot.bush.source
-    found = variant(case, parts, Choice(AS_GIVEN, AS_GIVEN, "bronze"), None)
-    assert str(found.sources["follower.pivot.bush.wear_rate"].text) in str(text)
-    assert "SKF" in str(found.sources["follower.pivot.bush.friction"].text)
+    changed = variant(case, parts, Choice(AS_GIVEN, AS_GIVEN, "bronze"), None)
+    assert str(changed.sources["follower.pivot.bush.wear_rate"].text) in str(text)
+    assert "SKF" in str(changed.sources["follower.pivot.bush.friction"].text)
 
 
 @pytest.mark.parametrize(("spring", "kept"), [("", 2), (TORSION, 3)], ids=["coil", "torsion"])
@@ -314,10 +314,10 @@ def test_what_a_catalogue_does_not_have_stays_as_given(parts, spring, kept):
     assert of.bushes == (AS_GIVEN,)
     assert (list(of.springs[AS_GIVEN]) == [AS_GIVEN]) == bool(spring)
     choice = Choice(AS_GIVEN, next(iter(of.springs[AS_GIVEN])), AS_GIVEN)
-    found = variant(case, parts, choice, None)
-    assert found.follower.face == case.follower.face
-    assert (found.spring == case.spring) == bool(spring)
-    assert found.smoothing.kind == "constrained"
+    changed = variant(case, parts, choice, None)
+    assert changed.follower.face == case.follower.face
+    assert (changed.spring == case.spring) == bool(spring)
+    assert changed.smoothing.kind == "constrained"
 
 
 @pytest.mark.parametrize("name", ["60 x 42", "55 x 45", "80 x 50"])

@@ -255,9 +255,9 @@ def test_landings_of_an_arm_in_its_groove_by_an_integrator():
         moment = fallen * pivot.mass_distance / arm.length
         return machine.mass * speed**2 * s2 - moment
 
-    found = flights(machine, cycle.contour)
-    assert found.energy.left < 1e-6
-    first = [one for one in found.landings if one.crosses and not one.leaving]
+    history = flights(machine, cycle.contour)
+    assert history.energy.left < 1e-6
+    first = [one for one in history.landings if one.crosses and not one.leaving]
     assert {one.wall for one in first} == {1.0, -1.0}
     for one in first:
         start, inner = one.take_off, one.wall > 0.0
@@ -346,8 +346,8 @@ def test_the_second_disc_bends_the_pin_of_the_pivot(name, offset):
     """
     cycle, machine, track = running(name)
     loads, spacing = cycle.loads, machine.cam.conjugate.spacing
-    moved = replace(machine, arm=replace(machine.arm, plane_offset=offset))
-    couple = PivotPush.of(moved, loads, np.zeros(loads.theta.size)).couple
+    shifted = replace(machine, arm=replace(machine.arm, plane_offset=offset))
+    couple = PivotPush.of(shifted, loads, np.zeros(loads.theta.size)).couple
     sizes = [np.where(way * loads.wall > 0.0, loads.normal_force, loads.idle_force)
              for way in (1.0, -1.0)]  # fmt: skip
     ways = []

@@ -31,9 +31,9 @@ def inertia(law):
     return MASS * SPEED**2 * motion(law)(THETA, 2)
 
 
-def rise(found):
+def rise(crossings):
     """The landing of the first crossover on the rise."""
-    return min((one for one in found if one.crosses), key=lambda one: one.take_off)
+    return min((one for one in crossings if one.crosses), key=lambda one: one.take_off)
 
 
 LAWS = (
@@ -86,12 +86,12 @@ def test_a_large_clearance_against_an_adaptive_integrator(clearance):
     """Time and speed within 1e-4, up to a clearance of a sixth of the stroke, beside a spring."""
     law, rate, damping = motion("polynomial_345"), 400.0, 3.0
     force = inertia("polynomial_345")
-    found = rise(
+    landing = rise(
         landings(force, np.full(COUNT, clearance), MASS, SPEED, stiffness=rate, damping=damping)
     )
 
     def flown(time, state):
-        accelerated = SPEED**2 * law(np.array([found.take_off + SPEED * time]), 2)[0]
+        accelerated = SPEED**2 * law(np.array([landing.take_off + SPEED * time]), 2)[0]
         return state[1], -accelerated - (rate * state[0] + damping * state[1]) / MASS
 
     def lands(_, state):
@@ -99,8 +99,8 @@ def test_a_large_clearance_against_an_adaptive_integrator(clearance):
 
     lands.terminal = True
     exact = solve_ivp(flown, (0.0, 0.1), (0.0, 0.0), events=lands, rtol=1e-10, atol=1e-14)
-    assert found.time == pytest.approx(exact.t_events[0][0], rel=1e-4)
-    assert found.speed == pytest.approx(exact.y_events[0][0][1], rel=1e-4)
+    assert landing.time == pytest.approx(exact.t_events[0][0], rel=1e-4)
+    assert landing.speed == pytest.approx(exact.y_events[0][0][1], rel=1e-4)
 
 
 @pytest.mark.parametrize("phase", [0.0, 1.0])
@@ -121,10 +121,10 @@ def test_a_roller_leaves_a_wall_that_bends_away_from_a_straight_step_once(phase)
     def opening(theta):
         return -4.0 * wave * speed * np.sin(4.0 * theta + phase)
 
-    found = landings(force(THETA), gap(THETA), MASS, speed)
-    assert len(found) == 4
-    assert all(one.crosses for one in found)
-    for one in found:
+    series = landings(force(THETA), gap(THETA), MASS, speed)
+    assert len(series) == 4
+    assert all(one.crosses for one in series)
+    for one in series:
         outer, start = one.start == OUTER, one.take_off
         bend = -16.0 * wave * speed**2 * np.cos(4.0 * start + phase) if outer else 0.0
         assert force(start) + MASS * bend == pytest.approx(0.0, abs=1e-3)
@@ -153,7 +153,7 @@ def test_rebounds_against_an_integrator_of_events(restitution):
     law, clearance, rate, damping = motion("polynomial_345"), 2e-4, 400.0, 3.0
     walls = np.full(COUNT, clearance)
     spring = {"stiffness": rate, "damping": damping}
-    found = landings(
+    series = landings(
         inertia("polynomial_345"), walls, MASS, SPEED, restitution=restitution, **spring
     )
 
@@ -164,8 +164,8 @@ def test_rebounds_against_an_integrator_of_events(restitution):
     events = [lambda _, state: state[0], lambda _, state: state[0] - clearance]
     for event, direction in zip(events, (-1.0, 1.0), strict=True):
         event.terminal, event.direction = True, direction
-    first = rise(found)
-    begin, state, series = 0.0, (0.0, 0.0), found[found.index(first) :]
+    first = rise(series)
+    begin, state, series = 0.0, (0.0, 0.0), series[series.index(first) :]
     count = next(k for k, one in enumerate(series) if one.rebound == 0.0) + 1
     for one in series[:count]:
         flight = solve_ivp(
@@ -191,20 +191,20 @@ def test_energy_of_a_turn_with_landings():
     flight's between; the impulses of the landings act at the speed of the groove.
     """
     law, clearance = motion("cycloidal"), 2e-4
-    found = landings(inertia("cycloidal"), np.full(COUNT, clearance), MASS, SPEED)
-    spent = sum(0.5 * MASS * one.speed**2 for one in found)
+    series = landings(inertia("cycloidal"), np.full(COUNT, clearance), MASS, SPEED)
+    spent = sum(0.5 * MASS * one.speed**2 for one in series)
     work = 0.0
-    places = [(one.take_off, one.landing) for one in found]
+    places = [(one.take_off, one.landing) for one in series]
     for (_, begin), (end, _) in zip(places, places[1:] + places[:1], strict=True):
         span = (end - begin) % FULL_TURN
         grid = begin + np.linspace(0.0, span, 20001)
         power = MASS * SPEED**2 * law(grid, 2) * law(grid, 1)
         work += np.trapezoid(power, grid)
-    for one in found:
+    for one in series:
         slope = SPEED * law(np.array([one.landing]), 1)[0]
         work += one.wall * MASS * one.speed * slope
     swing = 0.5 * MASS * (SPEED * law(THETA, 1)).max() ** 2
-    assert len(found) == 2
+    assert len(series) == 2
     assert spent > 1e-5 * swing
     assert work == pytest.approx(spent, abs=1e-6 * swing)
 

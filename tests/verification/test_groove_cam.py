@@ -361,16 +361,16 @@ def test_energy_of_landings_where_the_acceleration_jumps():
     text = FILE.read_text(encoding="utf-8").replace('"modified_sine"', '"parabolic"')
     case = parse_case(text.replace('clearance = "0.02 mm"', 'clearance = "0.3 mm"', 1))
     machine = next(each for each in machines(case) if each.load_case == "running")
-    found = flights(machine, case.contour(given_lift(case)))
-    assert len(found.landings) > 3
-    assert found.energy.left < 1e-8
+    history = flights(machine, case.contour(given_lift(case)))
+    assert len(history.landings) > 3
+    assert history.energy.left < 1e-8
 
 
 def test_the_energy_of_the_landings_by_an_integrator_of_events():
     """Loss of a turn within 1e-3 of a stem that is integrated between stops, in fixed axes."""
     cycle, machine = running()
     path, speed, share = cycle.contour.pitch, machine.cam_speed, 0.3
-    found = flights(replace(machine, restitution=share), cycle.contour)
+    history = flights(replace(machine, restitution=share), cycle.contour)
 
     def wall(angle, side):
         s, s1 = path.lift.derivatives(np.asarray(angle), 1)
@@ -382,14 +382,14 @@ def test_the_energy_of_the_landings_by_an_integrator_of_events():
         return speed * (wall(angle + 1e-5, side) - wall(angle - 1e-5, side)) / 2e-5
 
     lost = 0.0
-    for one in found.landings:  # under no force the stem moves straight on
+    for one in history.landings:  # under no force the stem moves straight on
         start, v = one.take_off, moving(one.take_off, one.start) + one.start * one.leaving
         at, end = wall(start, one.start), start + speed * one.time
         assert at + v * one.time == pytest.approx(wall(end, one.wall), abs=2e-9)
         against = one.wall * (moving(end, one.wall) - v)
         assert one.speed == pytest.approx(against, rel=1e-3, abs=1e-5)
         lost += 0.5 * machine.mass * against**2 * (1.0 - (share if one.rebound else 0.0) ** 2)
-    assert found.energy.lost == pytest.approx(lost, rel=1e-3)
+    assert history.energy.lost == pytest.approx(lost, rel=1e-3)
     assert machine.rebound_share == pytest.approx(np.exp(-np.pi * 0.05 / np.sqrt(1.0 - 0.05**2)))
 
 

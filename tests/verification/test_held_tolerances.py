@@ -101,9 +101,9 @@ def test_clearance_by_points_of_both_discs(name, kind):
     case, contour, _ = pair(name)
     deviation = TrackDeviation(**{kind: STEP})
     for theta in (0.3, 0.9, 2.0):
-        moved = gap(name, theta, deviation) - gap(name, theta, TrackDeviation())
+        change = gap(name, theta, deviation) - gap(name, theta, TrackDeviation())
         opened = deviation.opened(contour.pitch, case.cam.second, np.array([theta]))
-        assert opened[0] == pytest.approx(moved, rel=1e-3, abs=1e-8 * STEP)
+        assert opened[0] == pytest.approx(change, rel=1e-3, abs=1e-8 * STEP)
 
 
 def test_worn_clearance_is_judged_where_it_is_greatest():

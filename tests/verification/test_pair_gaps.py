@@ -36,15 +36,15 @@ def test_places_along_the_camshaft_of_the_stem():
     """Discs at 35 and 69 mm, 28 mm wide; fork to 24 mm and 0.3 mm offset; bearings at 0 and 104 mm,
     16 mm wide, gear at -25 mm, 20 mm wide.
     """
-    found = gaps("conjugate_feeder")
-    axial = {name: along for name, (_, along) in found.items()}
+    by_name = gaps("conjugate_feeder")
+    axial = {name: along for name, (_, along) in by_name.items()}
     assert axial["second disc to bearing 2"] == pytest.approx(104.0 - 69.0 - 14.0 - 8.0)
     assert axial["second roller to bearing 2"] == pytest.approx(104.0 - 69.0 - 24.3 - 8.0)
     assert axial["second disc to gear"] == pytest.approx(69.0 + 25.0 - 14.0 - 10.0)
     # the cheek of an overhung pin is on the other side
     assert axial["roller to second disc"] == pytest.approx(34.0 - 14.0 - 8.75 - 0.3)
     # 154 mm between the centres, 68 mm to 86 mm of them above the axis; roller 23.5 mm
-    assert found["second roller to camshaft"][0] == pytest.approx(68.0 - 23.5 - 15.0, abs=1e-6)
+    assert by_name["second roller to camshaft"][0] == pytest.approx(68.0 - 23.5 - 15.0, abs=1e-6)
 
 
 def segment_gap(ends, points) -> float:
@@ -76,9 +76,9 @@ def test_each_arm_clears_the_disc_of_the_other_by_the_geometry_of_both():
         ):
             stop = pivot + (end - pivot) * (length - 26.0) / length
             least[name] = min(least[name], segment_gap((pivot, stop), disc) - 12.0)
-    found = gaps("conjugate_arm")
+    by_name = gaps("conjugate_arm")
     for name, gap in least.items():
-        assert found[name][0] == pytest.approx(gap, abs=2e-3)
+        assert by_name[name][0] == pytest.approx(gap, abs=2e-3)
 
 
 def test_the_check_names_what_is_within_the_bearing():

@@ -103,8 +103,8 @@ def test_the_force_of_the_output_passes_a_spring_on_the_first_arm():
     held = with_values(case(rocker=stated), {"follower.arm.spring_distance": "60 mm"})
     of = preview_case(held, corners=False).solution
     for cam in of.cams.values():
-        moved = 2000.0 + 1.4 * 0.5 * cam.speed**2 * cam.contour.lift(cam.loads.theta, 2)
-        wanted = 0.1 * (cam.viscous + 0.5 * moved)
+        output = 2000.0 + 1.4 * 0.5 * cam.speed**2 * cam.contour.lift(cam.loads.theta, 2)
+        wanted = 0.1 * (cam.viscous + 0.5 * output)
         moment = bar_of(of.numbers).bending(0.0, arm_forces(cam))
         np.testing.assert_allclose(moment, wanted, rtol=0, atol=1e-9 * wanted.max())
 

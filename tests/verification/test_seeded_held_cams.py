@@ -120,10 +120,10 @@ def drawn(k: int) -> dict[str, Any]:
 def judged(k: int, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[list[str], int, str]:
     """Faults, exit code and words of the check of one cam."""
     code, words, spent = checked(f"held{k}", drawn(k), folder, capsys)
-    found = list(faults(f"cam {k}", code, words, spent))
+    wrong = list(faults(f"cam {k}", code, words, spent))
     if "Work of the tracks vs. energy" in words:  # listed where it fails
-        found.append(f"cam {k}: energy of its landings")
-    return found, code, words
+        wrong.append(f"cam {k}: energy of its landings")
+    return wrong, code, words
 
 
 def test_a_few_seeded_held_cams_are_judged(

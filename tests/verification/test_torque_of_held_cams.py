@@ -129,9 +129,9 @@ def test_designs_of_other_springs_agree_with_their_previews():
 
 def synthesised(text):
     """Preview of a constrained synthesis of 24 splines from one start, without initial energy."""
-    found = 'kind = "constrained"\n'
-    more = f"{found}coefficients = 24\nstarts = 1\nfree = []\n"
-    return preview_case(parse_case(text.replace(found, more)), corners=False)
+    constrained = 'kind = "constrained"\n'
+    more = f"{constrained}coefficients = 24\nstarts = 1\nfree = []\n"
+    return preview_case(parse_case(text.replace(constrained, more)), corners=False)
 
 
 STRONGER = tuple((k, 8.0 * a, 8.0 * b) for k, a, b in SEVERAL)
