@@ -66,8 +66,16 @@ class PivotHistory:
     complementarity: float
 
     def __post_init__(self) -> None:
-        names = "edge_pressure", "foundation", "tilt", "line", "places", "angles", "pressure"
-        freeze(self, **{name: getattr(self, name) for name in names})
+        freeze(
+            self,
+            edge_pressure=self.edge_pressure,
+            foundation=self.foundation,
+            tilt=self.tilt,
+            line=self.line,
+            places=self.places,
+            angles=self.angles,
+            pressure=self.pressure,
+        )
 
     @property
     def error(self) -> float:
