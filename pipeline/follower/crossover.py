@@ -57,42 +57,6 @@ class Landing(NamedTuple):
         return 0.5 * mass * (self.speed**2 - self.rebound**2)
 
 
-def landings(
-    required: Array,
-    clearance: Array,
-    mass: float,
-    cam_speed: float,
-    *,
-    stiffness: float = 0.0,
-    damping: float = 0.0,
-    restitution: float = 0.0,
-) -> tuple[Landing, ...]:
-    """Landings of a rigid follower between two walls over one turn, with its rebounds.
-
-    The turn begins at the greatest force, at rest on the wall that carries it. Where the force
-    changes its sign the roller leaves that wall and moves under the force alone, which the walls no
-    longer exert; friction of the guides is none without side force. It rebounds from a wall until
-    it would rise by less than `_REST_SHARE` of the clearance. The force is linear between the
-    angles.
-
-    Parameters
-    ----------
-    required : array (n,)   axial force that the inner wall exerts on the given motion, N, positive
-                            outward, at n equal angles of the turn
-    clearance : array (n,)  of the roller along the travel, m, >= 0
-    mass : float            kg, > 0
-    cam_speed : float       rad/s, > 0
-    stiffness, damping : float   of the spring, N/m, and of the guides, N s/m, in the clearance
-    restitution : float     speed off a wall over that of the landing, >= 0, < 1
-
-    Raises
-    ------
-    InputError
-        If mass or speed is not positive or a value not finite or out of its bounds.
-    """
-    return Walls.of(required, clearance, mass, cam_speed, stiffness, damping).landings(restitution)
-
-
 class Walls(NamedTuple):
     """Two walls with a rigid follower between them, over a turn in equal steps of time, s.
 
@@ -125,11 +89,24 @@ class Walls(NamedTuple):
         damping: float = 0.0,
         motion: tuple[Array, Array, Array] | None = None,
     ) -> Walls:
-        """Walls by the force of the inner one; see `landings`.
+        """Walls by the force of the inner one, at n equal angles of a turn.
 
-        motion : force without that of inertia (n,), N, lift, m, and velocity, m/s, on the inner
-            wall, which give the inertia of each step where the acceleration jumps; None: the force
-            is linear
+        Parameters
+        ----------
+        required : array (n,)   axial force that the inner wall exerts on the follower that it
+                                guides, N, positive outward
+        clearance : array (n,)  of the roller along the travel, m, >= 0
+        mass : float            kg, > 0
+        cam_speed : float       rad/s, > 0
+        stiffness, damping : float   of the spring, N/m, and of the guides, N s/m, in the clearance
+        motion : arrays (n,)    force without that of inertia, N, lift, m, and velocity, m/s, on the
+                                inner wall, which give the inertia of each step where the
+                                acceleration jumps; None: the force is linear between the angles
+
+        Raises
+        ------
+        InputError
+            If mass or speed is not positive or a value not finite or out of its bounds.
         """
         positive("follower.mass", mass, "kg")
         positive("cam_speed", cam_speed, "rad/s")
@@ -171,8 +148,17 @@ class Walls(NamedTuple):
         return (1.0 - share) * values[k % count] + share * values[(k + 1) % count]
 
     def landings(self, restitution: float = 0.0) -> tuple[Landing, ...]:
-        """Flights of the roller through the clearance with their landings, over a turn from the
-        greatest force on; where it still rebounds there, from the middle of its longest rest on.
+        """Flights of the roller through the clearance with their landings and rebounds, over a turn
+        from the greatest force on; where it still rebounds there, from the middle of its longest
+        rest on.
+
+        Where the force changes its sign the roller leaves its wall and moves under the force alone,
+        which the walls no longer exert; friction of the guides is none without side force. It
+        rebounds from a wall until it would rise by less than `_REST_SHARE` of the clearance.
+
+        Parameters
+        ----------
+        restitution : float   speed off a wall over that of the landing, >= 0, < 1
 
         Raises
         ------

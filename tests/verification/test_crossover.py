@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.motion_laws import Segment, SegmentMotion
-from camwright.pipeline.follower.crossover import INNER, OUTER, landings
+from camwright.pipeline.follower.crossover import INNER, OUTER, Walls
 
 COUNT = 14400
 THETA = uniform_turn(COUNT)
@@ -29,6 +29,10 @@ def motion(law):
 
 def inertia(law):
     return MASS * SPEED**2 * motion(law)(THETA, 2)
+
+
+def landings(force, gap, mass, speed, restitution=0.0, **beside):
+    return Walls.of(force, gap, mass, speed, **beside).landings(restitution)
 
 
 def rise(crossings):
