@@ -192,10 +192,16 @@ class Rocker(Part):
         arm_length : float or None   of the arm of the follower, m; None: of a stem
         """
         side = -1.0 if self.side == "opposite" else 1.0
-        raised = 0.0 * lift
-        if self.length is not None and arm_length is not None:
-            raised = self.angle + lift / arm_length
+        raised = self.raised(lift, arm_length)
         return np.asarray(-side * force * np.stack([np.sin(raised), np.cos(raised)]))
+
+    def raised(self, lift: Value, arm_length: Value | None) -> Value:
+        """Angle (...) of the second arm from square to the line of its output, rad; 0 of a constant
+        ratio. See `push_on_arm`.
+        """
+        if self.length is None or arm_length is None:
+            return 0.0 * lift
+        return self.angle + lift / arm_length
 
     @property
     def ramp_angle(self) -> float:

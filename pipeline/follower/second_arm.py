@@ -55,12 +55,11 @@ class SecondArmBar:
         lift, acceleration : (...)   of the follower, m, m/s2
         """
         length, at = self.length, self.section.distance
-        raised = self.rocker.angle + lift / self.arm_length if self.rocker.length else 0.0 * lift
+        raised = self.rocker.raised(lift, self.arm_length)
         mass = self.material.density * self.section.width * self.section.depth  # kg/m
         # integral of xi (xi - at) over the bar beyond the section
         swung = length**3 / 3.0 - 0.5 * at * length**2 + at**3 / 6.0
-        bending = force * np.cos(raised) * (length - at) + mass * swung * acceleration / (
-            self.arm_length
-        )
+        by_inertia = mass * swung * acceleration / self.arm_length
+        bending = force * np.cos(raised) * (length - at) + by_inertia
         none: Array = np.asarray(0.0 * bending)
         return SectionLoads(np.asarray(bending), np.asarray(-force * np.sin(raised)), none, none)
