@@ -53,7 +53,6 @@ class WoundWire(Generic[Number]):
     strength_at_1mm: Number
     strength_exponent: Number
     treatment: Treatment
-    damping_ratio: float | None = None
     temperature: float | None
     relaxation: Number | None
 
