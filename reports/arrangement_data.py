@@ -371,7 +371,7 @@ def _sizes(
             beside.append(Disc(second.spacing, width, 2.0 * float(np.hypot(*second.disc).max())))
             deep += second.spacing
     return MechanismSizes(radius, width, axis, lowest, lift, (half, deep), diameter, end,
-                          tuple(sleeves), _discs(turn), below, tuple(beside))  # fmt: skip
+                          tuple(sleeves), (*beside, *_discs(turn)), below)  # fmt: skip
 
 
 def _discs(turn: SheetTurn) -> tuple[Disc, ...]:

@@ -61,9 +61,8 @@ class MechanismSizes:
     follower                half of its greatest length across the stem and along the camshaft
     stem_diameter, stem_end   height of the end over the reference point
     sleeves                 guides, and spring with its seats over the turn
-    discs                   gear, bearings, shaft
+    discs                   second disc of the cam, gear, bearings, shaft
     below                   length of the follower below roller centre or face
-    second                  second disc of the cam
     """
 
     cam_radius: float
@@ -77,14 +76,12 @@ class MechanismSizes:
     sleeves: tuple[Sleeve, ...]
     discs: tuple[Disc, ...]
     below: float = 0.0
-    second: tuple[Disc, ...] = ()
 
     @property
     def on_shaft(self) -> tuple[Box, ...]:
         """Boxes of the cam and the parts about its shaft."""
         cam = Disc(0.0, self.cam_width, 2.0 * self.cam_radius)
-        about = (cam, *self.second, *self.discs)
-        return tuple(map(self._disc, about))
+        return tuple(map(self._disc, (cam, *self.discs)))
 
     @property
     def parts(self) -> tuple[Box, ...]:
