@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from scipy.integrate import solve_ivp
 
-from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.arrays import Array, uniform_turn
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.follower.crossover import Landing
 from camwright.pipeline.follower.friction_coupling import guided_loads
 
 FORCES = ("axial_force", "normal_force", "cam_torque", "friction_force_a", "reaction_a")
@@ -26,3 +29,34 @@ def assert_as_closed_by_a_strong_spring(cycle: Cycle, machine: Machine) -> None:
     for name in FORCES:
         plain, own = (getattr(each.loads, name) for each in (plate, held))
         assert own == pytest.approx(plain, rel=1e-9, abs=1e-9), name
+
+
+def landing_of(
+    flight: Landing, falls: Callable[[float], float], gap: Callable[[float], float], speed: float
+) -> tuple[float, float]:
+    """Cam angle, rad, and speed against the track, m/s, of a landing by an integrator of events.
+
+    Parameters
+    ----------
+    flight : Landing   of which take-off, tracks and speed of leaving are taken
+    falls : callable   acceleration of the free follower towards the first track by cam angle, m/s2
+    gap : callable     clearance between the tracks by cam angle, m
+    speed : float      of the cam, rad/s
+    """
+    start, first = flight.take_off, flight.wall > 0.0
+
+    def opening(theta: float) -> float:
+        return speed * (gap(theta + 1e-5) - gap(theta - 1e-5)) / 2e-5
+
+    def flown(time: float, state: Array) -> tuple[float, float]:  # distance from the first track
+        return state[1], -falls(start + speed * time)
+
+    def lands(time: float, state: Array) -> float:
+        return float(state[0] - (0.0 if first else gap(start + speed * time)))
+
+    lands.terminal, lands.direction = True, -1.0 if first else 1.0  # type: ignore[attr-defined]
+    off = flight.leaving
+    begin = (0.0, off) if flight.start > 0.0 else (gap(start), opening(start) - off)
+    exact = solve_ivp(flown, (0.0, 0.1), begin, events=lands, rtol=1e-10, atol=1e-14)
+    theta, moving = start + speed * exact.t_events[0][0], exact.y_events[0][0][1]
+    return float(theta), float(-moving if first else moving - opening(theta))

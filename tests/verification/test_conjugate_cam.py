@@ -12,8 +12,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from held_cams import assert_as_closed_by_a_strong_spring
-from scipy.integrate import cumulative_trapezoid, solve_ivp
+from held_cams import assert_as_closed_by_a_strong_spring, landing_of
+from scipy.integrate import cumulative_trapezoid
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
@@ -260,26 +260,10 @@ def test_landings_of_an_arm_in_its_groove_by_an_integrator():
     first = [one for one in history.landings if one.crosses and not one.leaving]
     assert {one.wall for one in first} == {1.0, -1.0}
     for one in first:
-        start, inner = one.take_off, one.wall > 0.0
-
-        def opening(theta):
-            return speed * (gap(theta + 1e-4) - gap(theta - 1e-4)) / 2e-4
-
-        def flown(time, state, start=start):
-            return state[1], -required(start + speed * time) / machine.mass
-
-        def lands(time, state, start=start, inner=inner):
-            return state[0] if inner else state[0] - gap(start + speed * time)
-
-        lands.terminal, lands.direction = True, -1.0 if inner else 1.0
-        begin = (gap(start), opening(start)) if inner else (0.0, 0.0)
-        flight = solve_ivp(flown, (0.0, 0.1), begin, events=lands, rtol=1e-10, atol=1e-14)
-        time, (_, moving) = flight.t_events[0][0], flight.y_events[0][0]
-        theta = start + speed * time
-        against = -moving if inner else moving - opening(theta)
+        theta, against = landing_of(one, lambda theta: required(theta) / machine.mass, gap, speed)
         assert one.speed == pytest.approx(against, rel=1e-3)
         pace = path.points(theta + 1e-5) - path.points(theta - 1e-5)
-        (landed,) = (each for each in cycle.impacts if each.flight.take_off == start)
+        (landed,) = (each for each in cycle.impacts if each.flight.take_off == one.take_off)
         slip = 2.0 * speed * np.hypot(*pace) / 2e-5
         assert landed.slip == pytest.approx(slip, rel=1e-3)
 
@@ -485,23 +469,7 @@ def test_landings_by_an_adaptive_integrator():
     assert {one.flight.wall for one in cycle.impacts} == {1.0, -1.0}
     for landed in cycle.impacts:
         flight = landed.flight
-        start, inner = flight.take_off, flight.wall > 0.0
-
-        def opening(theta):
-            return speed * (gap(theta + 1e-6) - gap(theta - 1e-6)) / 2e-6
-
-        def flown(time, state, start=start):
-            return state[1], -(speed**2) * path.lift(start + speed * time, 2)
-
-        def lands(time, state, start=start, inner=inner):
-            return state[0] if inner else state[0] - gap(start + speed * time)
-
-        lands.terminal, lands.direction = True, -1.0 if inner else 1.0
-        left, off = flight.start > 0.0, flight.leaving
-        begin = (0.0, off) if left else (gap(start), opening(start) - off)
-        flight_of = solve_ivp(flown, (0.0, 0.1), begin, events=lands, rtol=1e-10, atol=1e-14)
-        time, (_, moving) = flight_of.t_events[0][0], flight_of.y_events[0][0]
-        against = -moving if inner else moving - opening(start + speed * time)
+        _, against = landing_of(flight, lambda theta: speed**2 * path.lift(theta, 2), gap, speed)
         assert flight.speed == pytest.approx(against, rel=1e-3)
 
 

@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 import numpy as np
 import pytest
-from held_cams import assert_as_closed_by_a_strong_spring
+from held_cams import assert_as_closed_by_a_strong_spring, landing_of
 from scipy.integrate import quad, solve_ivp
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
@@ -287,29 +287,16 @@ def test_landings_by_an_adaptive_integrator():
     cycle = max(trial().cycles, key=lambda each: each.cam_speed)
     machine, path = cycle.machine, cycle.contour.pitch
     speed, worst = cycle.cam_speed, max(cycle.impacts, key=lambda each: each.flight.speed)
-    start, inner = worst.flight.take_off, worst.flight.wall > 0.0
-    from_inner, leaving = worst.flight.start > 0.0, worst.flight.leaving
 
     def gap(theta):
         s, s1 = path.lift.derivatives(theta, 1)
         height = path.height_base + s
         return machine.cam.groove.clearance * np.hypot(s1, height) / height
 
-    def opening(theta):
-        return speed * (gap(theta + 1e-6) - gap(theta - 1e-6)) / 2e-6
-
-    def flown(time, state):  # distance from the inner wall
-        return state[1], -(speed**2) * path.lift(start + speed * time, 2)
-
-    def lands(time, state):
-        return state[0] if inner else state[0] - gap(start + speed * time)
-
-    lands.terminal, lands.direction = True, -1.0 if inner else 1.0
-    begin = (0.0, leaving) if from_inner else (gap(start), opening(start) - leaving)
-    flight = solve_ivp(flown, (0.0, 0.05), begin, events=lands, rtol=1e-10, atol=1e-14)
-    time, (_, moving) = flight.t_events[0][0], flight.y_events[0][0]
-    theta, step = start + speed * time, 1e-6
-    against = -moving if inner else moving - opening(theta)
+    theta, against = landing_of(
+        worst.flight, lambda theta: speed**2 * path.lift(theta, 2), gap, speed
+    )
+    step = 1e-6
     assert demand("landing_speed").demand == pytest.approx(against, rel=1e-4)
     slid = max(cycle.impacts, key=lambda each: each.slip)
     assert demand("crossover_slip").demand == slid.slip

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from held_cams import assert_as_closed_by_a_strong_spring
-from scipy.integrate import solve_ivp
+from held_cams import assert_as_closed_by_a_strong_spring, landing_of
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
@@ -132,20 +131,11 @@ def test_landings_by_an_adaptive_integrator():
     machine, path, speed = cycle.machine, cycle.contour.pitch, cycle.cam_speed
     checks = {each.id: each for each in trial().checks}
     worst = max(cycle.impacts, key=lambda each: each.flight.speed)
-    start, inner = worst.flight.take_off, worst.flight.wall > 0.0
-
-    def flown(time, state):
-        return state[1], -(speed**2) * path.lift(start + speed * time, 2)
-
-    def lands(time, state):
-        return state[0] if inner else state[0] - 0.05e-3
-
-    lands.terminal, lands.direction = True, -1.0 if inner else 1.0
-    begin = (0.05e-3 if inner else 0.0, 0.0)
-    flight = solve_ivp(flown, (0.0, 0.1), begin, events=lands, rtol=1e-10, atol=1e-14)
-    time, (_, moving) = flight.t_events[0][0], flight.y_events[0][0]
-    assert checks["landing_speed"].demand == pytest.approx(abs(moving), rel=1e-3)
-    theta = start + speed * time
+    inner = worst.flight.wall > 0.0
+    theta, moving = landing_of(
+        worst.flight, lambda theta: speed**2 * path.lift(theta, 2), lambda _: 0.05e-3, speed
+    )
+    assert checks["landing_speed"].demand == pytest.approx(moving, rel=1e-3)
     pressed = max(worst.flight.wall * machine.mass * speed**2 * float(path.lift(theta, 2)), 0.0)
     struck = machine.axial_stiffness * machine.mass * moving**2
     force = pressed + np.sqrt(pressed**2 + struck)
