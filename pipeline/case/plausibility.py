@@ -257,21 +257,19 @@ def _balance_finding(case: Case) -> Implied | None:
     residual over rotor mass times cam speed; None where it is usual, zero or not stated.
 
     Without a stated mass that of the cam up to its base circle and of the shaft between its
-    bearings, above which the grade is finer still: a coarse one is not told then. A fine grade of a
-    slow cam whose eccentricity a bench can reach is usual.
+    bearings, which the rotor exceeds, so that its grade is finer still: a coarse one is no finding
+    then. A fine grade of a slow cam whose eccentricity a bench can reach is usual.
     """
     key, other = "camshaft.counterweight.residual", "camshaft.rotor_mass"
     residual, mass = value_of(case, key), value_of(case, other)
     if residual is None:
         return None
-    least = _least_rotor_mass(case)
-    words = (
-        f"{other} = {text_of(case, other)}"
-        if mass is not None
-        else (f"{shown(least, 'g')} of cam and shaft alone")
-    )
+    words, rotor = f"{other} = {text_of(case, other)}", mass
+    if mass is None:
+        rotor = _least_rotor_mass(case)
+        words = f"{shown(rotor, 'g')} of cam and shaft alone"
     fastest = max(state.speed for state in case.load_cases) / case.mechanism.gear_ratio
-    eccentricity = residual / (least if mass is None else mass)
+    eccentricity = residual / rotor
     grade = eccentricity * fastest
     if not grade > 0.0:
         return None
