@@ -44,10 +44,10 @@ DIMENSIONS = "dimensions{}.json"
 """Files of a disc, by the ending of its name."""
 CROWN = "crown_{}.csv"
 """Drop of the crown of a body, by its word."""
-_OUTER, SECOND = "_outer", "_second"
+_OUTER, _SECOND = "_outer", "_second"
 _WALLS: Mapping[str, Side] = MappingProxyType({"": "inner", _OUTER: "outer"})
 """Walls of a groove by the ending of their files."""
-_DISCS = MappingProxyType({"": "first", SECOND: "second"})
+_DISCS = MappingProxyType({"": "first", _SECOND: "second"})
 """Discs of a conjugate pair by the ending of their files."""
 RADII_STEP = 10
 """deg, between the radii of the dimensions."""
@@ -113,17 +113,9 @@ def made_surfaces(case: Case, contour: Contour) -> dict[str, Contour]:
     discs = discs_of(contour, cam.second)
     contours = {end: each.contour for end, each in zip(_DISCS, discs, strict=False)}
     if cam.conjugate is not None:
-        second = contours[SECOND].require_roller()
-        contours[SECOND] = replace(second, roller_radius=second.roller_radius + cam.conjugate.gap)
+        second = contours[_SECOND].require_roller()
+        contours[_SECOND] = replace(second, roller_radius=second.roller_radius + cam.conjugate.gap)
     return contours
-
-
-def discs_made(case: Case, contour: Contour) -> dict[str, Contour]:
-    """Contours of the discs to make, by the ending of the names of their files: in a groove its
-    inner wall.
-    """
-    surfaces = made_surfaces(case, contour)
-    return {end: surfaces[end] for end in surfaces if end in _DISCS}
 
 
 def measured_surface(case: Case, contour: Contour, track: str | None) -> Contour:
@@ -151,7 +143,7 @@ def real_cam(case: Case, contour: Contour, track: str | None, measured: Contour)
     """
     second = case.cam.second
     path = measured.pitch
-    if second is not None and track == _DISCS[SECOND]:
+    if second is not None and track == _DISCS[_SECOND]:
         path = second.seen_from(contour).of(path).contour.pitch
     return replace(contour, pitch=path)
 
@@ -439,9 +431,11 @@ def write_workshop(
     """
     folder.mkdir(parents=True, exist_ok=True)
     jobs: dict[str, Callable[[Path], object]] = {}
-    for end in discs_made(case, contour):
-        jobs |= _jobs_of_disc(case, contour, end)
-    for end, surface in made_surfaces(case, contour).items():
+    surfaces = made_surfaces(case, contour)
+    for end in _DISCS:
+        if end in surfaces:
+            jobs |= _jobs_of_disc(case, contour, end)
+    for end, surface in surfaces.items():
         jobs |= _jobs_of(surface, end, case.workshop_order)
     for word, part in (("cam", case.cam), (case.facing.word, case.facing)):
         if part.crown is not None:
