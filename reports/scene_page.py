@@ -254,7 +254,7 @@ def _flank(material: ReportMaterial, view: TurnView, width: float) -> Json:
     return record | {"values": _rounded(np.tile(greatest, 2)), "words": words * 2}
 
 
-def _second_disc(material: ReportMaterial, view: TurnView) -> tuple[Array, list[str]] | None:
+def _second_disc(material: ReportMaterial, view: TurnView) -> tuple[list[float], list[str]] | None:
     """Maximum von Mises stress of the turn at the points of the second disc, MPa, and its words;
     None where not known.
     """
@@ -263,7 +263,7 @@ def _second_disc(material: ReportMaterial, view: TurnView) -> tuple[Array, list[
         stresses = _by_track(material, view, view.contour.shape[1])
     if stresses is None or stresses[1] is None:
         return None
-    return np.array(_rounded(stresses[1])), _stress_words("second disc, ", stresses[1])
+    return _rounded(stresses[1]), _stress_words("second disc, ", stresses[1])
 
 
 def _walls(material: ReportMaterial, view: TurnView, groove: SceneGroove) -> Json:

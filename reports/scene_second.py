@@ -80,7 +80,7 @@ def _plate(m: DrawnMechanism, second: DrawnSecond, width: float, radius: float) 
 
 def moving(
     m: DrawnMechanism, bore: Array, at: tuple[Array, Array], width: float, digits: int,
-    stresses: tuple[Array, list[str]] | None,
+    stresses: tuple[list[float], list[str]] | None,
 ) -> list[Json]:  # fmt: skip
     """Records of second disc, roller and arm with their poses as drawn, see `scene_arm.moving`; []
     without a disc of its own.
@@ -104,7 +104,7 @@ def moving(
     for name, solid, colour in _bodies(m, second, disc, bore, width):
         body = solid.as_record(digits)
         if name == "flank" and stresses is not None:
-            body |= {"values": 2 * stresses[0].tolist(), "words": [*stresses[1], *stresses[1]]}
+            body |= {"values": 2 * stresses[0], "words": 2 * stresses[1]}
         drawn = [pose["second-cam" if name == "flank" else name] for pose in poses]
         records.append({
             "body": body, "colour": colour, "plain": name == "second-cam",
