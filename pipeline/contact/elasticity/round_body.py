@@ -28,28 +28,8 @@ if TYPE_CHECKING:
     Energy: TypeAlias = Callable[[DiscreteField, DiscreteField, FormExtraParams], Array]
 
 _SOLVED_HARMONICS = (
-    0,
-    1,
-    2,
-    3,
-    4,
-    6,
-    8,
-    12,
-    16,
-    24,
-    32,
-    48,
-    64,
-    96,
-    128,
-    192,
-    256,
-    384,
-    512,
-    768,
-    1024,
-)
+    0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024,
+)  # fmt: skip
 """Harmonics that are solved; n times the compliance is a spline over log n between them."""
 
 
