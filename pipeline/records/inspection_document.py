@@ -11,12 +11,14 @@ from camwright.pipeline.records.run_summary import ScopeRecord
 
 @form()
 class CycleFigures(TypedDict):
-    """Extremes over all load cases; null: not finite."""
+    """Key figures as those of a run, of the load cases in which the follower neither leaves the cam
+    nor locks; null: not applicable.
+    """
 
     normal_force_max_N: float | None
     """Greatest contact force."""
     normal_force_min_N: float | None
-    """Least contact force."""
+    """Least contact force; 0 where it passes from one track to another."""
     p0_max_MPa: float | None
     """Greatest contact pressure."""
     von_mises_max_MPa: float | None

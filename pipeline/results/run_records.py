@@ -279,12 +279,9 @@ def headline(solution: Solution) -> HeadlineRecord:
 
 
 def _least_force(cycle: Cycle) -> float:
-    """Least contact force of a turn, N: zero where it passes from one track to another or at
-    standstill without a spring, of whose stand-in the force is.
-    """
-    loads, machine = cycle.loads, cycle.machine
-    passes = bool(np.ptp(loads.wall) > 0.0) or machine.spring.absent
-    if loads.held and machine.disc_preload is None and passes:
+    """Least contact force of a turn, N: zero where it passes between two tracks with clearance."""
+    loads = cycle.loads
+    if cycle.machine.disc_preload is None and np.ptp(loads.wall) > 0.0:
         return 0.0
     return float(loads.normal_force.min())
 

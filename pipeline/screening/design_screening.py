@@ -429,6 +429,12 @@ def utilisations(demand: Array, limit: Array, *, at_most: bool) -> Array:
     return np.divide(part, whole, out=without, where=whole > 0.0)
 
 
+def _least_force(cam: ScreenedCam) -> Array:
+    """Least contact force over the turn (m,), N: 0 between two tracks with clearance."""
+    passes = cam.pulls and cam.block.squeeze is None
+    return np.where(passes & (np.ptp(cam.wall, axis=-1) > 0.0), 0.0, sampled_least(cam.normal))
+
+
 def headline_columns(designs: Designs) -> dict[str, Column]:
     """Columns ``headline.{key}`` (m,) of the key figures, as in ``run.json``."""
     first, cams = designs.cams[0], designs.cams
@@ -442,7 +448,7 @@ def headline_columns(designs: Designs) -> dict[str, Column]:
         return np.where(np.isneginf(worst), np.nan, worst)
 
     p0 = over(lambda each: each.p0_line)
-    least = np.min([sampled_least(each.normal) for each in cams], axis=0)
+    least = np.min([_least_force(each) for each in cams], axis=0)
     steepest = sampled_greatest(np.abs(designs.whole.motion.pressure_angle))
     figures = {
         "lift_max_mm": 1e3 * designs.highest,

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,13 +16,14 @@ from camwright.geometry.measured_contour import Inspection, inspected, real_cont
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
-from camwright.pipeline.base.tables import CAM_ANGLE, Column, Table, read_table, table
+from camwright.pipeline.base.tables import CAM_ANGLE, Column, table
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.verdict import verdict
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.records.inspection_document import CycleFigures, InspectionDocument
+from camwright.pipeline.records.run_summary import HeadlineRecord
 from camwright.pipeline.results import check_records, run_reader
-from camwright.pipeline.results.run_records import cycle_columns
+from camwright.pipeline.results.run_records import cycle_columns, headline
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.results.workshop_files import measured_surface, real_cam
 from camwright.pipeline.solver import solve
@@ -164,8 +164,8 @@ def write_inspection(
         "tolerance_um": in_unit(tolerance, "um"),
         "within_tolerance": bool(np.abs(fit.deviation).max() <= 0.5 * tolerance),
         "waves_um": _waves(fit),
-        "nominal": _figures_of(run_reader.read_run(run).final.cycle),
-        "measured": _figures_of(read_table(folder / "cycle.csv")),
+        "nominal": _figures_of(run_reader.read_run(run).summary["headline"]),
+        "measured": _figures_of(headline(part.trial.solution)),
         "verdict": verdict(part.trial.checks),
         "verdict_line": check_records.verdict_line(run_reader.read_records(folder / "checks.json")),
         "scope": part.trial.case.scope.as_record(),
@@ -184,25 +184,17 @@ def _waves(fit: Inspection) -> dict[str, float]:
     return {str(k): sizes[k] for k in sorted(largest)}
 
 
-def _figures_of(cycle: Table) -> CycleFigures:
-    """Extremes of force, pressure, stress and pressure angle over all load cases of a cycle table;
-    None where not finite.
-    """
-
-    def extreme(header: str, measure: Callable[[Array], float]) -> float | None:
-        value = float(measure(np.asarray(cycle[header], dtype=float)))
-        return value if math.isfinite(value) else None
-
+def _figures_of(known: HeadlineRecord) -> CycleFigures:
+    """Figures of an inspection of the key figures of a run."""
     figures: CycleFigures = {
-        "normal_force_max_N": extreme("normal_force_N", np.max),
-        "normal_force_min_N": extreme("normal_force_N", np.min),
-        "p0_max_MPa": extreme("p0_fe_MPa", np.max),
-        "von_mises_max_MPa": extreme("von_mises_MPa", np.max),
-        "pressure_angle_max_deg": extreme("pressure_angle_deg", lambda v: np.abs(v).max()),
+        "normal_force_max_N": known["normal_force_max_N"],
+        "normal_force_min_N": known["normal_force_min_N"],
+        "p0_max_MPa": known["p0_max_MPa"],
+        "von_mises_max_MPa": known["von_mises_max_MPa"],
+        "pressure_angle_max_deg": known["pressure_angle_max_deg"],
     }
-    if "torque_after_Nm" in cycle:  # standstill and over-speed have no engine torque
-        design = cycle.of_load_case(cycle.load_cases[0]) if cycle.load_cases else cycle
-        figures["torque_after_std_Nm"] = float(np.std(design["torque_after_Nm"]))
+    if (ripple := known["torque_std_after_Nm"]) is not None:
+        figures["torque_after_std_Nm"] = ripple
     return figures
 
 

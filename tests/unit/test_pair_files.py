@@ -18,6 +18,7 @@ from camwright.pipeline.base.tables import read_table
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.workshop_files import (
     made_surfaces,
     measured_surface,
@@ -183,10 +184,14 @@ def test_the_record_of_an_inspection_has_the_nominal_of_the_measured_disc(tmp_pa
     fit = inspected(surface, surface.points(theta) + 4e-6 * surface.normal(theta))
     trial = preview_case(case, corners=False)
     part = RealPart(fit, surface, contour, trial, "second")
-    run = SimpleNamespace(final=SimpleNamespace(cycle=None))
+    run = SimpleNamespace(summary={"headline": headline(trial.solution)})
     monkeypatch.setattr(cam_inspection.run_reader, "read_run", lambda _: run)
-    monkeypatch.setattr(cam_inspection, "_figures_of", lambda _: {})
     record = write_inspection(tmp_path, part, 8e-6, tmp_path)
+    least = min(cycle.loads.normal_force.min() for cycle in trial.cycles)
+    assert least > 0.0  # of the sampled angles: the force passes through zero between two of them
+    assert (
+        record["measured"]["normal_force_min_N"] == 0.0 == record["nominal"]["normal_force_min_N"]
+    )
     assert (record["track"], record["size_um"]) == ("second", pytest.approx(4.0, abs=0.01))
     written = read_table(tmp_path / "deviation.csv")
     path = case.cam.second.path(contour.pitch)
