@@ -146,6 +146,11 @@ class Allowed(NamedTuple):
             return None
         return float(self.value)
 
+    def against_each(self, demand: Array) -> Array:
+        """Limits of demands (m,) or (m, 1), SI; NaN where `against` gives None."""
+        demand, limit = np.broadcast_arrays(demand, np.nan if self.value is None else self.value)
+        return np.where(demand > limit, limit, np.nan) if self.if_exceeded else np.array(limit)
+
 
 def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allowed]:
     """Function that gives the limit stated at a `key` of the case, or a share of it.

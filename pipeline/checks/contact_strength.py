@@ -176,7 +176,7 @@ def _endurance(bodies: Mapping[str, Material], follower: FollowerKind) -> LeastL
     )
 
 
-def _endurance_allowed(numbers: Numbers) -> Allowed:
+def endurance_allowed(numbers: Numbers) -> Allowed:
     """Allowed contact pressure, Pa: the lower endurance pressure of cam and follower over the
     safety.
     """
@@ -468,7 +468,7 @@ contact_pressure = check(
     certified_by="p0",
 ).measured(
     "angles",
-    allowed=_endurance_allowed,
+    allowed=endurance_allowed,
     remark=_pressure_in_words,
     deviation=0.001,
     bounded="crown",
@@ -679,7 +679,7 @@ _SIGNED = (
     along=_signed,
 ).measured(
     "angles",
-    allowed=_endurance_allowed,
+    allowed=endurance_allowed,
     remark=_ends_in_words,
     deviation=0.01,  # the friction of the guides, which holds a tilt, is interpolated
     bounded="line",

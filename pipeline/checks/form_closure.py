@@ -401,8 +401,6 @@ def _preload_words(solution: Solution) -> str:
 )  # fmt: skip
 def preload_pressure(solution: Solution) -> Demand | None:
     """Greatest contact pressure on either disc, Pa; None without an interference."""
-    if contact_strength.contact_pressure.measured is None:
-        return None
     tolerance = solution.machine.cam.profile_tolerance
 
     def pressure(cycle: Cycle) -> Array | None:
@@ -425,13 +423,18 @@ def preload_pressure(solution: Solution) -> Demand | None:
     if worst is None:
         return None
     value, cycle, k = worst
-    limit = contact_strength.contact_pressure.measured.allowed(solution.numbers)
-    allowed, stated = limit.against(value), {"p": value}
+    at = Extreme(value, cycle.load_case, float(cycle.theta[k]))
+    return _within_endurance(solution, at, _preload_words(solution))
+
+
+def _within_endurance(solution: Solution, worst: Extreme, words: str) -> Demand:
+    """Demand of a contact pressure, Pa, on either track beside the least endurance pressure."""
+    limit = contact_strength.endurance_allowed(solution.numbers)
+    allowed, stated = limit.against(worst.value), {"p": worst.value}
     if allowed is not None:
         stated["p_E"] = allowed * solution.machine.limits[CONTACT_SAFETY]
-    at = Extreme(value, cycle.load_case, float(cycle.theta[k]))
-    words = _preload_words(solution)
-    return Demand(value, allowed, at, limit.missing, note=words, stated=stated)
+    pressure = None if np.isnan(worst.value) else worst.value
+    return Demand(pressure, allowed, worst, limit.missing, note=words, stated=stated)
 
 
 def _over_hertz(cycle: Cycle, wall: float) -> Array:
@@ -587,26 +590,13 @@ def landing_speed(solution: Solution) -> Demand:
 )
 def landing_pressure(solution: Solution) -> Demand | None:
     """Greatest pressure of Hertz at a landing, Pa; None without a landing."""
-    if contact_strength.contact_pressure.measured is None:
-        return None
-    limit = contact_strength.contact_pressure.measured.allowed(solution.numbers)
     worst = _worst_impact(solution, lambda one: one.pressure)
     if worst is None:
         return None
-    allowed, stated = limit.against(worst.value), {"p": worst.value}
-    if allowed is not None:
-        stated["p_E"] = allowed * solution.machine.limits[CONTACT_SAFETY]
-    missing = limit.missing
-    if not solution.machine.compliances and solution.machine.stiffness is None:
-        missing = (*missing, "follower.stiffness")
-    return Demand(
-        None if np.isnan(worst.value) else worst.value,
-        allowed,
-        worst.at,
-        missing,
-        note=worst.words,
-        stated=stated,
-    )
+    demand, machine = _within_endurance(solution, worst.at, worst.words), solution.machine
+    if machine.compliances or machine.stiffness is not None:
+        return demand
+    return replace(demand, missing=(*demand.missing, "follower.stiffness"))
 
 
 @check(

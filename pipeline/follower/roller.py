@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,7 @@ from camwright.pipeline.follower.roller_parts import Bearing, Fork, Pin
 from camwright.pipeline.follower.spring import NO_FORCE
 from camwright.pipeline.follower.stem_beam import Stem
 
+Turned = TypeVar("Turned", RollingRoller, RollingContact)
 _NO_SLIP = 1e6  # friction coefficient of rolling without slip
 
 
@@ -271,11 +272,8 @@ class Roller(Part):
         ----------
         speed : float   of the cam, rad/s
         """
-        first, *others = self._rollers(contour, loads, speed)
-        motion = first.motion
-        for other in others:
-            motion = motion.where(other.carries, other.motion)
-        return motion
+        rollers = self._rollers(contour, loads, speed)
+        return _carrying(rollers, [each.motion for each in rollers])
 
     def _rollers(self, contour: Contour, loads: Loads, speed: float) -> list[_Turning]:
         """Motion of the roller of each disc without slip, and the cam angles at which it carries.
@@ -325,11 +323,9 @@ class Roller(Part):
         loads : Loads              normal force
         speed : float              of the cam, rad/s
         """
-        motion, force = self.rolling(contour, loads, speed), loads.normal_force
-        first, *others = self._rollers(contour, loads, speed)
-        driven = self._driven(first, contact, speed)
-        for other in others:
-            driven = driven.where(other.carries, self._driven(other, contact, speed))
+        rollers, force = self._rollers(contour, loads, speed), loads.normal_force
+        motion = _carrying(rollers, [each.motion for each in rollers])
+        driven = _carrying(rollers, [self._driven(each, contact, speed) for each in rollers])
         loaded = force > (NO_FORCE if loads.held else 0.0)  # no quotient where the track changes
         demand = np.abs(driven.demand) / np.where(loaded, force, np.nan)
         if self.friction is None:
@@ -378,3 +374,11 @@ class _Turning(NamedTuple):
     radius: float
     carries: NDArray[np.bool_]
     force: Array
+
+
+def _carrying(rollers: Sequence[_Turning], each: Sequence[Turned]) -> Turned:
+    """Motion, or rolling contact, of the roller that carries at each cam angle, of those `each`."""
+    joined = each[0]
+    for roller, other in zip(rollers[1:], each[1:], strict=True):
+        joined = joined.where(roller.carries, other)
+    return joined

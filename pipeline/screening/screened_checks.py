@@ -79,15 +79,12 @@ def _by_measure(declared: Declaration, measure: Measure, how: Measured) -> Scree
             return None
         if declared.lacks_left_out(designs.machine, numbers):
             return None
-        allowed, _, if_exceeded = how.allowed(numbers)
-        demand = _demand(measure, how, designs, numbers)
-        limit = np.nan if allowed is None else allowed
-        demand, limit = np.broadcast_to(demand, shape), np.broadcast_to(limit, shape)
-        limit = np.where(demand > limit, limit, np.nan) if if_exceeded else limit
+        demand = np.broadcast_to(_demand(measure, how, designs, numbers), shape)
+        limit = how.allowed(numbers).against_each(demand)
         if own := how.limits_of_strokes(numbers):
             demands = [_demand(each.measure, how, designs, numbers) for each in how.strokes]
             demand, limit = _of_strokes(demand, limit, demands, own)
-        return demand[:, 0], np.asarray(limit, dtype=float)[:, 0]
+        return demand[:, 0], limit[:, 0]
 
     return Screened(declared.id, judged, how.deviation, applies, _BOUNDED[how.bounded])
 
@@ -413,14 +410,10 @@ def _landing_pressure(designs: Designs) -> Judged | None:
     return _within_endurance(_worst_landing(designs, lambda one: one.pressure), designs)
 
 
-def _within_endurance(pressure: Array, designs: Designs) -> Judged | None:
+def _within_endurance(pressure: Array, designs: Designs) -> Judged:
     """Contact pressure (m,), Pa, and its limit, that of the check `contact_pressure`."""
-    how = contact_strength.contact_pressure.measured
-    if how is None:
-        return None
-    limit = how.allowed(designs.numbers)
-    allowed = _of_each(np.nan if limit.value is None else limit.value, designs)
-    return pressure, np.where(pressure > allowed, allowed, np.nan) if limit.if_exceeded else allowed
+    limit = contact_strength.endurance_allowed(designs.numbers)
+    return pressure, limit.against_each(pressure[:, None])[:, 0]
 
 
 def _preload_least(designs: Designs) -> Judged | None:

@@ -184,16 +184,16 @@ def _waves(fit: Inspection) -> dict[str, float]:
     return {str(k): sizes[k] for k in sorted(largest)}
 
 
-def _figures_of(known: HeadlineRecord) -> CycleFigures:
+def _figures_of(key_figures: HeadlineRecord) -> CycleFigures:
     """Figures of an inspection of the key figures of a run."""
     figures: CycleFigures = {
-        "normal_force_max_N": known["normal_force_max_N"],
-        "normal_force_min_N": known["normal_force_min_N"],
-        "p0_max_MPa": known["p0_max_MPa"],
-        "von_mises_max_MPa": known["von_mises_max_MPa"],
-        "pressure_angle_max_deg": known["pressure_angle_max_deg"],
+        "normal_force_max_N": key_figures["normal_force_max_N"],
+        "normal_force_min_N": key_figures["normal_force_min_N"],
+        "p0_max_MPa": key_figures["p0_max_MPa"],
+        "von_mises_max_MPa": key_figures["von_mises_max_MPa"],
+        "pressure_angle_max_deg": key_figures["pressure_angle_max_deg"],
     }
-    if (ripple := known["torque_std_after_Nm"]) is not None:
+    if (ripple := key_figures["torque_std_after_Nm"]) is not None:
         figures["torque_after_std_Nm"] = ripple
     return figures
 
