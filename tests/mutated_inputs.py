@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import random
+import re
 import resource
 import sys
 import tempfile
@@ -38,7 +39,9 @@ ROUND = RollerContour(PitchCurve(Lift(uniform_turn(36), np.zeros(36)), 0.05), 0.
 """Round cam to which measured files are read."""
 SECONDS_MAX, MEBIBYTES_MAX = 5.0, 500  # CPU time and growth of the memory for one input
 _CYLINDER_SHARE = 0.1  # of the cases whose working cycle is solved, 0.1 s each
-_PREVIEW_SHARE = 0.02  # of the cases that are solved and checked, seconds each and not timed
+_PREVIEW_SHARE = 0.02  # of the cases that are solved and checked, seconds each
+_SCALED_SHARE = 0.005  # of the inputs: cases of other sizes, all of them solved and checked
+_PREVIEW_SECONDS_MAX = 30.0  # CPU time of a preview: of the arm 15 s, its contact tables made anew
 
 NUMBERS = (
     "0", "-1", "-0.0", "1e308", "-1e308", "1e-308", "5e-324", "1e999", "nan", "inf", "-inf",
@@ -100,7 +103,7 @@ def sources() -> list[Source]:
         if first.data_name:
             files[first.data_name] = first.data.encode()
             every.append(Source(first.data_name, files, _case_beside))
-    every += _alone(sorted((ROOT / "cases").glob("*.toml")), read_whole)
+    every += _alone(_cases(), read_whole)
     rows = "".join(f"{k},{50 + (k % 90) / 30}\n" for k in range(360))
     lift = first_case("first", "lift").text
     table = '[lift]\nfile = "lift.csv"\n'
@@ -112,6 +115,13 @@ def sources() -> list[Source]:
     sheet = {"sheet.csv": ("angle_deg,radius_mm\n" + rows).encode()}
     every.append(Source("sheet.csv", sheet, partial(read_measured, contour=ROUND)))
     return every
+
+
+def _cases() -> list[Path]:
+    """Shipped cases without data files; in the folder of motions cams that pull, and a gravity."""
+    return [
+        each for name in (".", "motions") for each in sorted((ROOT / "cases" / name).glob("*.toml"))
+    ]
 
 
 def _alone(paths: Iterable[Path], read: Callable[[Path], object]) -> Iterator[Source]:
@@ -129,6 +139,23 @@ def mutated(content: bytes, rng: random.Random) -> bytes:
     for _ in range(rng.randint(1, 4)):
         content = rng.choice(_MUTATIONS)(content, rng)
     return content
+
+
+def scaled(content: bytes, rng: random.Random) -> bytes:
+    """A case with one to three numbers scaled by 0 or 0.1 to 10: it may still be a machine."""
+    lines = content.decode().split("\n")
+    stated = [k for k, line in enumerate(lines) if _NUMBER.match(line)]
+    for at in rng.sample(stated, rng.randint(1, 3)):
+        number = _NUMBER.match(lines[at])
+        assert number is not None
+        value = float(number[2]) * rng.choice([0.0, 0.3, 0.8, 1.25, 3.0, 10 ** rng.uniform(-1, 1)])
+        written = f"{value:.6g}" if "." in number[2] else f"{value:.0f}"
+        lines[at] = number[1] + written + number[3]
+    return "\n".join(lines).encode()
+
+
+_NUMBER = re.compile(r"""(\w+ *= *(?:"|\[ *|\{ *value *= *)?)(\d+\.?\d*)(?![\d.])(.*)""")
+"""Line of a key with a number: what stands before it, the number, the rest of the line."""
 
 
 def _bytes_changed(content: bytes, rng: random.Random) -> bytes:
@@ -210,15 +237,18 @@ _MUTATIONS = (
 def tried(count: int, seed: int) -> Iterator[Outcome]:
     """Try mutated inputs, one after another."""
     every = sources()
+    cases = [each for each in every if each.read is read_whole]
     with tempfile.TemporaryDirectory() as name:
         for number in range(count):
             own = seed * 1_000_003 + number
             rng = random.Random(own)
-            source = rng.choice(every)
+            is_scaled = rng.random() < _SCALED_SHARE
+            source = rng.choice(cases if is_scaled else every)
             folder = Path(name)
             for other, content in source.files.items():
                 (folder / other).write_bytes(content)
-            (folder / source.name).write_bytes(mutated(source.files[source.name], rng))
+            mutation = scaled if is_scaled else mutated
+            (folder / source.name).write_bytes(mutation(source.files[source.name], rng))
             random.seed(own)
             memory, start = _memory(), time.process_time()
             path = folder / source.name
@@ -226,8 +256,11 @@ def tried(count: int, seed: int) -> Iterator[Outcome]:
             seconds, grown = time.process_time() - start, _memory() - memory
             if seconds > SECONDS_MAX or grown > MEBIBYTES_MAX:
                 what = f"{seconds:.1f} s, {grown:.0f} MiB"
-            if isinstance(case, Case) and rng.random() < _PREVIEW_SHARE:
+            if isinstance(case, Case) and (is_scaled or rng.random() < _PREVIEW_SHARE):
+                start = time.process_time()
                 what = _tried(_previewed, case)[0]
+                if (taken := time.process_time() - start) > _PREVIEW_SECONDS_MAX:
+                    what = f"preview of {taken:.1f} s"
             yield Outcome(source.name, own, what, seconds, grown)
 
 

@@ -59,12 +59,7 @@ class Trace:
 
     def __post_init__(self) -> None:
         """Refuse values that are not finite or absurdly large; the arrays become read-only."""
-        freeze(self, angle=self.angle, values=finite(f"{self.source}, {self.column}", self.values))
-        wild = np.abs(self.values) > VALUE_MAX
-        if wild.any():
-            worst = float(self.values[wild][0])
-            limit = f"within {VALUE_MAX:g} of zero in SI units"
-            raise InputError(f"{self.source}, {self.column}", worst, limit)
+        freeze(self, angle=self.angle, values=_bounded(self.source, self.column, self.values))
 
     @property
     def spacing(self) -> Array:
@@ -166,7 +161,8 @@ def read_trace(
     angle = table[:, 0] * angle_factor
     guard_order(name, lines, table[:, 0], header[angle_at])
     guard_span(name, angle, angle_factor, period)
-    values = table[:, 1] * value_factor
+    with np.errstate(over="ignore"):  # refused below
+        values = table[:, 1] * value_factor
     return one_period(name, quantity, header[value_at], lines, angle, values, period)
 
 
@@ -199,13 +195,22 @@ def one_period(
     InputError
         If a gap is wider, or above 5 times the median spacing.
     """
-    written = values
+    written = values = _bounded(name, column, values)
     angle, values = without_end(angle, values, period)
     closed = values.size < written.size
     closure = float(abs(written[-1] - written[0])) if closed else _seam(angle, values, period)
     trace = Trace(name, quantity, column, angle, values, period, closure)
     _guard_gaps(trace, lines, gap_max)
     return trace
+
+
+def _bounded(name: str, column: str, values: Array) -> Array:
+    """The values of a column, SI, if they are finite and not absurdly large."""
+    field = f"{name}, {column}"
+    wild = np.abs(finite(field, values)) > VALUE_MAX
+    if wild.any():
+        raise InputError(field, float(values[wild][0]), f"within {VALUE_MAX:g} of zero in SI units")
+    return values
 
 
 def without_end(angle: Array, values: Array, period: float) -> tuple[Array, Array]:

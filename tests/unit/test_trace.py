@@ -180,11 +180,16 @@ def test_headers_without_one_angle_and_one_torque_are_refused(tmp_path, header):
         read_trace(write(tmp_path, header + "\n" + GOOD))
 
 
-def test_huge_values_are_refused_before_they_overflow(tmp_path):
+@pytest.mark.parametrize("header", ["angle_deg,torque_Nm\n", "angle_deg,torque_kNm\n"])
+@pytest.mark.parametrize("place", [0, 7])
+@pytest.mark.parametrize("value", [1e200, -1.7e308])
+def test_huge_values_are_refused_before_they_overflow(tmp_path, header, place, value):
+    """In every unit; at the end of the period, which is averaged with the start, too."""
     values = torque(degrees())
-    values[7] = 1e200
-    with pytest.raises(InputError, match="within 1e"):
-        read_trace(write(tmp_path, "angle_deg,torque_Nm\n" + rows(degrees(), values)))
+    values[place] = value
+    table = rows(degrees(), values) + f"720.0,{values[0]}\n"
+    with pytest.raises(InputError, match=r"within 1e|must be finite"):
+        read_trace(write(tmp_path, header + table))
 
 
 @pytest.mark.parametrize(
