@@ -99,7 +99,7 @@ class LiveDocument(TypedDict):
     states: list[str]
     """Load cases, standstill and over-speed."""
     contact: list[LiveContact]
-    """Contact by load case; below zero the follower leaves the cam."""
+    """Contact by load case; below zero the follower leaves the cam. Of a cam that pulls none."""
     quantities: list[LiveQuantity]
     """Key figures, then checks by the utilisation in the run."""
     left_out: dict[str, str]

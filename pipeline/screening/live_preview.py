@@ -73,7 +73,8 @@ AWAY_FROM_RUN = 2.0
 """Greatest deviation of the screening from the preview over that at the design of the run."""
 _SAMPLING_SEED = 7
 _DESIGNS_A_BLOCK = 250  # designs solved at once
-_RANGES = {"preload": 1.3, "rate": 1.3, "prime": 1.15, "roller": 1.2, "speed": 1.25, "stroke": 1.2}
+_RANGES = {"preload": 1.3, "rate": 1.3, "prime": 1.15, "roller": 1.2, "speed": 1.25, "stroke": 1.2,
+           "fit": 1.3}  # fmt: skip
 _SHRINK, _TRIES = 0.7, 8  # of the ranges, where a corner of them is refused
 _LEAST_RANGE = 1.01  # greatest over least factor
 _FAR = 1e9  # utilisation, of a demand without the sign of its limit
@@ -112,11 +113,17 @@ class _Factor(NamedTuple):
 def _factors(case: Case) -> Iterator[_Factor]:
     """Numbers of a case that a live preview changes, with their widest ranges."""
     keys: dict[str, tuple[str, Sequence[str]]] = {}
-    if case.spring.shape is None:
+    if case.spring.shape is None and not case.spring.absent:
         keys["preload"] = "Spring preload", ("spring.preload",)
         keys["rate"] = "Spring rate", ("spring.rate",)
     keys["prime"] = "Prime radius", ("cam.prime_radius",)
-    keys["roller"] = "Roller radius", ("roller.radius",)
+    cam, rollers = case.cam, ["roller.radius"]
+    if cam.conjugate is not None:
+        rollers.append("cam.conjugate.roller_radius")
+    keys["roller"] = "Roller radius", rollers
+    if cam.pulls:
+        fit = "clearance" if cam.clearance > 0.0 else "interference"
+        keys["fit"] = fit.capitalize(), (f"cam.{cam.closure}.{fit}",)
     if case.lift is not None and case.lift.kind == "eccentric":
         del keys["prime"], keys["roller"]  # its lift is one with its radii
     running = [k for k, state in enumerate(case.load_cases) if state.speed > 0.0]
@@ -465,7 +472,8 @@ class _Sample:
                 loads = sample.loads.setdefault(name, {})
                 for state, values in figures.parts.items():
                     sample._enter(sample.parts[name], state, rows, values)
-                    loads.setdefault(state, set()).update(figures.loads[state])
+                    leaves = () if designs.case.cam.pulls else figures.loads[state]
+                    loads.setdefault(state, set()).update(leaves)
                 if figures.limit is not None:
                     sample._enter(sample.limits, name, rows, figures.limit)
         return sample
@@ -522,7 +530,6 @@ def _fitted(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | No
     lift : array (N,)          of the run, m
     checks : sequence of str   ids of the checks to be followed
     """
-    case.require_force_closure("a live preview")
     near = _in_range(case, lift)
     if not near.factors:
         return None
@@ -537,8 +544,9 @@ def _fitted(case: Case, lift: Array, checks: Sequence[str]) -> LiveDocument | No
         _Sample.of(near, np.ones((1, len(near.factors))), measures), _demands(case, lift)
     )
     fit = SurfaceFit(places, HELD_OUT)
-    contact = {k: fit.surface(values) for k, values in sample.held.items()}
-    if not contact or None in contact.values():  # the case refuses too many designs
+    held = {} if case.cam.pulls else sample.held  # a cam that pulls holds its follower
+    contact = {k: fit.surface(values) for k, values in held.items()}
+    if not sample.held or None in contact.values():  # the case refuses too many designs
         return None
     figures = (_key_figure(each, sample, fit) for each in HEADLINE)
     quantities = [each for each in figures if each is not None]

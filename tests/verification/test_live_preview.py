@@ -33,17 +33,15 @@ from camwright.pipeline.screening.response_surface import Surface, SurfaceFit, s
 from camwright.pipeline.solver import solve
 
 NO_CASE = "papers/mechanisms"
-WITHOUT = (
-    *("papers/petrescu_b3", "papers/petrescu_b4"),
-    *("motions/feeder-groove", "motions/transfer-conjugate", "motions/pump-yoke"),
-)
-"""Cases of which the screening refuses the design itself: its contour bounds no body, or a cam that
-pulls holds its follower."""
+WITHOUT = "papers/petrescu_b3", "papers/petrescu_b4"
+"""Cases of which the screening refuses the design itself: its contour bounds no body."""
+PULLED = "motions/feeder-groove", "motions/transfer-conjugate", "motions/pump-yoke"
+"""Cases whose cam pulls: their landings are flown design by design."""
 FOLLOWED = [
     name
     for file in sorted(live_settings.CASES.rglob("*.toml"))
     if (name := file.relative_to(live_settings.CASES).with_suffix("").as_posix())
-    not in (NO_CASE, *WITHOUT)
+    not in (NO_CASE, *WITHOUT, *PULLED)
 ]
 SAMPLE = sorted(np.random.default_rng(1).choice(FOLLOWED, 2, replace=False).tolist())
 FEW, SOME, MANY = 5, 12, 200
@@ -296,12 +294,44 @@ def test_a_few_settings_are_within_the_stated_error(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", FOLLOWED)
+@pytest.mark.parametrize("name", [*FOLLOWED, *PULLED])
 def test_many_settings_are_within_the_stated_error(name: str) -> None:
     count = MANY if name in SAMPLE else SOME
     made = shares(name, count)
     print(f"{name}: {count} settings, {made.words}")
     assert_within(made)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PULLED)
+def test_a_follower_that_the_cam_pulls_is_lost_in_no_load_case(name: str) -> None:
+    """Its figures hold where its force changes sign; landings are among them."""
+    _, _, record = live_settings.fitted(name)
+    assert schema_errors("live", record) == []
+    assert record["contact"] == []
+    assert {tuple(part["loads"]) for each in record["quantities"] for part in each["parts"]} == {()}
+    followed = {each["id"] for each in record["quantities"]}
+    assert {"contact_force", "hertz_pressure", "landing_speed", "undercut"} <= followed
+    run = live_settings.values(record, [1.0] * len(record["factors"]))
+    assert all(each.holds for each in run.values())
+
+
+@pytest.mark.parametrize(
+    ("name", "without", "keys"),
+    [
+        ("motions/lifter-gravity", {"preload", "rate"}, {"cam.prime_radius"}),
+        ("motions/feeder-groove", {"preload", "rate"}, {"cam.groove.clearance"}),
+        ("motions/transfer-conjugate", {"preload", "rate"},
+         {"roller.radius", "cam.conjugate.roller_radius", "cam.conjugate.clearance"}),
+        ("motions/pump-yoke", {"preload", "rate", "roller"}, {"cam.yoke.clearance"}),
+    ],
+)  # fmt: skip
+def test_the_numbers_of_a_cam_without_spring(name: str, without: set[str], keys: set[str]) -> None:
+    """Neither those of the spring that stands for none, but those of both tracks."""
+    case = read_case(live_settings.CASES / f"{name}.toml")
+    factors = {each.kind: each.values for each in live_preview._factors(case)}
+    assert not without & set(factors)
+    assert keys <= {key for values in factors.values() for key in values}
 
 
 @pytest.mark.parametrize("name", WITHOUT)
