@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -371,6 +371,8 @@ class RoundContour(Contour):
 
     pitch: CentrePath
     roller_radius: float
+    wall: ClassVar[float] = 1.0
+    """1, or -1 of an outer wall, on which the roller turns the other way"""
 
     @property
     def rolls(self) -> bool:

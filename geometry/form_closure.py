@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,41 @@ from camwright.geometry.pitch_curve import CentrePath, RoundMotion
 
 Side = Literal["inner", "outer"]
 WALLS: tuple[Side, Side] = ("inner", "outer")
+
+
+class GrooveStep(NamedTuple):
+    """Step of a groove between two depths below the face of its disc.
+
+    top, bottom : depths, m; inner, outer : distances of its walls from the path of the roller, m
+    """
+
+    top: float
+    bottom: float
+    inner: float
+    outer: float
+
+    @property
+    def depth(self) -> float:
+        """Along the shaft, m."""
+        return self.bottom - self.top
+
+    @property
+    def width(self) -> float:
+        """Across the path, m."""
+        return self.inner + self.outer
+
+    def section(self, path: CentrePath) -> tuple[float, Array]:
+        """Area of the step, m2, and its first moment about the cam axis (2,), m3."""
+        theta = uniform_turn(path.lift.search_count)
+        speed, curvature = path.speed_and_curvature(theta)
+        # a strip across the groove is as long as the path at its distance n: 1 + n kappa
+        step, half, aside = theta[1] - theta[0], 0.5 * self.width, 0.5 * (self.outer - self.inner)
+        normal = path.normal(theta)
+        middle = 2.0 * half * speed * step * (1.0 + aside * curvature)
+        beside = (2.0 / 3.0) * half**3 * speed * curvature * step
+        moment = (middle * (path.points(theta) + aside * normal)).sum(axis=1)
+        moment = moment + (beside * normal).sum(axis=1)
+        return float(middle.sum()), readonly(moment)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,18 +111,6 @@ class Groove(Displayed):
 
         return second_contact(gap, len(self.pitch.lift.theta))
 
-    def section(self) -> tuple[float, Array]:
-        """Area of the groove, m2, and its first moment about the cam axis (2,), m3."""
-        theta = uniform_turn(self.pitch.lift.search_count)
-        speed, curvature = self.pitch.speed_and_curvature(theta)
-        # a strip across the groove is as long as the path at its distance n: 1 + n kappa
-        step, half = theta[1] - theta[0], self.half_width
-        middle = 2.0 * half * speed * step
-        aside = (2.0 / 3.0) * half**3 * speed * curvature * step
-        moment = (middle * self.pitch.points(theta)).sum(axis=1)
-        moment = moment + (aside * self.pitch.normal(theta)).sum(axis=1)
-        return float(middle.sum()), readonly(moment)
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OuterWall(RoundContour):
@@ -106,6 +129,8 @@ class OuterWall(RoundContour):
     InputError
         If the roller does not fit; NaN included. An undercut is a result, not an error.
     """
+
+    wall: ClassVar[float] = -1.0
 
     def __post_init__(self) -> None:
         require_round("roller.radius", self.roller_radius, self.pitch.radius_base)

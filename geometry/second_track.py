@@ -1,7 +1,8 @@
-"""Second track of a cam that pulls its follower: a second disc, or the same under a second face.
+"""Second track of a cam that pulls its follower: a second disc, or the same under a second face or
+with an outer wall under a second roller.
 
-The second roller or face is fixed to the first, on the same stem or arm; its disc is on the same
-shaft. Its path follows from that of the first.
+The second roller or face is fixed to the first, on the same stem, arm or pin; its disc is on the
+same shaft. Its path follows from that of the first.
 """
 
 from __future__ import annotations
@@ -20,8 +21,9 @@ from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
 from camwright.geometry.flat_face_contour import FaceMotion, FacePath, FlatFaceContour
 from camwright.geometry.follower_path import FollowerPath, Motion, Slide
+from camwright.geometry.form_closure import OuterWall
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import PitchCurve, RollerMotion, RoundMotion
+from camwright.geometry.pitch_curve import CentrePath, PitchCurve, RollerMotion, RoundMotion
 
 _HALF_TURN = np.pi
 
@@ -209,6 +211,36 @@ class OppositeFace(SecondFollower):
         return self
 
 
+@dataclass(frozen=True)
+class CoaxialRoller(SecondFollower):
+    """Second roller on the pin of the first, on the outer wall of a groove of two steps.
+
+    Both have one path; the outer wall is its parallel curve at the radius of the second roller, as
+    the inner one is at that of the first.
+
+    Parameters
+    ----------
+    radius : float   m
+    """
+
+    own_disc: ClassVar[bool] = False
+    radius: float
+
+    def of(self, first: FollowerPath) -> SecondTrack:
+        if not isinstance(first, CentrePath):
+            raise InputError("cam.groove.second", "a table", "left out without a roller")
+        return SecondTrack(first, OuterWall(first, self.radius), 0.0, 1.0, 0.0, _HALF_TURN)
+
+    def motion(self, first: Motion, highest: Value) -> SecondMotion:  # noqa: ARG002
+        if not isinstance(first, RollerMotion | ArmMotion):
+            raise InputError("cam.groove.second", "a table", "left out without a roller")
+        turned = np.full(first.jet.lift.shape, _HALF_TURN)
+        return SecondMotion(replace(first, size=-self.radius), turned, 1.0, 0.0)
+
+    def seen_from(self, first: Contour) -> CoaxialRoller:
+        return CoaxialRoller(first.require_roller().roller_radius)
+
+
 def _sunk(jet: Jet, highest: Value, ratio: Value) -> Jet:
     """Lift of a roller that goes down as another goes up, times a ratio; at the same places."""
     sunk = jet.at(lambda values: -ratio * values)
@@ -247,6 +279,8 @@ class SecondTrack:
     turn : float             by which these are ahead of those of the first, rad
     leverage : float         force along the travel of the second over that of the first roller
     reach : float            by which it is farther from the guides of a stem, m
+    against : float          direction in which it is loaded from that of its travel, rad: half a
+                             turn of a roller on the pin of the first
     """
 
     first: FollowerPath
@@ -254,6 +288,7 @@ class SecondTrack:
     turn: float
     leverage: float
     reach: float
+    against: float = 0.0
 
     def touch(self, theta: Array, friction: Value = 0.0) -> Touch:
         """Contact with the second roller or face, over the axial force at the first one.
@@ -266,7 +301,7 @@ class SecondTrack:
     def turned(self, theta: Array) -> Array:
         """Direction of travel of the second roller from that of the first, rad."""
         travel = self.contour.pitch.travel(theta + self.turn)
-        return np.asarray(travel + self.turn - self.first.travel(theta))
+        return np.asarray(travel + self.turn - self.first.travel(theta)) + self.against
 
     def relative_radius(self, theta: Array) -> Array:
         """Relative radius of curvature of the contact, m; negative if undercut."""
@@ -352,8 +387,14 @@ class CamDisc(NamedTuple):
 
 def discs_of(contour: Contour, second: SecondFollower | None) -> tuple[CamDisc, ...]:
     """Disc of the first contour, and that of a second roller."""
+    tracks = tracks_of(contour, second)
+    return tracks if second is None or second.own_disc else tracks[:1]
+
+
+def tracks_of(contour: Contour, second: SecondFollower | None) -> tuple[CamDisc, ...]:
+    """First contour, and that of a second roller or face, on whichever disc."""
     first = CamDisc(contour, 0.0)
-    if second is None or not second.own_disc:
+    if second is None:
         return (first,)
     track = second.track(contour.pitch)
     return first, CamDisc(track.contour, track.turn)

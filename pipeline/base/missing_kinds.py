@@ -68,7 +68,7 @@ MISSING_KINDS = (
         "follower",
         ("yoke", "scotch_yoke", "constant_breadth", "constant_width", "constant_diameter",
          "positive_drive", "positive_return", "double_roller", "twin_roller", "two_rollers"),
-        'cam.closure = "yoke" or "conjugate"',
+        'cam.closure = "yoke", "conjugate", or "groove" with [cam.groove.second]',
         keys=("yoke", "second_roller"),
     ),
     MissingKind(
@@ -78,10 +78,10 @@ MISSING_KINDS = (
         keys=("lash", "pushrod", "hydraulic"),
     ),
     MissingKind(
-        "a groove (track, face) cam with two rollers", "cam",
+        "a groove (track, face) cam without [cam.groove]", "cam",
         ("groove", "grooved", "groove_width", "track", "face", "face_cam", "slot", "slotted",
          "box", "box_cam", "closed", "internal"),
-        'cam.closure = "groove" with one roller on a stem or an arm',
+        'cam.closure = "groove", with [cam.groove.second] for two rollers',
         keys=("groove_width", "groove_depth", "track", "track_width"),
     ),
     MissingKind(

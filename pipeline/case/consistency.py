@@ -18,7 +18,7 @@ from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.limits import SPEED_REDUCTION, TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
 from camwright.pipeline.case.value_sources import require_known
-from camwright.pipeline.contact.cam_body import TWO_TRACKS, CamBody, CamConjugate
+from camwright.pipeline.contact.cam_body import TWO_TRACKS, CamBody, CamConjugate, GrooveRoller
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_file import SpeedTable
@@ -305,9 +305,10 @@ def _stores(case: Case, stated_as: str) -> None:
         limit = f"given with {stated_as} and without [lift]: it stores the work of the torque"
         raise InputError("spring", "missing", limit)
     if case.smoothing.kind == "constrained" and (
-        case.cam.groove is None or not case.spring.preload > 0.0
+        case.cam.groove is None or case.cam.second is not None or not case.spring.preload > 0.0
     ):
-        limit = f"a filter with {stated_as}: it is done for a groove with a spring.preload > 0 N"
+        limit = f"a filter with {stated_as}: it is done for a groove of one roller with a"
+        limit += " spring.preload > 0 N"
         raise InputError("smoothing.kind", "constrained", limit)
 
 
@@ -371,12 +372,15 @@ def _discs() -> Iterator[Rule]:
     yield _at_least("cam.conjugate.spacing", lambda at: at("cam.width"), ">= {cam.width}")
 
 
-def _groove() -> Iterator[Rule]:
-    """Rules of a groove: its floor and outer wall are within the disc, and the roller runs within
-    it above its fillet.
+def _groove(second: GrooveRoller | None) -> Iterator[Rule]:
+    """Rules of a groove: its floor and outer wall are within the disc, and each roller runs within
+    its step above the fillet.
     """
     depth, fillet = "cam.groove.depth", "cam.groove.corner_radius"
     yield _less(depth, lambda at: at("cam.width"), "< {cam.width}: a floor is left")
+    if second is not None:
+        yield from _steps()
+        return
     limit = ">= {roller.width}: the roller is within the groove"
     yield _at_least(depth, lambda at: at("roller.width"), limit)
     limit = "<= {}, {cam.groove.depth} less {roller.width}: the roller runs above the fillet"
@@ -388,6 +392,42 @@ def _groove() -> Iterator[Rule]:
     key, limit = "workshop.tool_radius", "<= {}, {roller.radius} plus half of the clearance"
     half = lambda at: at("roller.radius") + 0.5 * at("cam.groove.clearance")  # noqa: E731
     yield _at_most(key, half, limit)
+
+
+def _steps() -> Iterator[Rule]:
+    """Rules of a groove of two steps: each roller runs in its own, above the fillet and clear of
+    the wall that is not its own.
+    """
+    depth, fillet, wide = "cam.groove.depth", "cam.groove.corner_radius", "roller.width"
+    radius, spacing, upper, relief = (
+        f"{GrooveRoller.table}.{key}" for key in ("radius", "spacing", "step_depth", "relief")
+    )
+
+    def less(*keys: str) -> Callable[[At], Any]:
+        """The first number less the others."""
+        return lambda at: np.round(at(keys[0]) - sum(at(key) for key in keys[1:]), _DECIMALS)
+
+    above, within = "the roller runs above the fillet", "each roller is in its step"
+    yield _at_most(fillet, less(upper, wide), f"<= {{}}, {{{upper}}} less {{{wide}}}: {above}")
+    limit = f"<= {{}}, {{{depth}}} less {{{upper}}} and {{{wide}}}: {above}"
+    yield _at_most(fillet, less(depth, upper, wide), limit)
+    limit = f">= {{}}, {{{wide}}} plus {{{fillet}}}: {within}"
+    yield _at_least(spacing, lambda at: np.round(at(wide) + at(fillet), _DECIMALS), limit)
+    limit = f"<= {{}}, {{{depth}}} less {{{wide}}} and {{{fillet}}}: {within}"
+    yield _at_most(spacing, less(depth, wide, fillet), limit)
+    limit = "> {cam.groove.clearance}: each roller is clear of the wall of the other"
+    yield _more(relief, lambda at: at("cam.groove.clearance"), limit)
+    rim, prime = "cam.groove.outer_radius", "cam.prime_radius"
+    yield _more(rim, lambda at: at(prime) + at(radius), f"> {{}}, {{{prime}}} plus {{{radius}}}")
+    limit = f"> {{}}, {{{prime}}} plus {{roller.radius}} and {{{relief}}}"
+    yield _more(rim, lambda at: at(prime) + at("roller.radius") + at(relief), limit)
+    for size in ("roller.radius", radius):
+
+        def half(at: At, size: str = size) -> Any:
+            return at(size) + 0.5 * at(relief) + 0.25 * at("cam.groove.clearance")
+
+        limit = f"<= {{}}, half of the width of the step around {{{size}}}"
+        yield _at_most("workshop.tool_radius", half, limit)
 
 
 def _period(case: Case) -> Iterator[Rule]:
@@ -499,7 +539,7 @@ def _geometry(case: Case) -> Iterator[Rule]:
     if case.follower.arm is not None:
         yield from _arm(case)
     if case.cam.groove is not None:
-        yield from _groove()
+        yield from _groove(case.cam.groove.second)
     if case.cam.conjugate is not None:
         yield from _discs()
     key = "limits.return_pressure_angle"

@@ -679,9 +679,9 @@ def _in_fork(numbers: Numbers) -> Gaps:
     inner, radius = _inner_face(numbers), numbers["roller.radius"]
     to_cam = np.where(0.5 * numbers[_HEIGHT] > radius, cheek_to_cam(numbers), np.inf)
     groove = numbers.known_case.cam.groove
-    if groove is not None:  # the roller at the floor, above its fillet
-        middle = groove.depth - groove.corner_radius - 0.5 * numbers["roller.width"]
-        to_cam = np.asarray(inner - middle)
+    if groove is not None:
+        groove, second = numbers.of_part(groove), groove.second and numbers.of_part(groove.second)
+        to_cam = np.asarray(inner - groove.middle(radius, numbers["roller.width"], second))
     return {
         "cheek to roller": inner - 0.5 * numbers["roller.width"],
         "bridge to roller": numbers[_LENGTH] - radius,

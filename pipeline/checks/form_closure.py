@@ -42,7 +42,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import groove_of
 from camwright.pipeline.cycle.crossover_history import WallImpact
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, round_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.crossover import INNER, OUTER, Landing
@@ -56,9 +56,9 @@ PLATE_MOMENT = 0.509
 @check(
     UNDERCUT_FACTOR,
     title="Minimum undercut factor of the outer wall",
-    formula="min(1 + r kappa_p) >= c; r: roller radius, kappa_p: curvature of the pitch curve,"
-    " negative in a hollow, c: limits.undercut_factor",
-    symbols={"r": "roller.radius", "kappa_p": "pitch_curvature"},
+    formula="min(1 + r kappa_p) >= c; r: radius of its roller, kappa_p: curvature of the pitch"
+    " curve, negative in a hollow, c: limits.undercut_factor",
+    symbols={"r": "cam.groove.second.radius", "kappa_p": "pitch_curvature"},
     reason="At zero the outer wall has a cusp; below, the roller is not held.",
     tier=Tier.SCREENING,
     method="least 1 + roller radius x pitch curvature, refined between samples",
@@ -66,7 +66,10 @@ PLATE_MOMENT = 0.509
     needs="roller",
     closed_by="groove",
     load_cases=NONE,
-    levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
+    levers=(
+        *(levers.one(each, -1, 2.0) for each in ("roller.radius", "cam.groove.second.radius")),
+        *levers.SHAPE,
+    ),
     page="Cam",
     kept_as="hollow of the outer wall over the roller",
 ).measured(
@@ -78,7 +81,7 @@ PLATE_MOMENT = 0.509
 )
 def outer_undercut(cam: LoadedCam) -> Array:
     """1 less the undercut factor of the outer wall."""
-    return -cam.motion.sharpness
+    return -(cam.numbers["cam.groove.second.radius"] * round_of(cam.motion).path_curvature)
 
 
 @check(
@@ -468,10 +471,11 @@ class _Worst(NamedTuple):
         one = self.flight
         if np.isnan(one.landing):
             return f"the flight from {shown(one.take_off, 'deg')} does not end within a turn"
-        second = self.cycle.machine.cam.second
-        words, each = ("inner", "outer"), "wall"
-        if second is not None:
-            words, each = ("first", "second"), "disc" if second.own_disc else "face"
+        cam, words, each = self.cycle.machine.cam, ("first", "second"), "face"
+        if cam.groove is not None:
+            words, each = ("inner", "outer"), "wall"
+        elif cam.conjugate is not None:
+            each = "disc"
         tracks = dict(zip((INNER, OUTER), words, strict=True))
         return (
             f"{len(self.cycle.impacts)} landings a turn; from the {tracks[one.start]} {each} at"
@@ -645,15 +649,15 @@ def landing_balance(solution: Solution) -> Demand | None:
     CROSSOVER_SLIP,
     title="Maximum slip of the roller at a crossover",
     tier=Tier.SCREENING,
-    method="the roller keeps its spin in flight: in a groove it lands where it is to turn the other"
-    " way, on a disc of two with the spin at which it left this disc",
+    method="the roller keeps its spin in flight: one alone in a groove lands where it is to turn"
+    " the other way, one of two with the spin at which it left its track",
     lift_can_help=True,
     needs="roller",
     closed_by="form",
     if_limited=True,
-    formula="2 w v <= limits.crossover_slip; w: cam speed, v: at the landing, in a groove the speed"
-    " along the pitch curve by the cam angle, on a disc of two half of the roller radius times the"
-    " change of the spin over the cam speed since the roller left this disc",
+    formula="2 w v <= limits.crossover_slip; w: cam speed, v: at the landing, of one roller in a"
+    " groove the speed along the pitch curve by the cam angle, of two rollers half of the radius"
+    " times the change of the spin over the cam speed since the roller left its track",
     symbols={"w": f"{STATED} [rad/s]", "v": f"{STATED} [mm]"},
     reason="It wears and heats roller and walls at the same places in each turn.",
     values=(*given.LOADS, *_CLEARANCES),

@@ -7,8 +7,13 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
+import numpy as np
+
+from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
+from camwright.geometry.form_closure import GrooveStep
 from camwright.geometry.second_track import (
+    CoaxialRoller,
     ConjugateArm,
     OppositeFace,
     OppositeRoller,
@@ -142,19 +147,46 @@ _AS_DRAWN = "none: as drawn"
 
 
 @dataclass(frozen=True, kw_only=True)
+class GrooveRoller(Part):
+    """Second roller on the pin of the first, which runs on the outer wall in a step of its own.
+
+    The larger roller is in the upper step, at the face of the disc; of equal ones the first.
+    """
+
+    table: ClassVar[str] = "cam.groove.second"
+    source: TableSource = NO_SOURCE
+
+    radius: Annotated[Length, Known("bearing catalogue", "21 mm")]
+    """radius of the roller on the outer wall, which is like the first otherwise"""
+    spacing: Annotated[Length, Known("drawing", "18.5 mm")]
+    """distance of the middles of both rollers along their pin"""
+    step_depth: Annotated[Length, Known("drawing", "18.5 mm")]
+    """depth of the upper step of the groove, below the face of the disc"""
+    relief: Annotated[float, In("mm", above=0, at_most=100), Known("drawing", "0.5 mm")]
+    """gap between each roller and the wall opposite to that on which it runs"""
+
+    @property
+    def roller(self) -> CoaxialRoller:
+        """Second roller on the path of the first."""
+        return CoaxialRoller(self.radius)
+
+
+@dataclass(frozen=True, kw_only=True)
 class CamGroove(Part):
     """Groove in the face of a disc, in which the roller runs between two walls."""
 
     table: ClassVar[str] = "cam.groove"
-    defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("roller_tolerance", "wear_depth"), _AS_DRAWN
-    )
+    defaults: ClassVar[Mapping[str, str]] = {
+        "roller_tolerance": _AS_DRAWN,
+        "wear_depth": _AS_DRAWN,
+        "second": "none: one roller runs on both walls",
+    }
     source: TableSource = NO_SOURCE
 
     clearance: Annotated[
         float, In("mm", above=0, at_most=1), Known("drawing, tolerance chain", "0.02 mm")
     ]
-    """width of the groove less the diameter of the roller"""
+    """width of the groove less the diameter of the roller; of two rollers the play of their pin"""
     depth: Annotated[Length, Known("drawing", "12 mm")]
     """depth of the groove along the shaft"""
     corner_radius: Annotated[float, In("mm", at_least=0, at_most=100), Known("cutter", "1 mm")] = (
@@ -163,12 +195,41 @@ class CamGroove(Part):
     """fillet between the walls and the floor of the groove"""
     outer_radius: Annotated[Length, Known("drawing", "100 mm")]
     """radius of the disc around the groove"""
+    second: Annotated[GrooveRoller | None, Used("cycle, checks of both walls, workshop files")] = (
+        None
+    )
+    """second roller on the same pin, for the outer wall alone"""
     roller_tolerance: Annotated[FitTolerance | None, Known("drawing of the roller", "0.005 mm")] = (
         None
     )
     """tolerance of the roller radius, either way"""
     wear_depth: Annotated[FitTolerance | None, Known("own choice, or measured", "0.01 mm")] = None
     """depth that each wall loses with the roller until it is replaced"""
+
+    def middle(self, radius: Value, width: Value, second: GrooveRoller | None) -> Value:
+        """Depth of the middle of the first roller below the face of the disc, m: with a roller
+        above the fillet of the floor.
+
+        radius, width : of the roller, m; second : that on the same pin, if any
+        """
+        lowest: Value = self.depth - self.corner_radius - 0.5 * width
+        if second is None:
+            return lowest
+        return np.where(second.radius > radius, lowest, lowest - second.spacing)
+
+    def steps(self, radius: float) -> tuple[GrooveStep, ...]:
+        """Steps of the groove from the face of the disc down, of one roller one.
+
+        radius : of the roller, m, of two that on the inner wall
+        """
+        half, second = 0.5 * self.clearance, self.second
+        if second is None:
+            return (GrooveStep(0.0, self.depth, radius + half, radius + half),)
+        inner = radius + half, radius + second.relief
+        outer = second.radius + second.relief, second.radius + half
+        upper, lower = (outer, inner) if second.radius > radius else (inner, outer)
+        middle = second.step_depth
+        return GrooveStep(0.0, middle, *upper), GrooveStep(middle, self.depth, *lower)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -352,9 +413,11 @@ class CamBody(Part):
 
     @property
     def second(self) -> SecondFollower | None:
-        """Second roller, on a disc of its own, or face; None without one."""
+        """Second roller, on a disc or an outer wall of its own, or face; None without one."""
         if self.yoke is not None:
             return OppositeFace()
+        if self.groove is not None and self.groove.second is not None:
+            return self.groove.second.roller
         return None if self.conjugate is None else self.conjugate.roller
 
     @property

@@ -107,11 +107,13 @@ def undrilled(cam: CamBody, contour: Contour) -> Unbalance:
     if cam.groove is None:
         first, *others = _each_disc(cam, contour)
         return sum(others, first)
-    walls = groove_of(cam, contour)
-    area, moment = walls.section()
-    share = cam.groove.depth / cam.width
-    left = np.pi * cam.groove.outer_radius**2 - share * area
-    return less_bore(left, -share * moment, cam.bore_radius, cam.keyway, cam.width, density)
+    track = contour.require_roller()
+    left, moment = np.pi * cam.groove.outer_radius**2, np.zeros(2)
+    for step in cam.groove.steps(track.roller_radius):
+        area, aside = step.section(track.pitch)
+        share = step.depth / cam.width
+        left, moment = left - share * area, moment - share * aside
+    return less_bore(left, moment, cam.bore_radius, cam.keyway, cam.width, density)
 
 
 @lru_cache(maxsize=8)
@@ -122,7 +124,7 @@ def _each_disc(cam: CamBody, contour: Contour) -> tuple[Unbalance, ...]:
 
 
 def groove_of(cam: CamBody, contour: Contour) -> Groove:
-    """Groove of a cam around the path of its roller.
+    """Groove of a cam around the path of its roller, of two that on the outer wall.
 
     Raises
     ------
@@ -132,7 +134,9 @@ def groove_of(cam: CamBody, contour: Contour) -> Groove:
     if cam.groove is None:
         raise InputError("cam.groove", "missing", "given for its checks")
     track = contour.require_roller()
-    return Groove(track.pitch, track.roller_radius, cam.groove.clearance)
+    second = cam.groove.second
+    radius = track.roller_radius if second is None else second.radius
+    return Groove(track.pitch, radius, cam.groove.clearance)
 
 
 def design_mass(case: Case, contour: Contour) -> float:

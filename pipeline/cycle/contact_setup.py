@@ -21,9 +21,9 @@ def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
 
     In a groove the inner wall is on the disc within, held at its bore. The outer wall is on the rim
     around it. The web under the groove carries the rim; in the plane the rim is held at its outer
-    circle instead, many half-widths behind the contact. A second roller presses on a disc of its
-    own with the same bore and keyway, the second face of a yoke on the same cam; its block is like
-    the first.
+    circle instead, many half-widths behind the contact. A second roller presses on that rim or on a
+    disc of its own with the same bore and keyway, the second face of a yoke on the same cam; its
+    block is like the first.
     """
     cam, width = machine.cam, machine.contact_width
     pair = ContactPair(
@@ -38,12 +38,13 @@ def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
     second = cam.second
     if second is not None:
         track, body = second.track(contour.pitch), pair.follower
-        if second.own_disc:
+        if contour.rolls:
             roller = replace(machine.roller, radius=second.radius)
             body = roller.body(width, machine.stem, machine.spring.preload)
         pulling = replace(
-            pair, contour=track.contour, follower=body, turn=track.turn, own_body=second.own_disc,
-            counter_hole=None if second.own_disc else pair.counter_hole,
+            pair, contour=track.contour, follower=body, turn=track.turn, own_body=cam.yoke is None,
+            counter_hole=pair.counter_hole if cam.yoke is not None else None,
+            rim_radius=None if cam.groove is None else cam.groove.outer_radius,
         )  # fmt: skip
         return replace(pair, pulling=pulling)
     if cam.groove is None:

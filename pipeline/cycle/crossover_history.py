@@ -13,7 +13,7 @@ import scipy
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.follower_path import FollowerPath
-from camwright.geometry.second_track import SecondFollower, discs_of, relative_radius, touch_of
+from camwright.geometry.second_track import SecondFollower, relative_radius, touch_of, tracks_of
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.conforming_line import concave_line
@@ -216,8 +216,8 @@ def landed(machine: Machine, contour: Contour, flown: Flights | None) -> tuple[W
     """What the landings of flights do to their tracks.
 
     A roller keeps its spin in flight: on the other wall of a groove it is to turn the other way, so
-    that its surface slips at twice the speed along the path; that of a second disc has kept the
-    spin with which it last left the disc. A mass m that lands at v under a force F on a
+    that its surface slips at twice the speed along the path; one that has a track of its own has
+    kept the spin with which it last left it. A mass m that lands at v under a force F on a
     stiffness k is stopped by F + sqrt(F^2 + k m v^2); contact and walls are taken as rigid.
     """
     landings, second = () if flown is None else flown.landings, machine.cam.second
@@ -270,8 +270,8 @@ def _slip(
 ) -> float:
     """Slip of the roller on the track on which it lands, m: sliding speed over cam speed.
 
-    In a groove, twice the speed along the path. On a second disc, roller radius times the change of
-    the spin over the cam speed since the roller of this disc last left it.
+    Of one roller in a groove, twice the speed along the path. Of two rollers, radius times the
+    change of the spin over the cam speed since that of this track last left it.
 
     Parameters
     ----------
@@ -286,9 +286,9 @@ def _slip(
     count = len(flights)
     earlier = [flights[(number - k) % count] for k in range(1, count + 1)]
     left = next((one for one in earlier if one.start == flight.wall), flight)
-    disc = discs_of(contour, second)[0 if flight.wall == INNER else 1]
+    disc = tracks_of(contour, second)[0 if flight.wall == INNER else 1]
     track = disc.contour.require_roller()
     angles = np.array([flight.landing, left.take_off]) + disc.turn
-    motion = track.pitch.centre_motion(track.lift.jet(angles, 2), track.roller_radius)
+    motion = track.motion(track.lift.jet(angles, 2))
     there, before = np.asarray(motion.rolling)
     return float(track.roller_radius * abs(there - before))

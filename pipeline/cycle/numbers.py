@@ -318,6 +318,12 @@ def _rotor_inertia(numbers: Numbers) -> Value | None:
     return ring_inertia(radius, roller.hub_radius, width, density)
 
 
+def _outer_radius(numbers: Numbers) -> Value | None:
+    """Radius of the roller on the outer wall of a groove, m: of the second, or of the only one."""
+    second = None if numbers.case is None else value_of(numbers.case, "cam.groove.second.radius")
+    return numbers.get("roller.radius") if second is None else second
+
+
 def base_radius(numbers: Numbers) -> Value:
     """Least radius of the contour at zero lift, m."""
     least: Value = numbers["cam.prime_radius"] - numbers["follower.surface"]
@@ -442,6 +448,7 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "follower.size": _size,
     "cam.waviness": _waviness,
     "roller.rotor_inertia": _rotor_inertia,
+    "cam.groove.second.radius": _outer_radius,
     "spring.link.body": _link_body,
     "roller.bearing.pitch_diameter": _ball_circle,
     "roller.bearing.cleanliness_load": _cleanliness_load,

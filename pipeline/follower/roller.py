@@ -276,7 +276,7 @@ class Roller(Part):
         return _carrying(rollers, [each.motion for each in rollers])
 
     def _rollers(self, contour: Contour, loads: Loads, speed: float) -> list[_Turning]:
-        """Motion of the roller of each disc without slip, and the cam angles at which it carries.
+        """Motion of the roller of each track without slip, and the cam angles at which it carries.
 
         Parameters
         ----------
@@ -289,7 +289,7 @@ class Roller(Part):
             return [_Turning(motion, self.radius, every, loads.normal_force)]
         track, first = loads.second.track(pitch), roller_motion(pitch, self.radius, speed, theta)
         disc, there = track.contour.require_roller(), theta + track.turn
-        second = roller_motion(disc.pitch, disc.roller_radius, speed, there)
+        second = roller_motion(disc.pitch, disc.roller_radius, speed, there, wall=disc.wall)
         carried, idle = loads.normal_force, loads.idle_force + 0.0 * loads.normal_force
         return [
             _Turning(first, self.radius, ~pulls, np.where(pulls, idle, carried)),

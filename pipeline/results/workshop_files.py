@@ -107,6 +107,8 @@ def made_surfaces(case: Case, contour: Contour) -> dict[str, Contour]:
     disc is smaller by the clearance of its roller, or larger by its interference.
     """
     cam = case.cam
+    if cam.groove is not None and cam.groove.second is not None:
+        raise InputError(cam.groove.second.table, "a table", "left out: its files are not done")
     if cam.groove is not None:
         track, half = contour.require_roller(), groove_of(cam, contour).half_width
         return {end: groove_wall(track, side, half) for end, side in _WALLS.items()}

@@ -272,10 +272,11 @@ class Designs:
 
     def second_of(self, motion: Motion) -> SecondMotion | None:
         """Motion of the second roller or face by that of the first (m, n); None without one."""
-        cam = self.case.cam
+        cam, numbers = self.case.cam, Numbers(self.columns, self.case)
         second = cam.second
-        if cam.conjugate is not None:
-            second = Numbers(self.columns, self.case).of_part(cam.conjugate).roller
+        stated = cam.conjugate if cam.groove is None else cam.groove.second
+        if stated is not None:
+            second = numbers.of_part(stated).roller
         return None if second is None else second.motion(motion, self.highest[:, None])
 
     @KeptResult

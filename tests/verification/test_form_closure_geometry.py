@@ -5,7 +5,7 @@ import pytest
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.contour import RollerContour
-from camwright.geometry.form_closure import Groove
+from camwright.geometry.form_closure import Groove, GrooveStep
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 
@@ -23,7 +23,8 @@ def test_a_groove_along_a_circle_has_circular_walls():
     for side, radius in (("inner", 0.048 - 0.0102), ("outer", 0.048 + 0.0102)):
         away = np.hypot(*(groove.points(theta, side) - middle[:, None]))
         assert away == pytest.approx(radius, rel=1e-9)
-    area, moment = groove.section()
+    step = GrooveStep(0.0, 0.01, groove.half_width, groove.half_width)
+    area, moment = step.section(groove.pitch)
     ring = np.pi * ((0.048 + 0.0102) ** 2 - (0.048 - 0.0102) ** 2)
     assert area == pytest.approx(ring, rel=1e-9)
     assert moment == pytest.approx(ring * middle, rel=1e-7, abs=1e-12)
@@ -39,5 +40,6 @@ def test_the_inner_wall_without_clearance_is_the_cam_under_the_roller():
     # the area between the walls by their polygons; 720 chords miss 4e-5 of it
     x, y = groove.points(THETA, "outer")
     area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) - cam.area()
-    assert groove.section()[0] == pytest.approx(area, rel=5e-4)
+    step = GrooveStep(0.0, 0.01, groove.half_width, groove.half_width)
+    assert step.section(pitch)[0] == pytest.approx(area, rel=5e-4)
     assert groove.second_contact("outer").clearance > 0.0

@@ -18,6 +18,7 @@ ROOT = Path(__file__).parents[2]
 FILES = {
     "groove": ROOT / "cases" / "motions" / "feeder-groove.toml",
     "groove_arm": ROOT / "tests" / "data" / "groove_arm.toml",
+    "steps": ROOT / "tests" / "data" / "stepped_groove.toml",
     "gravity": ROOT / "tests" / "data" / "gravity_lift.toml",
     "stem": ROOT / "tests" / "data" / "conjugate_feeder.toml",
     "arm": ROOT / "tests" / "data" / "conjugate_arm.toml",
@@ -35,6 +36,12 @@ RANGES = {
         "cam.prime_radius": (0.061, 0.063), "follower.arm.length": (0.089, 0.091),
         "cam.groove.clearance": (12e-6, 28e-6), "cam.groove.outer_radius": (0.11, 0.116),
         "follower.pivot.swinging_mass": (1.7, 2.0), "follower.pivot.bush.friction": (0.04, 0.07),
+    },
+    "steps": {
+        "cam.prime_radius": (0.066, 0.07), "cam.groove.clearance": (12e-6, 28e-6),
+        "cam.groove.second.radius": (0.0208, 0.0225), "cam.groove.second.relief": (5e-4, 7e-4),
+        "cam.groove.depth": (0.036, 0.037), "roller.radius": (0.0235, 0.0242),
+        "follower.mass": (2.7, 3.3),
     },
     "gravity": {
         "cam.prime_radius": (0.066, 0.07), "follower.mass": (7.5, 8.5),
@@ -77,6 +84,7 @@ _LANDS = {"landing_speed", "landing_pressure", "crossover_slip"}
 OF_FORM = {
     "groove": _LANDS | {"outer_undercut", "groove_wall", "groove_clearance", "groove_radius"},
     "groove_arm": _LANDS | {"outer_undercut", "groove_wall", "groove_radius", "pivot_pressure"},
+    "steps": _LANDS | {"outer_undercut", "groove_wall", "groove_clearance", "fork_gap"},
     "gravity": {"contact_force_margin", "jump"},
     "stem": _LANDS | {"second_disc_gap", "cam_radius"},
     "arm": _LANDS | {"second_disc_gap", "pivot_pressure"},
@@ -102,7 +110,7 @@ def designs(name, count):
     return case, factors
 
 
-THOROUGH = "stem", "gravity", "pressed", "groove_arm"
+THOROUGH = "stem", "steps", "gravity", "pressed", "groove_arm"
 """Cams of which a slow test alone compares the previews."""
 
 

@@ -1,0 +1,226 @@
+"""A groove of two steps for two rollers on one pin, by other formulations.
+
+The case is tests/data/stepped_groove.toml: the smaller second roller runs on the outer wall.
+"""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from held_cams import FORCES, assert_as_closed_by_a_strong_spring
+
+from camwright.geometry.arrays import FULL_TURN, uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.second_track import CoaxialRoller
+from camwright.pipeline.case.case_file import case_of, parse_case, read_case
+from camwright.pipeline.contact.closed_form import closed_form_history
+from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
+from camwright.pipeline.cycle.crossover_history import flights, landed
+from camwright.pipeline.follower.follower_forces import follower_loads
+from camwright.pipeline.preview import preview_case
+
+FILE = Path(__file__).parents[1] / "data" / "stepped_groove.toml"
+
+
+@cache
+def trial():
+    return preview_case(read_case(FILE), corners=False)
+
+
+def running():
+    """Cycle and machine of the load case of the file."""
+    (cycle,) = (each for each in trial().cycles if each.load_case == "running")
+    return cycle, cycle.machine
+
+
+def demand(name):
+    return next(each for each in trial().checks if each.id == name)
+
+
+def with_second(machine, second):
+    """Machine with another second roller; None: one roller on both walls."""
+    groove = replace(machine.cam.groove, second=second)
+    return replace(machine, cam=replace(machine.cam, groove=groove))
+
+
+# --- the limit of one roller ------------------------------------------------------------------
+def test_two_equal_rollers_are_one_roller():
+    """Forces and pressures of the groove of one roller, 1e-9; its spin differs alone."""
+    cycle, machine = running()
+    second = replace(machine.cam.groove.second, radius=machine.roller.radius)
+    theta, path = cycle.theta, cycle.contour.pitch
+    one, two = with_second(machine, None), with_second(machine, second)
+    plain, own = (
+        follower_loads(path, each.system, machine.cam_speed, theta) for each in (one, two)
+    )
+    for name in (*FORCES, "reaction_b", "tangential_force", "end_moment", "on_shaft"):
+        first, other = getattr(plain, name), getattr(own, name)
+        scale = np.abs(first).max()
+        assert other == pytest.approx(first, rel=1e-9, abs=1e-9 * scale), name
+    pressed = [
+        closed_form_history(
+            under_load(contact_pair(each, cycle.contour), loads), theta, loads.normal_force
+        ).p0
+        for each, loads in ((one, plain), (two, own))
+    ]
+    assert pressed[1] == pytest.approx(pressed[0], rel=1e-9)
+    assert (plain.axial_force < 0.0).any() and (plain.axial_force > 0.0).any()
+    same = [flights(each, cycle.contour).landings for each in (one, two)]
+    for a, b in zip(*same, strict=True):
+        assert (b.landing, b.speed) == pytest.approx((a.landing, a.speed), rel=1e-9)
+
+
+def test_a_strong_spring_makes_it_a_spring_closed_cam():
+    assert_as_closed_by_a_strong_spring(*running())
+
+
+# --- statics ----------------------------------------------------------------------------------
+def test_forces_by_the_equilibrium_of_the_stem():
+    """Contact force along the normal of the wall that carries, two guides, friction: 1e-8."""
+    cycle, machine = running()
+    theta, path, system = uniform_turn(180), cycle.contour.pitch, machine.system
+    loads = follower_loads(path, system, machine.cam_speed, theta)
+    s, s1, s2 = path.lift.derivatives(theta, 2)
+    # normal of the path in the axes of the stem, by differences of the centre in cam axes
+    step = 1e-5
+    before, after = path.points(theta - step), path.points(theta + step)
+    along, height = np.hypot(*(after - before)) / (2.0 * step), path.height_base + s
+    cosine = height / along
+    reach = system.overhang_at_max_lift + path.lift.highest.value - s
+    force = system.mass * machine.cam_speed**2 * s2 + system.spring.force(s)
+    moving = np.where(np.abs(s1) > 1e-9 * path.lift.stroke, np.sign(s1), 0.0)
+    normal = force / cosine
+    for _ in range(200):
+        side = np.abs(normal) * np.sqrt(1.0 - np.minimum(cosine, 1.0) ** 2)
+        on_b = side * reach / system.guide_spacing
+        rub = system.friction_a * (side + on_b) + system.friction_b * on_b
+        normal = (force + moving * rub) / cosine
+    away = np.abs(s1) > 1e-3 * path.lift.stroke  # the root of a small angle has no digits
+    scale = np.abs(normal).max()
+    assert loads.normal_force[away] == pytest.approx(np.abs(normal[away]), abs=1e-8 * scale)
+    assert np.sign(loads.wall[away]) == pytest.approx(np.sign(normal[away]))
+    work = normal * cosine * s1
+    assert loads.cam_torque[away] == pytest.approx(work[away], abs=1e-8 * np.abs(work).max())
+
+
+# --- walls, contact and spin ------------------------------------------------------------------
+def test_each_wall_is_parallel_to_the_path_at_the_radius_of_its_roller():
+    """Least distance of the path from points of each wall: the radius of its roller, 1e-9 m."""
+    cycle, machine = running()
+    track = machine.cam.second.track(cycle.contour.pitch)
+    theta = uniform_turn(96)
+    for wall, roller in ((cycle.contour, machine.roller.radius), (track.contour, 0.021)):
+        for angle, point in zip(theta, wall.points(theta).T, strict=True):
+            near = angle + np.linspace(-2e-3, 2e-3, 401)
+            away = np.hypot(*(cycle.contour.pitch.points(near) - point[:, None]))
+            assert away.min() == pytest.approx(roller, abs=1e-9)
+
+
+def test_contact_on_each_wall_by_its_roller():
+    """Half-planes of the radii of each roller and its wall; Hertz (1882)."""
+    cycle, machine = running()
+    loads, path = cycle.loads, cycle.contour.pitch
+    pulled = loads.axial_force < 0.0
+    roller, middle = np.where(pulled, 0.021, 0.0235), path.radius_of_curvature(loads.theta)
+    wall = np.where(pulled, -1.0 / (middle + roller), 1.0 / (middle - roller))
+    load = loads.normal_force / machine.contact_width
+    pressure = np.sqrt(load * machine.contact_modulus * (1.0 / roller + wall) / np.pi)
+    assert cycle.contact.p0 == pytest.approx(pressure, rel=1e-9, abs=1.0)
+    assert pulled.any() and not pulled.all()
+    factor = (1.0 + 0.021 / middle).min()
+    assert demand("outer_undercut").demand == pytest.approx(factor, rel=1e-3)
+
+
+def test_no_roller_changes_its_spin():
+    """Each turns one way by the surface of its wall; a roller lands with the spin it left with."""
+    cycle, machine = running()
+    theta, path, speed = cycle.theta, cycle.contour.pitch, machine.cam_speed
+    pulled = cycle.loads.axial_force < 0.0
+    pace = np.hypot(*(path.points(theta + 1e-5) - path.points(theta - 1e-5))) / 2e-5
+    spin = np.where(pulled, -speed * (pace / 0.021 + 1.0), speed * (pace / 0.0235 - 1.0))
+    assert np.abs(cycle.parts.roller_spin) == pytest.approx(np.abs(spin), rel=1e-6)
+    assert np.sign(cycle.parts.roller_spin) == pytest.approx(np.sign(spin))
+    flown = flights(machine, cycle.contour)
+    alone = landed(with_second(machine, None), cycle.contour, flown)
+    for one, of_one in zip(landed(machine, cycle.contour, flown), alone, strict=True):
+        if not one.flight.crosses:
+            continue
+        left = [each.flight for each in alone if each.flight.start == one.flight.wall]
+        earlier = max(left, key=lambda f: (f.take_off - one.flight.landing) % FULL_TURN)
+        ends = np.array([one.flight.landing, earlier.take_off])
+        at = np.hypot(*(path.points(ends + 1e-5) - path.points(ends - 1e-5))) / 2e-5
+        assert one.slip == pytest.approx(speed * abs(at[0] - at[1]), rel=1e-5)
+        assert one.slip < 0.2 * of_one.slip
+
+
+def test_landings_press_the_wall_of_each_roller():
+    """The force of a landing on the relative radius of its own roller and wall."""
+    cycle, machine = running()
+    for one in cycle.impacts:
+        outer, at = one.flight.wall < 0.0, np.array([one.flight.landing])
+        middle = float(cycle.contour.pitch.radius_of_curvature(at)[0])
+        radius = 0.021 if outer else 0.0235
+        curved = 1.0 / radius + (-1.0 / (middle + radius) if outer else 1.0 / (middle - radius))
+        load = one.force / machine.contact_width
+        pressure = np.sqrt(load * machine.contact_modulus * curved / np.pi)
+        assert one.pressure == pytest.approx(pressure, rel=1e-6)
+
+
+# --- the body ---------------------------------------------------------------------------------
+def test_mass_of_the_disc_by_the_volume_of_both_steps():
+    """Chords of both walls of each step; 7200 chords miss 1e-6 of an area."""
+    cycle, machine = running()
+    cam, path, theta = machine.cam, cycle.contour.pitch, uniform_turn(7200)
+    steps = ((0.018, 0.0235 + 1e-5, 0.0235 + 5e-4), (0.018, 0.021 + 5e-4, 0.021 + 1e-5))
+    volume = np.pi * 0.125**2 * cam.width
+    moment = np.zeros(2)
+    for depth, inner, outer in steps:
+        for side, distance in ((1.0, outer), (-1.0, -inner)):
+            x, y = path.points(theta) + distance * path.normal(theta)
+            cross = x * np.roll(y, -1) - y * np.roll(x, -1)
+            volume -= side * depth * 0.5 * cross.sum()
+            centre = np.array([x + np.roll(x, -1), y + np.roll(y, -1)]) * cross / 6.0
+            moment -= side * depth * centre.sum(axis=1)
+    track = cycle.contour.require_roller()
+    areas = [step.section(track.pitch) for step in cam.groove.steps(track.roller_radius)]
+    own = np.pi * 0.125**2 * cam.width - sum(0.018 * area for area, _ in areas)
+    assert own == pytest.approx(volume, rel=1e-6)
+    assert -sum(0.018 * each for _, each in areas) == pytest.approx(moment, abs=1e-11)
+
+
+# --- the case ---------------------------------------------------------------------------------
+def test_the_case_passes_by_check():
+    must = [each for each in trial().checks if each.must_have and not each.judged_at]
+    assert [each.id for each in must if each.status != "pass"] == []
+
+
+SECOND = "cam.groove.second"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('step_depth = "18 mm"', 'step_depth = "17.8 mm"', "cam.groove.corner_radius = 0.4 mm"),
+        ('depth = "36 mm"', 'depth = "35.8 mm"', "cam.groove.corner_radius = 0.4 mm"),
+        ('spacing = "18 mm"', 'spacing = "17.8 mm"', f"{SECOND}.spacing = 17.8 mm, must be >="),
+        ('spacing = "18 mm"', 'spacing = "18.2 mm"', f"{SECOND}.spacing = 18.2 mm, must be <="),
+        ('relief = "0.5 mm"', 'relief = "0.01 mm"', f"{SECOND}.relief = 0.01 mm, must be >"),
+        ('outer_radius = "125 mm"', 'outer_radius = "91.9 mm"', "cam.groove.outer_radius = 91.9"),
+        ('tool_radius = "21 mm"', 'tool_radius = "21.3 mm"', "workshop.tool_radius = 21.3 mm"),
+        ('radius = "21 mm"\nspacing', 'spacing', f"{SECOND}.radius = missing"),
+    ],
+)  # fmt: skip
+def test_refusals_of_the_case(old, new, message):
+    text = FILE.read_text(encoding="utf-8")
+    assert old in text
+    with pytest.raises(InputError) as error:
+        parse_case(text.replace(old, new, 1))
+    assert message in str(error.value)
+
+
+def test_its_tables_read_back():
+    case = read_case(FILE)
+    assert case_of(case.tables()).cam.groove == case.cam.groove
+    assert case.cam.second == CoaxialRoller(0.021)
