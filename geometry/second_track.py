@@ -317,10 +317,17 @@ class SecondTrack:
         first : Motion      of the first roller or face there
         friction : float    of a face
         """
-        jet = self.contour.lift.jet(theta + self.turn, 2)
-        motion = self.contour.motion(jet, friction)
-        second = SecondMotion(motion, self.turned(theta), self.leverage, self.reach)
+        second = SecondMotion(
+            self.motion(theta, friction), self.turned(theta), self.leverage, self.reach
+        )
         return second.carried(first, pulls)
+
+    def motion(self, theta: Array, friction: Value = 0.0) -> Motion:
+        """Motion of the second roller or face in its own travel at cam angles (n,), rad.
+
+        friction : of a face
+        """
+        return self.contour.motion(self.contour.lift.jet(theta + self.turn, 2), friction)
 
 
 def _from_first(touch: Touch, turned: Array, leverage: Value) -> Touch:

@@ -285,7 +285,12 @@ class Machine(Displayed):
     def arm_bar(self) -> ArmBar | None:
         """Arm as a beam; None of a stem, and of an arm that is not described."""
         output = 0.0 if self.output is None else self.output.reduced_mass
-        return ArmBar.of(self.arm, self.follower, self.mass - output, self.spring.link)
+        pair = self.cam.conjugate
+        bars = ArmBar.each(
+            *(self.arm, self.follower, self.mass - output, self.spring.link),
+            None if pair is None else pair.arm_length,
+        )
+        return next(iter(bars), None)
 
     @property
     def tilting(self) -> FollowerTilt:

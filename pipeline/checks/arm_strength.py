@@ -48,6 +48,7 @@ from camwright.pipeline.follower.shaft_strength import (
 )
 
 _ARM = FollowerArm.table
+_LEAST_FORCE = 1.0  # N, of a contact that presses the arm aside, where another one takes over
 _BREAKS = "a broken arm drops its roller into the cam"
 _VALUES = (*given.LENGTH, "follower.arm.*_notch")
 _LEVERS = (
@@ -59,7 +60,7 @@ _LOADS = (
     "M, F, L, T: moment in the plane of the cam, force along the arm, moment across the plane and"
     " torque of the section, by contact, spring and inertia, and by the ends, tilt and offset of"
     " the contact; in a fork of its more loaded cheek times their number, in the eye F of the"
-    " contact force alone"
+    " contact force alone; of conjugate discs in both arms"
 )
 
 
@@ -92,13 +93,21 @@ def _arm_of(numbers: Numbers) -> FollowerArm:
     return arm
 
 
-def bar_of(numbers: Numbers) -> ArmBar | None:
-    """Arm of a case as a bar; None where it is not described."""
+def bars_of(numbers: Numbers) -> tuple[ArmBar, ...]:
+    """Arm of a case as a bar, and the second arm of conjugate discs; () where it is not
+    described.
+    """
     case, link = numbers.known_case, numbers.known_case.spring.link
     arm = None if case.follower.arm is None else numbers.of_part(case.follower.arm)
     link = None if link is None else numbers.of_part(link)
     output = 0.0 if case.output is None else case.output.reduced_mass
-    return ArmBar.of(arm, case.facing, numbers["follower.mass"] - output, link)
+    mass, second = numbers["follower.mass"] - output, numbers.get("cam.conjugate.arm_length")
+    return ArmBar.each(arm, case.facing, mass, link, second)
+
+
+def bar_of(numbers: Numbers) -> ArmBar | None:
+    """Arm of a case as a bar, the first of two; None where it is not described."""
+    return next(iter(bars_of(numbers)), None)
 
 
 def second_bar_of(numbers: Numbers) -> SecondArmBar | None:
@@ -127,20 +136,22 @@ class _JudgedSection(NamedTuple):
     surface: Surface
 
 
-def _first_arm(numbers: Numbers, which: str = "sections") -> tuple[_JudgedSection, ...]:
-    """Sections of the arm; () where it is not described.
+def _arms(numbers: Numbers, which: str = "sections") -> tuple[_JudgedSection, ...]:
+    """Sections of the arm, and of the second one of conjugate discs; () where not described.
 
     which: name of those of `ArmBar`: `sections`, all, `pivot` or `roller`
     """
-    bar = bar_of(numbers)
-    if bar is None:
-        return ()
 
-    def loads(section: ArmSection, cam: LoadedCam) -> SectionLoads:
-        return bar.loads(section, arm_forces(cam))
+    def loads(number: int, bar: ArmBar, section: ArmSection, cam: LoadedCam) -> SectionLoads:
+        return bar.loads(section, arm_forces(cam, number))
 
     return tuple(
-        _JudgedSection(each, partial(loads, each), bar.material, bar.arm.surface)
+        _JudgedSection(
+            each._replace(name=("", "second arm ")[number] + each.name),
+            partial(loads, number, bar, each),
+            *(bar.material, bar.arm.surface),
+        )
+        for number, bar in enumerate(bars_of(numbers))
         for each in getattr(bar, which)
     )
 
@@ -155,17 +166,26 @@ def _second_arm(numbers: Numbers) -> tuple[_JudgedSection, ...]:
     )
 
 
-def arm_forces(cam: LoadedCam) -> ArmForces:
-    """Forces on the arm of a loaded cam (..., n), of two arms those on the first."""
-    (motion, across), sense = cam.on_first, _arm_of(cam.numbers).sense
+def arm_forces(cam: LoadedCam, number: int = 0) -> ArmForces:
+    """Forces on the arm of a loaded cam (..., n), or on the second one of conjugate discs, number
+    1, along and across its own travel, which is opposite to that of the first.
+    """
+    motion, across, normal = cam.on_bodies[number]
+    sense, inertia = _arm_of(cam.numbers).sense, np.asarray(cam.inertia - cam.output_inertia)
+    closing = np.asarray(cam.closing - cam.output_closing)
+    if number:
+        numbers = cam.numbers
+        ratio = numbers["follower.arm.length"] / numbers["cam.conjugate.arm_length"]
+        sense, inertia, closing = -sense, -ratio * inertia, 0.0 * closing
+    loaded = np.real(normal) > (_LEAST_FORCE if cam.pulls else 0.0)
     return ArmForces(
         across=across,
         pressed=across * motion.pressing,
         along=np.asarray(-sense * across * motion.side),
-        normal=cam.normal,
-        closing=np.asarray(cam.closing - cam.output_closing),
-        inertia=np.asarray(cam.inertia - cam.output_inertia),
-        couple=cam.follower_moment,
+        normal=normal,
+        closing=closing,
+        inertia=inertia,
+        away=np.where(loaded, cam.follower_moment, 0.0) / np.where(loaded, cam.normal, 1.0),
     )
 
 
@@ -261,7 +281,7 @@ def _at(place: Literal["pivot", "roller"], needs: Literal["arm", "roller"]) -> A
         *(f"arm at its {place}", "arm", needs, _ARM, f"{_METHOD}, by contact, spring and inertia"),
         *(_LOADS, _BREAKS, _CARD, _VALUES, _LEVERS),
         lambda numbers: _lacking(_arm_of(numbers), f"{place}_notch"),
-        partial(_first_arm, which=place),
+        partial(_arms, which=place),
     )
 
 
@@ -483,7 +503,7 @@ def _greatest(sections: tuple[_JudgedSection, ...], cam: LoadedCam) -> Array:
 @_yield_check("arm", "arm", _LOADS, _BREAKS, _ARM, _VALUES, _LEVERS).measured(
     "angles",
     allowed=_yield_allowed,
-    remark=partial(_with_section, _first_arm),
+    remark=partial(_with_section, _arms),
     deviation=0.005,
     bounded="line",
     kept=Kept(unit="MPa"),
@@ -492,7 +512,7 @@ def arm_yield(cam: LoadedCam) -> Array:
     """Greatest von Mises stress over the sections of the arm at each cam angle (..., n), Pa; NaN
     where the arm is not described.
     """
-    return _greatest(_first_arm(cam.numbers), cam)
+    return _greatest(_arms(cam.numbers), cam)
 
 
 @_yield_check(

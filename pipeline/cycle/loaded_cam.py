@@ -150,6 +150,21 @@ def not_negative(values: Array) -> Array:
     return np.where(np.real(values) > 0.0, values, 0.0 * values)
 
 
+class BodyContact(NamedTuple):
+    """Contact of one roller or face with its disc: motion in its own travel, axial force there and
+    normal force (..., n), N, both 0 where another one carries all.
+    """
+
+    motion: Motion
+    axial: Array
+    normal: Array
+
+    @classmethod
+    def of(cls, motion: Motion, axial: Array) -> BodyContact:
+        """From the axial force of a roller along its own travel (..., n), N."""
+        return cls(motion, axial, np.asarray(axial * motion.gain))
+
+
 class OfGuides(NamedTuple):
     """Pair of values of guides A and B."""
 
@@ -470,11 +485,9 @@ class LoadedCam:
         return self.output.whole_inertia(self.jet.lift, self.velocity, self.acceleration)
 
     @property
-    def on_first(self) -> tuple[Motion, Array]:
-        """Motion of the first roller or face and axial force of its contact, N: of two discs that
-        of the first alone, 0 where the second carries all.
-        """
-        return self.motion, self.axial
+    def on_bodies(self) -> tuple[BodyContact, ...]:
+        """Contact of the follower with the cam; of two discs of each roller with its own."""
+        return (BodyContact(self.motion, self.axial, self.normal),)
 
     @property
     def output_closing(self) -> Value:

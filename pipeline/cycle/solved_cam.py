@@ -15,7 +15,7 @@ from camwright.geometry.lift import Jet
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, on_wall
+from camwright.pipeline.cycle.loaded_cam import BodyContact, LoadedCam, OfGuides, on_wall
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.follower.follower_forces import Loads
@@ -188,13 +188,17 @@ class ForcesCam(ContourCam):
         return self.loads.axial_force
 
     @property
-    def on_first(self) -> tuple[Motion, Array]:
+    def on_bodies(self) -> tuple[BodyContact, ...]:
         loads = self.loads
         if loads.second is None:
-            return super().on_first
-        motion = self._of_first
-        pressed = np.where(self.wall > 0.0, loads.normal_force, loads.idle_force)
-        return motion, np.asarray(pressed / motion.gain)
+            return super().on_bodies
+        motions = self._of_first, loads.second.track(self.contour.pitch).motion(loads.theta)
+        return tuple(
+            BodyContact.of(
+                motion, np.where(carries, loads.normal_force, loads.idle_force) / motion.gain
+            )
+            for motion, carries in zip(motions, (self.wall > 0.0, self.wall < 0.0), strict=True)
+        )
 
     @property
     def pivot_load(self) -> Array:

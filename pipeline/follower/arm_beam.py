@@ -181,10 +181,10 @@ class ArmForces(NamedTuple):
     """Forces on the arm (...), N.
 
     across, closing, inertia: moments about the pivot over the length of the arm, of the contact, of
-    spring, weight and machine, and of the mass, the two latter without what acts on a second arm;
-    pressed, along: of the contact across and along the arm where it acts, along > 0 in tension;
-    normal: of the contact; couple: of the contact about the middle of the roller in the plane of
-    its normal and the cam axis, N m, >= 0.
+    spring, weight and machine, and of the mass, of both arms of conjugate discs together, the two
+    latter without what acts on the second arm of a rocker; pressed, along: of the contact across
+    and along the arm where it acts, along > 0 in tension; normal: of the contact; away: of the
+    contact force from the middle of the roller along the cam axis, m, >= 0.
     """
 
     across: Array
@@ -193,7 +193,7 @@ class ArmForces(NamedTuple):
     normal: Array
     closing: Array
     inertia: Array
-    couple: Array
+    away: Array
 
 
 def _or(stated: Value | None, default: Value) -> Value:
@@ -208,8 +208,8 @@ class ArmBar:
     ----------
     arm : FollowerArm    with its width, depth, material and notch factors
     held : float         distance from the pivot at which the spring acts, m
-    end_share : float    of roller, pin and fork in the moment of inertia about the pivot; the rest
-                         is that of a uniform bar
+    end_share : float    of roller, pin and fork in the whole moment of inertia about the pivot
+    bar_share : float    of the arm as a uniform bar in it
     pin, fork : or None  of the roller; None: not described, or a face
     holds_pin : bool     of a roller
     """
@@ -221,33 +221,52 @@ class ArmBar:
     arm: FollowerArm
     held: Value
     end_share: Value
+    bar_share: Value
     pin: Pin | None = None
     fork: Fork | None = None
     holds_pin: bool = True
 
     @classmethod
-    def of(
-        cls, arm: FollowerArm | None, end: FollowerKind, mass: Value, link: SpringLink | None
-    ) -> ArmBar | None:
-        """Bar of an arm of a follower with the roller or face `end`; None of a stem, and of an arm
-        without section or material.
+    def each(
+        cls,
+        arm: FollowerArm | None,
+        end: FollowerKind,
+        mass: Value,
+        link: SpringLink | None,
+        second: Value | None = None,
+    ) -> tuple[ArmBar, ...]:
+        """Bar of an arm of a follower with the roller or face `end`, and of the second arm of
+        conjugate discs; () of a stem, and of an arm without section or material.
+
+        The second is like the first but for its length, and no spring acts on it. Each swings
+        the mass at its own end, the rest of the moment of inertia is that of both bars.
 
         Parameters
         ----------
         end : FollowerKind   roller or face on the arm
         mass : float         that moves with it, kg
         link : SpringLink    None: of another spring
+        second : float       length of a second arm, m; None: without one
         """
         if arm is None or arm.width is None or arm.depth is None or arm.material is None:
-            return None
+            return ()
         masses = sum(each for each in end.moving.masses.values() if each is not None)
         pin, fork = end.parts.get("pin"), end.parts.get("fork")
-        return cls(
-            *(arm.length, arm.width, arm.depth, arm.material, arm, arm.held(link)),
-            np.minimum(masses / mass, 1.0),
-            pin if isinstance(pin, Pin) else None,
-            fork if isinstance(fork, Fork) else None,
-            "pin" in end.parts,
+        lengths: list[tuple[Value, Value, Value]] = [(arm.length, arm.held(link), 1.0)]
+        if second is not None:
+            lengths.append((second, 0.0, second / arm.length))
+        square, cube = (sum(ratio**power for *_, ratio in lengths) for power in (2, 3))
+        ends = np.minimum(square * masses / mass, 1.0)
+        return tuple(
+            cls(
+                *(length, arm.width, arm.depth, arm.material, arm, held),
+                ends * ratio**2 / square,
+                (1.0 - ends) * ratio**3 / cube,
+                pin if isinstance(pin, Pin) else None,
+                fork if isinstance(fork, Fork) else None,
+                "pin" in end.parts,
+            )
+            for length, held, ratio in lengths
         )
 
     @property
@@ -320,7 +339,7 @@ class ArmBar:
         """
         share = distance / self.length
         bar = 1.0 - 1.5 * share + 0.5 * share**3
-        swung = self.end_share * (1.0 - share) + (1.0 - self.end_share) * bar
+        swung = self.end_share * (1.0 - share) + self.bar_share * bar
         acts = np.asarray(self.held) > 0.0
         sprung = np.maximum(1.0 - distance / np.where(acts, self.held, 1.0), 0.0) * acts
         moment = forces.across - forces.pressed * share - forces.inertia * swung
@@ -333,10 +352,7 @@ class ArmBar:
         The cheeks of a fork carry the couple of the contact by unequal forces: the loads are those
         of all cheeks, each as loaded as the most loaded one.
         """
-        loaded = np.real(forces.normal) > 0.0
-        # distance of the contact force from the middle of the roller
-        away = np.where(loaded, forces.couple, 0.0) / np.where(loaded, forces.normal, 1.0)
-        bent, none = self.bending(section.distance, forces), 0.0 * forces.normal
+        bent, none, away = self.bending(section.distance, forces), 0.0 * forces.normal, forces.away
         pin, uneven = self.pin, 1.0 + none
         if pin is not None and section.cheeks:
             uneven = section.cheeks * support_force(uneven, away, pin.span, pin.overhung)

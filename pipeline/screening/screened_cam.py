@@ -17,7 +17,7 @@ from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.oil_film import LineFilm, lambda_ratio, minimum_film
 from camwright.pipeline.cycle.contact_heat import flash_rise
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, face_of
+from camwright.pipeline.cycle.loaded_cam import BodyContact, LoadedCam, OfGuides, face_of
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
@@ -190,12 +190,14 @@ class ScreenedCam(LoadedCam):
         return pivot.squeezed(required, pressed, squeeze, pull, direction)
 
     @property
-    def on_first(self) -> tuple[Motion, Array]:
-        if self.block.second is None:
-            return super().on_first
-        squeeze, axial = self.block.squeeze, self.axial
-        alone = np.where(self.wall > 0.0, axial, 0.0)
-        return self.block.motion, alone if squeeze is None else squeeze.forces(axial)[0]
+    def on_bodies(self) -> tuple[BodyContact, ...]:
+        second, squeeze, axial = self.block.second, self.block.squeeze, self.axial
+        if second is None:
+            return super().on_bodies
+        alone = np.maximum(axial, 0.0), np.maximum(-axial, 0.0)
+        push, pull = alone if squeeze is None else squeeze.forces(axial)
+        pulled = BodyContact.of(second.motion, second.leverage * pull)
+        return BodyContact.of(self.block.motion, push), pulled
 
     @cached_property
     def normal(self) -> Array:

@@ -273,7 +273,7 @@ def test_a_flat_face_twists_and_bends_its_arm_where_it_touches():
     section = bar.pivot[-1]
     loads = bar.loads(section, forces)
     touched = normal > 0.0
-    away = np.where(touched, forces.couple, 0.0) / normal + 0.010
+    away = np.where(touched, cam.follower_moment, 0.0) / normal + 0.010
     np.testing.assert_allclose(loads.twisting, normal * away, rtol=1e-9)
     # beyond the section only the contact, the mass and, at the pivot, no spring
     still = forces._replace(inertia=0.0 * normal, closing=0.0 * normal)

@@ -192,6 +192,7 @@ def test_an_arm_bends_as_its_beam_elements(held, forked, measured):
         arm,
         arm.held(None),
         0.5,
+        0.5,
         pin if forked else None,
         fork if forked else None,
     )

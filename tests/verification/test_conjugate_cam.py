@@ -19,7 +19,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.form_closure import groove_wall
 from camwright.pipeline.case.case_file import parse_case, read_case
-from camwright.pipeline.checks.arm_strength import arm_forces, bar_of
+from camwright.pipeline.checks.arm_strength import arm_forces, bars_of
 from camwright.pipeline.checks.extremes import cam_of
 from camwright.pipeline.contact.closed_form import in_full
 from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
@@ -300,26 +300,42 @@ def test_preloaded_discs_are_two_springs_on_the_arm():
 
 
 @pytest.mark.parametrize("name", ["arm", "pressed"])
-def test_the_first_arm_is_bent_by_its_own_contact(name):
-    """Moment at the pivot of the contact of the first roller by places, less that of the inertia.
-
-    Under a preload far above that of the axial force, which is the difference of both contacts.
+@pytest.mark.parametrize("distance", [0.0, 0.03])
+def test_each_arm_is_bent_by_its_own_contact_and_mass(name, distance):
+    """Moment of a section by the place of the contact on its own roller and by lumps: the masses
+    of the ends, and 2000 of each arm, which with them have the whole moment of inertia.
     """
-    cycle, machine, _ = running(name)
+    cycle, machine, track = running(name)
     solution, loads, path = trial(name).solution, cycle.loads, cycle.contour.pitch
-    theta, arm = loads.theta, path.arm
-    normal = np.where(loads.wall > 0.0, loads.normal_force, loads.idle_force)
-    centre, contact = path.points(theta), cycle.contour.points(theta)
-    pivot = arm.centre_distance * np.stack([np.cos(theta), np.sin(theta)])
-    assert np.hypot(*(centre - pivot)) == pytest.approx(arm.length, rel=1e-12)
-    reach, pushed = centre - pivot, normal * (centre - contact) / machine.roller.radius
-    moment = -arm.sense * (reach[0] * pushed[1] - reach[1] * pushed[0])
-    wanted = moment - arm.length * loads.inertia_force
-    forces = arm_forces(cam_of(solution, cycle))
-    bent = bar_of(solution.numbers).bending(0.0, forces)
-    assert bent == pytest.approx(wanted, rel=1e-9, abs=1e-9 * np.abs(wanted).max())
-    assert np.abs(bent).max() > (10.0 if name == "pressed" else 1.0)
-    assert (forces.across > 0.0).all() == (name == "pressed")
+    lengths, at, bent = (path.arm.length, track.contour.pitch.arm.length), loads.theta, []
+    ends = sum(mass for mass in machine.roller.moving.masses.values())
+    places = [length * (np.arange(2000) + 0.5) / 2000 for length in lengths]
+    left = machine.mass * lengths[0] ** 2 - ends * sum(length**2 for length in lengths)
+    lump = left / sum(
+        length * np.sum(place**2) for length, place in zip(lengths, places, strict=True)
+    )
+    turned = loads.acceleration / lengths[0]
+    for number, contour in enumerate((cycle.contour, track.contour)):
+        carries = loads.wall > 0.0 if number == 0 else loads.wall < 0.0
+        normal = np.where(carries, loads.normal_force, loads.idle_force)
+        own, arm, length = contour.pitch, contour.pitch.arm, lengths[number]
+        centre, contact = own.points(at), contour.points(at)
+        pivot = arm.centre_distance * np.stack([np.cos(at), np.sin(at)])
+        reach = (centre - pivot) * (1.0 - distance / length)
+        pushed = normal * (centre - contact) / contour.require_roller().roller_radius
+        moment = -arm.sense * (reach[0] * pushed[1] - reach[1] * pushed[0])
+        beyond = np.maximum(places[number] - distance, 0.0) * places[number]
+        swung = ends * (length - distance) * length + lump * length * np.sum(beyond)
+        wanted = moment - (turned if number == 0 else -turned) * swung
+        bar, forces = bars_of(solution.numbers)[number], arm_forces(cam_of(solution, cycle), number)
+        bent.append(bar.bending(distance, forces))
+        assert bar.length == length
+        assert bent[-1] == pytest.approx(wanted, abs=1e-6 * np.abs(wanted).max())
+        assert np.abs(bent[-1]).max() > (9.0 if name == "pressed" else 0.5)
+        assert (forces.across > 0.0).all() == (name == "pressed")
+    if distance == 0.0:  # what both do not give to one another, the pivot and the weight have
+        held = lengths[0] * (loads.axial_force - loads.inertia_force)
+        assert bent[0] - bent[1] == pytest.approx(held, abs=1e-9 * np.abs(bent).max())
 
 
 @pytest.mark.parametrize("name", ["arm", "pressed"])
