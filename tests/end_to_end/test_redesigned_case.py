@@ -85,9 +85,12 @@ def test_cam_under_an_arm_keeps_every_limit_at_its_corners(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_stroke_in_a_groove_passes_certified(tmp_path):
-    """Both walls carry, within the limits of all checks, by finite elements as by Hertz."""
-    case = read_case(CASES / "motions" / "feeder-groove.toml")
+@pytest.mark.parametrize("name", ["feeder-groove", "tucker-groove"])
+def test_a_roller_in_a_groove_passes_certified(tmp_path, name):
+    """On a stem and on an arm both walls carry, within the limits of all checks, by finite elements
+    as by Hertz.
+    """
+    case = read_case(CASES / "motions" / f"{name}.toml")
     summary = run_case(case, tmp_path / "run", progress=Silent()).summary
     assert summary["verdict"] == "pass", summary["binding"]
     final = read_run(tmp_path / "run").final
@@ -107,6 +110,21 @@ def test_two_tracks_pass_certified(tmp_path, name):
     for at in (pushes, ~pushes):
         assert at.any()
         assert np.abs(final.cycle["p0_difference_percent"][at]).max() < 0.1
+
+
+@pytest.mark.slow
+def test_a_preloaded_pair_passes_certified(tmp_path):
+    """Both discs press at every angle; finite elements agree with Hertz on the disc that bears more
+    and on the other.
+    """
+    case = read_case(CASES / "motions" / "placer-preloaded.toml")
+    summary = run_case(case, tmp_path / "run", progress=Silent()).summary
+    assert summary["verdict"] == "pass", summary["binding"]
+    cycle = read_run(tmp_path / "run").final.cycle
+    assert set(np.unique(cycle["wall"])) == {-1.0, 1.0}
+    assert cycle["idle_force_N"].min() > 0.0
+    assert np.abs(cycle["p0_difference_percent"]).max() < 0.1
+    assert cycle["idle_p0_fe_MPa"] == pytest.approx(cycle["idle_p0_hertz_MPa"], rel=1e-3)
 
 
 @pytest.mark.slow

@@ -35,7 +35,10 @@ from camwright.pipeline.solver import solve
 NO_CASE = "papers/mechanisms"
 WITHOUT = "papers/petrescu_b3", "papers/petrescu_b4"
 """Cases of which the screening refuses the design itself: its contour bounds no body."""
-PULLED = "motions/feeder-groove", "motions/transfer-conjugate", "motions/pump-yoke"
+PULLED = (
+    *("motions/feeder-groove", "motions/tucker-groove", "motions/pump-yoke"),
+    *("motions/transfer-conjugate", "motions/placer-preloaded"),
+)
 """Cases whose cam pulls: their landings are flown design by design."""
 FOLLOWED = [
     name
