@@ -349,13 +349,10 @@ def _conjugate(case: Case, second: CamConjugate) -> None:
     if case.roller_given is None or case.rocker is not None:
         limit = f'"roller", or "oscillating" with a roller, with {pair}'
         raise InputError("follower.kind", case.follower.kind, limit)
-    if second.interference is not None and not arm:
-        limit = "left out of a stem: preloaded rollers are done for an arm"
-        raise InputError("cam.conjugate.interference", "stated", limit)
     if (second.clearance is None) == (second.interference is None):
         beside = "missing" if second.clearance is None else "stated beside an interference"
         limit = "given" if second.clearance is None else "left out"
-        limit += ", or cam.conjugate.interference in its place on an arm"
+        limit += ", or cam.conjugate.interference in its place"
         raise InputError("cam.conjugate.clearance", beside, limit)
     of_stem, of_arm = ("distance",), ("arm_length", "arm_angle")
     for key in of_arm if arm else of_stem:

@@ -57,7 +57,7 @@ from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.arm_beam import ArmBar
 from camwright.pipeline.follower.camshaft_loads import Camshaft
-from camwright.pipeline.follower.disc_preload import DiscPreload
+from camwright.pipeline.follower.disc_preload import Compliances, DiscPreload
 from camwright.pipeline.follower.flat_face import FollowerFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.follower_kind import FollowerKind
@@ -518,7 +518,25 @@ class Machine(Displayed):
             return None
         if not self.axial_stiffness < np.inf:
             raise InputError("follower.stiffness", "missing", "given with an interference")
-        return DiscPreload(pair.interference, 1.0 / self.axial_stiffness, self.deviation)
+        return DiscPreload(pair.interference, self.roller_compliances, self.deviation)
+
+    @property
+    def roller_compliances(self) -> Compliances:
+        """Compliances of both rollers of conjugate discs.
+
+        On a stem those of roller, pin and fork, of the second with the stem between the rollers,
+        which goes on there with its section: stem and camshaft beyond bear the axial force alone.
+        On arms, and of a stated stiffness, those from cam to follower mass.
+        """
+        compliance, pair = 1.0 / self.axial_stiffness, self.cam.conjugate
+        if self.arm is not None or self.stiffness is not None or pair is None:
+            return Compliances(compliance, compliance)
+        parts, _ = self.follower.elastic(self.contact_width, self.spring.preload)
+        alone = sum(value for value in parts.values() if value is not None)
+        if not alone > 0.0:
+            raise InputError("follower.stiffness", "missing", "given with an interference")
+        distance = 0.0 if pair.distance is None else pair.distance
+        return Compliances(alone, alone + stem_compliance_along(self.stem, distance))
 
     def clearance_on(self, path: FollowerPath, theta: Array) -> Array:
         """Clearance of the follower between both tracks at cam angles (n,), rad, square to the

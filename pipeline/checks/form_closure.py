@@ -321,8 +321,8 @@ def _of_turns(
     },
     reason="A roller without load stops and lands with a blow.",
     tier=Tier.SCREENING,
-    method="axial force shared by the compliances of both rollers with their arms, the interference"
-    " less by the width of the profile tolerance",
+    method="axial force shared by the compliances of both rollers with what holds them, the"
+    " interference less by the width of the profile tolerance",
     lift_can_help=True,
     needs="roller",
     closed_by="conjugate",

@@ -266,7 +266,7 @@ class CamConjugate(Part):
     interference: Annotated[
         float | None, In("mm", above=0, at_most=1), Known("drawing, adjusted", "0.02 mm")
     ] = None
-    """of an arm, in place of a clearance: of the second disc with its roller, which loads both"""
+    """in place of a clearance: of the second disc with its roller, which loads both"""
     spacing: Annotated[Length, Known("drawing", "20 mm")]
     """of the second disc from the first along the shaft, between their middles, away from bearing
     1"""

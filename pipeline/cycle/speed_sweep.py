@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import NamedTuple
 
@@ -21,6 +21,7 @@ from camwright.pipeline.follower.follower_forces import (
     Carried,
     Rubbing,
     follower_loads,
+    in_guides,
     jam_index,
     share_left,
 )
@@ -324,8 +325,9 @@ class _Follower:
     spectrum: of the lift, m; closing: spring, weight and external force; beside: less that of the
     linear spring of the rate at zero lift; inertia, viscous: per square and per first power of the
     cam speed; gain: normal force over axial force without friction; arm: cam torque over that
-    force, m; with a pivot, whose friction is no share of that force, over the axial force. pulls:
-    on an arm, at rest and per square of the speed; squeeze: of discs without clearance.
+    force, m; with a pivot or a preload, whose friction is no share of that force, over the axial
+    force. pulls: on an arm, at rest and per square of the speed; squeeze: of discs without
+    clearance; guided: axial force of their stem, see `in_guides`.
     """
 
     machine: Machine
@@ -344,6 +346,7 @@ class _Follower:
     direction: Array
     pulls: tuple[Pull, Pull, Pull] | None
     squeeze: Squeezed | None
+    guided: Callable[[Array, Array], Array] | None
 
     @classmethod
     def of(cls, machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> _Follower:
@@ -356,12 +359,15 @@ class _Follower:
         share, one, pulled, second = loads.share, np.ones(theta.size), None, None
         carrying = Carried.at(pitch, system, theta, one)
         slide, angle = carrying.slide, loads.pressure_angle
+        guided = in_guides(pitch, system, theta)
         if system.held:
             jams = (jam_index(pitch, system, theta, wall) for wall in (one, -one))
             share, pulling = (
                 share_left(loads.lift_slope * wall, jam, slide.lock)
                 for wall, jam in zip((1.0, -1.0), jams, strict=True)
             )
+            if guided is not None:
+                share = pulling = np.ones(theta.size)
             second = Carried.at(pitch, system, theta, -one)
             normal = pulling * second.slide.lever * np.cos(second.pressure_angle)
             pulled = 1.0 / normal, (loads.lift_slope + second.slide.torque) / pulling
@@ -396,11 +402,12 @@ class _Follower:
             direction=np.sign(loads.lift_slope),
             pulls=pulls,
             squeeze=system.squeezed(pitch, theta),
+            guided=guided,
         )
 
-    def _pivoted(self, push: Array, speed: Array, surge: Array) -> Array:
-        """Axial force (m, n), N, from the one without friction: with the friction of a pivot;
-        unchanged without a pivot.
+    def _rubbed(self, push: Array, speed: Array, surge: Array) -> Array:
+        """Axial force (m, n), N, from the one without friction: with the friction of a pivot, or of
+        guides under a preload; unchanged without them.
 
         Parameters
         ----------
@@ -409,6 +416,8 @@ class _Follower:
         surge : array (m, n)   force of the surge on the follower, N
         """
         pivot = self.machine.system.pivot
+        if self.guided is not None:
+            return self.guided(push, self.direction)
         if pivot is None or self.pulls is None:
             return push
         still, thrown, sprung = self.pulls
@@ -431,7 +440,7 @@ class _Follower:
         if self.viscous.any():
             push += speed * self.viscous
         push += surge
-        push = self._pivoted(push, speed, surge)
+        push = self._rubbed(push, speed, surge)
         if self.pulled is None:
             normal = push * self.gain
             torque = np.maximum(push, 0.0, out=push)

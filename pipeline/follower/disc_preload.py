@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
@@ -22,12 +24,22 @@ class Squeezed(NamedTuple):
 
     Parameters
     ----------
-    preload : array (n,)   P, N, > 0
-    share : float          b, of the axial force that the first bears
+    preload : array (n,)          P, N, > 0
+    share : float or array (n,)   b, of the axial force that the first bears
     """
 
     preload: Array
     share: Value
+
+    @classmethod
+    def joined(cls, every: Sequence[Squeezed]) -> Squeezed:
+        """Preloads of several motions, one after another."""
+        shares = [np.broadcast_to(each.share, each.preload.shape) for each in every]
+        return cls(np.concatenate([each.preload for each in every]), np.concatenate(shares))
+
+    def part(self, at: NDArray[np.intp]) -> Squeezed:
+        """Preload at the positions of these numbers."""
+        return Squeezed(self.preload[at], np.broadcast_to(self.share, self.preload.shape)[at])
 
     def forces(self, axial: Array) -> tuple[Array, Array]:
         """Forces (n,) of the first and of the second track at axial forces (n,), N, >= 0."""
@@ -44,14 +56,25 @@ class Squeezed(NamedTuple):
         return np.asarray((first > 0.0) & (second > 0.0))
 
 
-def squeezed(interference: Value, compliance: Value, touch: Touch, leverage: Value) -> Squeezed:
-    """Preload (...) of an interference, m, on the compliance of each roller, m/N.
+class Compliances(NamedTuple):
+    """Compliances of both rollers along the travel of each, m/N, > 0: from its disc to where the
+    forces of both meet, the mass of arms, or the stem at the first roller.
+    """
+
+    first: Value
+    second: Value
+
+
+def squeezed(
+    interference: Value, compliances: Compliances, touch: Touch, leverage: Value
+) -> Squeezed:
+    """Preload (...) of an interference, m, on the compliances of both rollers.
 
     touch : Touch      of the second track
     leverage : float   force along the travel of the second over that of the first roller
     """
     closed = interference / (touch.slide.lever * np.cos(touch.pressure_angle))
-    first, second = compliance, compliance * leverage**2
+    first, second = compliances.first, compliances.second * leverage**2
     return Squeezed(closed / (first + second), second / (first + second))
 
 
@@ -62,13 +85,12 @@ class DiscPreload:
     Parameters
     ----------
     interference : float   square to the second disc, m, > 0
-    compliance : float     of each roller with its arm, from disc to follower mass, along the travel
-                           of that roller, m/N, > 0
+    compliances : Compliances   of both rollers
     deviation : TrackDeviation   that opens or closes the interference
     """
 
     interference: float
-    compliance: float
+    compliances: Compliances
     deviation: TrackDeviation = EXACT
 
     def at(self, track: SecondTrack, theta: Array) -> Squeezed:
@@ -86,4 +108,4 @@ class DiscPreload:
         if not float(np.min(left)) > 0.0:
             shown = units.shown(float(np.min(left)), "mm")
             raise InputError("cam.conjugate.interference", shown, "> 0 mm at every angle")
-        return squeezed(left, self.compliance, track.touch(theta), track.leverage)
+        return squeezed(left, self.compliances, track.touch(theta), track.leverage)

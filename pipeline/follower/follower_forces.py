@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -118,7 +119,7 @@ class FollowerSystem:
     output : RockerOutput           that a rocker moves, its mass at zero lift part of `mass`; None
     second : SecondFollower           by which it pulls on a track of its own; None: the same roller
                                     does, if any
-    preload : DiscPreload           of both tracks on an arm; None: they have a clearance
+    preload : DiscPreload           of both tracks; None: they have a clearance
 
     Raises
     ------
@@ -233,8 +234,8 @@ class FollowerSystem:
 class Carried(NamedTuple):
     """Contact of the track that carries at each cam angle (n,), over the axial force.
 
-    reach: by which its roller is farther from the guides than the first, m; turned: its direction
-    of travel from that of the first, rad
+    reach: by which its roller, or the side load of both, is farther from the guides than the first,
+    m; turned: its direction of travel from that of the first, rad
     """
 
     slide: Slide
@@ -261,6 +262,39 @@ class Carried(NamedTuple):
             reach = np.asarray(second.reach * pulls)
         push = Push(touch.slide.side, touch.push_arm, system.guide_spacing)
         return cls(touch.slide, push, touch.pressure_angle, reach, touch.turned)
+
+    def with_both(self, loads: SideLoads, wall: Array) -> Carried:
+        """With the side load of both tracks of a stem, over the sum of their forces."""
+        push = replace(self.push, side=loads.side / (wall * loads.force))
+        far = np.divide(loads.far, loads.size, out=1.0 * (wall < 0.0), where=loads.size > 0.0)
+        return self._replace(push=push, reach=loads.reach * far)
+
+
+class SideLoads(NamedTuple):
+    """Side loads of both tracks of a stem on its guides at cam angles (n,), N.
+
+    Those of opposite rollers have one sign, (s' - e)(A_1/h_1 + A_2/h_2), A: force, h: height of a
+    roller: they act on the guides like one load between the rollers.
+
+    force: sum of the forces of both tracks along the travel; side: sum of their side loads, signed;
+    size: its magnitude; far: magnitude of that of the second roller; reach: by which this is
+    farther from the guides, m
+    """
+
+    force: Array
+    side: Array
+    size: Array
+    far: Array
+    reach: Array
+
+    @classmethod
+    def of(cls, sides: tuple[Array, Array], reach: Array, forces: tuple[Array, Array]) -> SideLoads:
+        """Of forces of the first and of the second track (n,), N, >= 0; sides (2, n): side load of
+        each over the axial force.
+        """
+        near, far = forces[0] * sides[0], -forces[1] * sides[1]
+        size = np.abs(near) + np.abs(far)
+        return cls(forces[0] + forces[1], near + far, size, np.abs(far), reach)
 
 
 def _either(pulls: NDArray[np.bool_], second: Touch, first: Touch) -> Touch:
@@ -294,7 +328,10 @@ class Loads(Displayed):
     pulls the follower, too: the axial force is negative where it does, the normal force its
     magnitude. `second`: roller by which it does, whose pressure angle is that of its own travel. Of
     preloaded discs `idle_force` is the normal force on the one that bears less, and `pressed_along`
-    the force of both along the travel beyond the axial force; 0 of others.
+    the force of both along the travel beyond the axial force; 0 of others. `stem_force`: axial
+    force, of preloaded discs on a stem the sum of the forces of both along the travel, with its
+    sign, of which the jam index is a share; `side_load`: size of its load on the guides,
+    side-load factor times force.
     """
 
     theta: Array
@@ -332,6 +369,8 @@ class Loads(Displayed):
     turned: Array = field(default_factory=lambda: readonly(0.0))
     idle_force: Array = field(default_factory=lambda: readonly(0.0))
     pressed_along: Array = field(default_factory=lambda: readonly(0.0))
+    stem_force: Array = field(default_factory=lambda: readonly(0.0))
+    side_load: Array = field(default_factory=lambda: readonly(0.0))
     held: bool = False
     second: SecondFollower | None = None
 
@@ -388,9 +427,10 @@ class Loads(Displayed):
     @property
     def signed_force(self) -> Array:
         """Force whose sign says which track carries, N: without friction of guides, which does not
-        change it, and with that of a pivot, which does.
+        change it, and with that of a pivot or under a preload, which does.
         """
-        return self.axial_force if self.pivot_friction.any() else self.required_force
+        rubbed = self.pivot_friction.any() or self.idle_force.any()
+        return self.axial_force if rubbed else self.required_force
 
     @property
     def wall(self) -> Array:
@@ -520,6 +560,10 @@ def axial_of_surge(
     surge : array (n,)        change of the spring force, N
     """
     pivot = system.pivot
+    balance = in_guides(pitch, replace(system, rubbing=loads.rubbing), loads.theta)
+    if balance is not None:
+        demand = loads.required_force + surge
+        return balance(demand, np.sign(loads.lift_slope)) - loads.axial_force
     if pivot is None:
         return np.asarray(surge / loads.share)
     pressed = Pressed.of(Carried.at(pitch, system, loads.theta, loads.wall).slide)
@@ -633,6 +677,9 @@ def follower_loads(
     The friction of the pivot of an arm depends on its whole load, see `ArmPivot.balanced`; where it
     holds the arm off the cam on the return the contact is lost.
 
+    Under a preload of both rollers of a stem both side loads rub, those of the forces A_1 and A_2
+    that `Squeezed` makes of F_a: F_a = F + sign(v) (c_1 A_1 + c_2 A_2), c: jam index of a track.
+
     Parameters
     ----------
     pitch : FollowerPath
@@ -673,7 +720,14 @@ def follower_loads(
         )
         if system.held:
             swung, wall = _swung(pitch, system, theta)(demand, pull, np.sign(slope))
-    carrying = Carried.at(pitch, system, theta, wall)
+    squeeze, guided = system.squeezed(pitch, theta), in_guides(pitch, system, theta)
+    pressed_axial = None if guided is None else guided(demand, np.sign(slope))
+    if pressed_axial is not None:
+        wall = wall_of(pressed_axial, held=True)
+    carrying, stem_force = Carried.at(pitch, system, theta, wall), None
+    if squeeze is not None and pressed_axial is not None:
+        side_loads = SideLoads.of(*sides_of(pitch, system, theta), squeeze.forces(pressed_axial))
+        carrying, stem_force = carrying.with_both(side_loads, wall), wall * side_loads.force
     slide, push, pressure_angle = carrying.slide, carrying.push, carrying.pressure_angle
     overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift) + carrying.reach
     on_points = push.on_points(*levers(overhang, system.guide_spacing))
@@ -687,7 +741,11 @@ def follower_loads(
         held = swung or pivot.clipped(demand, pressed, pull, np.sign(slope), JAM_FLOOR)
         axial_force, jam_index, pivot_friction = held.axial, held.jam_index, held.friction
         pivot_load = np.stack(pressed.total(axial_force, pull))
-    side_load = axial_force * wall * push.side_factor
+    if pressed_axial is not None:
+        axial_force = pressed_axial
+    if stem_force is None:
+        stem_force = axial_force
+    side_load = stem_force * wall * push.side_factor
     friction_a = system.friction_a * rubbing_a * side_load
     friction_b = system.friction_b * rubbing_b * side_load
     sliding = axial_force * slide.torque
@@ -696,9 +754,8 @@ def follower_loads(
     friction_power = friction * np.abs(slope) + viscous_force * slope + sliding
     friction_power = friction_power + slide.lock * axial_force * slope
     normal_force = axial_force * wall / (slide.lever * np.cos(pressure_angle))
-    tangential_force = axial_force * push.side
+    tangential_force = stem_force * push.side
     idle_force = pressed_along = np.zeros(theta.size)
-    squeeze = system.squeezed(pitch, theta)
     if squeeze is not None:
         forces, tracks = squeeze.forces(axial_force), _both_carried(pitch, system, theta)
         along, across = (
@@ -730,8 +787,8 @@ def follower_loads(
         tangential_force=tangential_force,
         friction_force_a=friction_a,
         friction_force_b=friction_b,
-        reaction_a=axial_force * on_points[0],
-        reaction_b=axial_force * on_points[1],
+        reaction_a=stem_force * on_points[0],
+        reaction_b=stem_force * on_points[1],
         cam_torque=axial_force * slope + sliding,
         jam_index=jam_index,
         friction_power=friction_power * speed,
@@ -739,7 +796,7 @@ def follower_loads(
         rubbing_a=rubbing_a,
         rubbing_b=rubbing_b,
         jam_index_statics=jam_index if pivot is not None else statics,
-        end_moment=axial_force * push.arm,
+        end_moment=stem_force * push.arm,
         sliding_torque=sliding,
         travel=travel,
         lock=np.asarray(slide.lock),
@@ -750,6 +807,8 @@ def follower_loads(
         turned=carrying.turned,
         idle_force=idle_force,
         pressed_along=pressed_along,
+        stem_force=stem_force,
+        side_load=side_load,
         held=system.held,
         second=system.second,
     )
@@ -774,7 +833,7 @@ def torque_on_cam(
     slope, lift_d2 = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
     closing, lock = still.closing_force, still.lock
     external = system.external.at(theta)
-    swung = _swung(pitch, system, theta)
+    swung, guided = _swung(pitch, system, theta), in_guides(pitch, system, theta)
     pressed = _both_pressed(pitch, system, theta)
     walls = still.wall, -still.wall
     carrying = [Carried.at(pitch, system, theta, wall) for wall in walls]
@@ -795,6 +854,8 @@ def torque_on_cam(
         axial = (demand if system.held else np.maximum(demand, 0.0)) / share_left(
             slope * wall, jam, lock
         )
+        if guided is not None:
+            axial = guided(demand, np.sign(slope))
         if system.pivot is not None:
             pull = system.pivot.pull(
                 still.spring_force, external, still.travel, slope * speed, acceleration
@@ -824,6 +885,49 @@ def _both_pressed(
     """Contact forces of the first and of the second track at cam angles (n,)."""
     first, second = _both_carried(pitch, system, theta)
     return Pressed.of(first.slide), Pressed.of(second.slide)
+
+
+def sides_of(
+    pitch: FollowerPath, system: FollowerSystem, theta: Array
+) -> tuple[tuple[Array, Array], Array]:
+    """Side load of each track over the axial force at cam angles (n,), and by how much the second
+    is farther from the guides (n,), m.
+    """
+    first, second = _both_carried(pitch, system, theta)
+    return (first.push.side, second.push.side), np.asarray(second.reach)
+
+
+def in_guides(
+    pitch: FollowerPath, system: FollowerSystem, theta: Array
+) -> Callable[[Array, Array], Array] | None:
+    """Function for the axial force (..., n), N, at cam angles (n,) of a stem whose rollers are
+    preloaded, by the axial force without friction and the direction of the motion, 1 on the rise,
+    -1 on the return, 0 at rest; None of other followers.
+
+    While both tracks are pressed friction is linear in the axial force, else a share of it; below
+    a jam index of 1 one of the three holds.
+    """
+    squeeze = system.squeezed(pitch, theta)
+    if squeeze is None or system.pivot is not None:
+        return None
+    one = np.ones(theta.shape)
+    jams = tuple(jam_index(pitch, system, theta, wall) for wall in (one, -one))
+    return partial(axial_in_guides, squeeze, jams)
+
+
+def axial_in_guides(
+    squeeze: Squeezed, jams: Sequence[Array], required: Array, direction: Array
+) -> Array:
+    """Axial force (..., n), N, of a preloaded stem, see `in_guides`; jams (2, ..., n): jam index of
+    each track.
+    """
+    first, second = jams
+    mixed = squeeze.share * first - (1.0 - squeeze.share) * second
+    pressed = required + direction * squeeze.preload * (first + second)
+    held = pressed / share_left(direction, mixed)
+    wall = wall_of(required, held=True)
+    alone = required / share_left(direction * wall, np.where(wall > 0.0, first, second))
+    return np.where(squeeze.both(held), held, alone)
 
 
 _Swung = Callable[[Array, Pull, Array], tuple[PivotBalance, Array]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,14 +13,18 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import ContactError
 from camwright.geometry.follower_path import FollowerPath
+from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
     FollowerSystem,
     Loads,
     Push,
     Rubbing,
+    SideLoads,
+    axial_in_guides,
     follower_loads,
     share_left,
+    sides_of,
 )
 from camwright.pipeline.follower.guide_contact import settle
 from camwright.pipeline.follower.guide_reactions import (
@@ -98,6 +102,9 @@ def guided_loads(
     1 - `JAM_FLOOR` the forces are in equilibrium; above it they are bounded, and `jam_index`
     indicates the jam as in `follower_loads`.
 
+    Under a preload of both rollers of a stem the friction is sought in place of the force, which
+    may change its sign: f = mu_A R_A + mu_B R_B at F_a = F + sign(v) f.
+
     Parameters
     ----------
     pitch : FollowerPath
@@ -139,18 +146,9 @@ def guided_strokes(
     ]
     for each in points:
         require_fit(stem, guides, each.overhang, knots)
-    way = _joined(
-        [
-            Push.of(s.pitch, s.system, s.theta, each.wall)
-            for s, each in zip(strokes, points, strict=True)
-        ]
-    )
-    wall = np.concatenate([each.wall for each in points])
-    slope = np.concatenate([each.driving_slope for each in points])
     required = np.concatenate([each.frictionless_force for each in points])
-    force = required * wall  # the guides are alike on both sides
-    lock = np.concatenate([np.broadcast_to(each.lock, each.theta.shape) for each in points])
-    free = force / share_left(slope, np.zeros_like(slope), lock)
+    pressed = strokes[0].system.pivot is None and strokes[0].system.preload is not None
+    way = (_BothTracks if pressed else _OneTrack).of(strokes, points, required)
     sizes = [s.theta.size for s in strokes]
     friction_a = np.repeat([s.system.friction_a for s in strokes], sizes)
     friction_b = np.repeat([s.system.friction_b for s in strokes], sizes)
@@ -158,15 +156,10 @@ def guided_strokes(
 
     def mapping(push: Array, at: NDArray[np.intp]) -> Array:
         a, b = bores.factors(push, at)
-        jam = (friction_a[at] * a + friction_b[at] * b) * way.side_factor[at]
-        return np.asarray(force[at] / share_left(slope[at], jam, lock[at]))
+        return way.balance(friction_a[at] * a + friction_b[at] * b, at)
 
-    outward = slope > 0.0
-    high = np.where(outward, force / JAM_FLOOR, free)
-    on_points = np.concatenate([each.axial_force for each in points]) * wall
-    low, start = np.where(outward, free, 0.0), np.where(outward, free, on_points)
     held = np.repeat([s.system.held for s in strokes], sizes)
-    _, rounds = balanced(mapping, low, high, start, np.where(held, _HELD_ROUND_OFF, 0.0))
+    _, rounds = balanced(mapping, *way.bracket, np.where(held, _HELD_ROUND_OFF, 0.0))
     a, b = bores.last_factors
     ends = np.cumsum([0, *sizes])
     spans = [slice(*span) for span in pairwise(ends)]
@@ -186,7 +179,7 @@ def guided_strokes(
         guides,
         np.concatenate([each.end_moment for each in loads]),
         knots=knots,
-        start=(bores.pushes * wall, bores.rigid * wall),
+        start=(bores.pushes * way.sense, bores.rigid * way.sense),
     )
     return tuple(
         _guided(stroke.system, each, reactions.part(span.start, span.stop), required[span], rounds)
@@ -216,11 +209,148 @@ def _guided(
     return Guided(loads, reactions, residual, rounds + 1)
 
 
-def _joined(ways: Sequence[Push]) -> Push:
-    """Loads of several motions on the stem, one after another."""
-    side = np.concatenate([way.side for way in ways])
-    arm = np.concatenate([np.broadcast_to(way.arm, way.side.shape) for way in ways])
-    return Push(side, arm, ways[0].spacing)
+class _OnGuides(NamedTuple):
+    """Load of the cam on the guides (k,): side force, N, its moment about the roller of `overhang`,
+    N m, and the force of which their rubbing loads are multiples, N.
+    """
+
+    side: Array
+    moment: Array
+    size: Array
+
+
+class _Way(Protocol):
+    """Load of the cam on the stem at fixed positions, one motion after another.
+
+    overhang (n,): of the roller, m; sense (n,): 1, or -1 where the sides of the guides are changed
+    over; bracket: least and greatest value of the unknown of `balanced`, and one to start from.
+    """
+
+    @property
+    def overhang(self) -> Array: ...
+    @property
+    def sense(self) -> Array: ...
+    @property
+    def bracket(self) -> tuple[Array, Array, Array]: ...
+    def on_guides(self, unknown: Array, at: NDArray[np.intp]) -> _OnGuides:
+        """Load at unknowns (k,) and the indices of their positions."""
+
+    def balance(self, rubs: Array, at: NDArray[np.intp]) -> Array:
+        """Unknowns (k,) in equilibrium with a friction of the guides over the size of the load."""
+
+
+@dataclass(frozen=True, eq=False)
+class _OneTrack:
+    """Stem under the track that carries: the unknown is the axial force on it, N, >= 0.
+
+    The guides are alike on both sides.
+    """
+
+    overhang: Array
+    push: Push
+    sense: Array
+    slope: Array
+    force: Array
+    lock: Array
+    on_points: Array
+
+    @classmethod
+    def of(
+        cls, strokes: Sequence[MovingFollower], points: Sequence[Loads], required: Array
+    ) -> _OneTrack:
+        """Of motions and their loads on point supports; required (n,): axial force without
+        friction, N.
+        """
+        ways = [
+            Push.of(s.pitch, s.system, s.theta, each.wall)
+            for s, each in zip(strokes, points, strict=True)
+        ]
+        side = np.concatenate([way.side for way in ways])
+        arm = np.concatenate([np.broadcast_to(way.arm, way.side.shape) for way in ways])
+        wall = np.concatenate([each.wall for each in points])
+        return cls(
+            overhang=np.concatenate([each.overhang for each in points]),
+            push=Push(side, arm, ways[0].spacing),
+            sense=wall,
+            slope=np.concatenate([each.driving_slope for each in points]),
+            force=required * wall,
+            lock=np.concatenate([np.broadcast_to(each.lock, each.theta.shape) for each in points]),
+            on_points=np.concatenate([each.axial_force for each in points]) * wall,
+        )
+
+    @property
+    def bracket(self) -> tuple[Array, Array, Array]:
+        free = self.force / share_left(self.slope, np.zeros_like(self.slope), self.lock)
+        outward = self.slope > 0.0
+        high = np.where(outward, self.force / JAM_FLOOR, free)
+        return np.where(outward, free, 0.0), high, np.where(outward, free, self.on_points)
+
+    def on_guides(self, unknown: Array, at: NDArray[np.intp]) -> _OnGuides:
+        push = self.push
+        side, moment = unknown * push.side[at], unknown * push.arm[at]
+        return _OnGuides(side, moment, unknown * push.side_factor[at])
+
+    def balance(self, rubs: Array, at: NDArray[np.intp]) -> Array:
+        jam = rubs * self.push.side_factor[at]
+        return np.asarray(self.force[at] / share_left(self.slope[at], jam, self.lock[at]))
+
+
+@dataclass(frozen=True, eq=False)
+class _BothTracks:
+    """Stem between two preloaded tracks: the unknown is the friction of the guides, N, >= 0."""
+
+    overhang: Array
+    sides: tuple[Array, Array]
+    reach: Array
+    squeeze: Squeezed
+    direction: Array
+    force: Array
+    on_points: Array
+
+    @classmethod
+    def of(
+        cls, strokes: Sequence[MovingFollower], points: Sequence[Loads], required: Array
+    ) -> _BothTracks:
+        """As `_OneTrack.of`."""
+        pairs = [sides_of(s.pitch, s.system, s.theta) for s in strokes]
+        squeezes = [s.system.squeezed(s.pitch, s.theta) for s in strokes]
+        near, far = (np.concatenate([sides[k] for sides, _ in pairs]) for k in (0, 1))
+        direction = np.sign(np.concatenate([each.lift_slope for each in points]))
+        axial = np.concatenate([each.axial_force for each in points])
+        overhangs = [
+            s.system.overhang_at_max_lift + (s.pitch.lift.highest.value - each.lift)
+            for s, each in zip(strokes, points, strict=True)
+        ]
+        return cls(
+            overhang=np.concatenate(overhangs),
+            sides=(near, far),
+            reach=np.concatenate([reach for _, reach in pairs]),
+            squeeze=Squeezed.joined([each for each in squeezes if each is not None]),
+            direction=direction,
+            force=required,
+            on_points=direction * (axial - required),
+        )
+
+    @property
+    def sense(self) -> Array:
+        return np.ones_like(self.force)
+
+    @property
+    def bracket(self) -> tuple[Array, Array, Array]:
+        most = (np.abs(self.force) + 2.0 * self.squeeze.preload) / JAM_FLOOR
+        return np.zeros_like(most), most, self.on_points
+
+    def on_guides(self, unknown: Array, at: NDArray[np.intp]) -> _OnGuides:
+        near, far = self.sides
+        forces = self.squeeze.part(at).forces(self.force[at] + self.direction[at] * unknown)
+        loads = SideLoads.of((near[at], far[at]), self.reach[at], forces)
+        return _OnGuides(loads.side, -np.sign(loads.side) * loads.far * loads.reach, loads.size)
+
+    def balance(self, rubs: Array, at: NDArray[np.intp]) -> Array:
+        jams = [rubs * np.abs(each[at]) for each in self.sides]
+        force, direction = self.force[at], self.direction[at]
+        axial = axial_in_guides(self.squeeze.part(at), jams, force, direction)
+        return np.asarray(direction * (axial - force))
 
 
 def balanced(
@@ -283,7 +413,7 @@ class _Bores:
     """Guides at fixed positions, each solution started from the previous one."""
 
     def __init__(
-        self, stem: Stem, guides: GuidePair, knots: int, points: Sequence[Loads], way: Push
+        self, stem: Stem, guides: GuidePair, knots: int, points: Sequence[Loads], way: _Way
     ) -> None:
         """Prepare the stem as a beam in its guides, with the loads of point supports as the start.
 
@@ -293,10 +423,10 @@ class _Bores:
         guides : GuidePair   of finite length
         knots : int          per guide
         points : sequence    loads of each motion on point supports
-        way : Push           load of the cam on the stem per unit axial force, at all positions
+        way : _Way           load of the cam on the stem at all positions
         """
         self.line, _, half_a = bearing_line(stem, guides, knots)
-        self.reach = np.concatenate([each.overhang for each in points]) - half_a
+        self.reach = way.overhang - half_a
         on_points = [(each.rubbing_a, each.rubbing_b) for each in points]
         self.on_points = np.concatenate(on_points, axis=1)
         self.last_factors = self.on_points.copy()
@@ -305,22 +435,21 @@ class _Bores:
         self.pushes, self.rigid = np.zeros((size, count)), np.zeros((2, count))
         self.started = False
 
-    def factors(self, push: Array, at: NDArray[np.intp]) -> Array:
-        """Sums of the normal forces in guides A and B over axial force times side-load factor
-        (2, k); those of point supports where unloaded.
+    def factors(self, unknown: Array, at: NDArray[np.intp]) -> Array:
+        """Sums of the normal forces in guides A and B over the size of their load (2, k); those of
+        point supports where unloaded.
 
         Parameters
         ----------
-        push : array (k,)   axial forces, N
-        at : array (k,)     indices of the positions
+        unknown : array (k,)   of the load, see `_Way`
+        at : array (k,)        indices of the positions
         """
         start = (self.pushes[:, at], self.rigid[:, at]) if self.started else None
-        side, moment = push * self.way.side[at], push * self.way.arm[at]
+        side, moment, size = self.way.on_guides(unknown, at)
         pushes, rigid = settle(self.line, side, moment - side * self.reach[at], start)
         self.pushes[:, at], self.rigid[:, at] = pushes, rigid
         self.started = True
         rubbed = np.abs(pushes).reshape(2, self.knots, -1).sum(axis=1)
-        size = push * self.way.side_factor[at]
         factors: Array = np.divide(rubbed, size, out=self.on_points[:, at], where=size > 0.0)
         self.last_factors[:, at] = factors
         return factors
@@ -347,5 +476,5 @@ def _residual(
     if system.held:
         miss = np.where(np.abs(miss) > 10.0 * _HELD_ROUND_OFF, miss, 0.0)
     bounded = loads.share <= JAM_FLOOR
-    push = np.where(bounded, 0.0, loads.axial_force * loads.wall)
+    push = np.where(bounded, 0.0, loads.stem_force * loads.wall)
     return np.divide(np.abs(miss), push, out=np.zeros_like(miss), where=push > 0.0)

@@ -12,7 +12,6 @@ from camwright.pipeline.base.tables import Column
 from camwright.pipeline.follower.follower_forces import (
     FollowerSystem,
     Loads,
-    Push,
     Rubbing,
     follower_loads,
 )
@@ -115,9 +114,7 @@ def guide_shares(
     )
     points = replace(system, rubbing=None)
     on_points = follower_loads(pitch, points, cam_speed, loads.theta)
-    push = Push.of(pitch, points, loads.theta, loads.wall)
-    side_load = loads.axial_force * loads.wall * push.side_factor
-    loaded = side_load > 0.0
+    side_load, loaded = loads.side_load, loads.side_load > 0.0
     rubbing = Rubbing(
         loads.theta,
         np.divide(tight.rubbing_load_a, side_load, out=on_points.rubbing_a.copy(), where=loaded),

@@ -122,12 +122,14 @@ MODEL_LIMITS = (
         " by an arm."
     ),
     ModelLimit(
-        "A cam that holds its follower on both sides carries it by one side at a time, unless two"
-        " arms are preloaded. Lift and contours are those without clearance; a landing heats the"
-        " mechanism, not the place where it strikes, and the preload has no torque. The wear of"
-        " clearance is that of one side, and both rollers load the life of one bearing. The"
-        " moment of inertia of two arms is shared as that of two bars of one section with equal"
-        " ends; the couples of both contacts on the pin of their pivot add up by their sizes."
+        "A cam that holds its follower on both sides carries it by one side at a time, unless both"
+        " rollers are preloaded. Lift and contours are those without clearance; a landing heats the"
+        " mechanism, not the place where it strikes, and a preload has no torque but by friction."
+        " Between the rollers of a stem this goes on with the section that it has in its guides;"
+        " under the pair of forces of a preload the camshaft there is rigid. The wear of clearance"
+        " is that of one side, and both rollers load the life of one bearing. The moment of"
+        " inertia of two arms is shared as that of two bars of one section with equal ends; the"
+        " couples of both contacts on the pin of their pivot add up by their sizes."
     ),
     ModelLimit(
         "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference"

@@ -40,7 +40,7 @@ from camwright.pipeline.cycle.loaded_cam import (
 )
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import keyway_cut, rotating_force
-from camwright.pipeline.follower.disc_preload import Squeezed, squeezed
+from camwright.pipeline.follower.disc_preload import Compliances, Squeezed, squeezed
 from camwright.pipeline.follower.follower_forces import Push
 from camwright.pipeline.follower.follower_tilt import FollowerTilt, arm_tilt
 from camwright.pipeline.follower.guide_table import SupportOfMany
@@ -443,10 +443,14 @@ class Designs:
 
     def supports_of(self, motion: Motion, reach: Value) -> SupportOfMany:
         """As `supports`, of the roller or face of a motion, farther from the guides by `reach`."""
+        return self.supports_under(motion.side, motion.arm, reach)
+
+    def supports_under(self, side: Array, arm: Array, reach: Value) -> SupportOfMany:
+        """As `supports`, of a side load and its lever arm, m, over a force on the stem."""
         known, lift = self.machine, self.motion.jet.lift
         overhang = self.value("follower.overhang_at_max_lift") + (self.highest[:, None] - lift)
         overhang = overhang + reach
-        push = Push(motion.side, motion.arm, self.value("guides.spacing"))
+        push = Push(side, arm, self.value("guides.spacing"))
         return SupportOfMany.of(known.stem, known.guides, push, np.asarray(overhang))
 
     @KeptResult
@@ -520,10 +524,10 @@ class Designs:
         return tuple(replaced(self.case, each) for each in numbers)
 
     @KeptResult
-    def compliance(self) -> Array:
-        """Compliance of each roller with its arm (m, 1), m/N; see `DiscPreload`."""
-        each = [machine(case, case.load_cases[0]).axial_stiffness for case in self.cases]
-        return 1.0 / np.array(each)[:, None]
+    def compliances(self) -> Compliances:
+        """Compliances of both rollers (m, 1), m/N."""
+        each = [machine(case, case.load_cases[0]).roller_compliances for case in self.cases]
+        return Compliances(*(np.array(values)[:, None] for values in zip(*each, strict=True)))
 
     @KeptResult
     def squeeze(self) -> Squeezed | None:
@@ -538,7 +542,7 @@ class Designs:
             return None
         interference = self.value("cam.conjugate.interference") + narrower
         second = self.second
-        return squeezed(interference, self.compliance, second.touch, second.leverage)
+        return squeezed(interference, self.compliances, second.touch, second.leverage)
 
     def thrown(self, speed: Value) -> tuple[Array, Array]:
         """Centrifugal forces on cam and counterweight (2, m, n), N, at cam speeds (m, 1), rad/s."""

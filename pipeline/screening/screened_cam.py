@@ -23,8 +23,11 @@ from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
     REST,
     LoadEnds,
+    SideLoads,
+    axial_in_guides,
     ends_of,
     share_left,
+    wall_of,
 )
 from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany, bearing_under_couple
 from camwright.pipeline.follower.pivot_forces import ArmPivot, PivotBalance, Pressed, Pull
@@ -59,6 +62,17 @@ class ScreenedState(NamedTuple):
     power: Array | None = None
 
 
+class PressedStem(NamedTuple):
+    """Stem whose rollers are preloaded in its guides (m, n): axial force, N, side loads of both
+    rollers, the guides under them, and their rubbing loads over the sum of both forces.
+    """
+
+    axial: Array
+    loads: SideLoads
+    supports: SupportOfMany
+    rubbing: OfGuides
+
+
 class Block(DesignValues, Protocol):
     """Quantities common to the load cases of many designs; see `Designs`."""
 
@@ -78,6 +92,7 @@ class Block(DesignValues, Protocol):
     def squeeze(self) -> Squeezed | None: ...
     def both_tracks(self, first: Motion) -> tuple[Motion, Motion]: ...
     def supports_of(self, motion: Motion, reach: Value) -> SupportOfMany: ...
+    def supports_under(self, side: Array, arm: Array, reach: Value) -> SupportOfMany: ...
     @property
     def least_radius(self) -> Array: ...
     def thrown(self, speed: Value) -> tuple[Array, Array]: ...
@@ -119,6 +134,8 @@ class ScreenedCam(LoadedCam):
         """Guides of the stem under the roller or face that carries."""
         if self.block.second is None:
             return self.block.supports
+        if self._pressed is not None:
+            return self._pressed.supports
         return self.block.supports_of(self.motion, self.reach)
 
     @cached_property
@@ -131,7 +148,53 @@ class ScreenedCam(LoadedCam):
         return self._swung(self.pivot, self.required, self._pull(self.pivot))
 
     @cached_property
+    def _pressed(self) -> PressedStem | None:
+        """Stem in its guides under a preload of both rollers; None of other followers."""
+        return self._pressed_at(self._friction("friction"))
+
+    @cached_property
+    def _pressed_worst(self) -> PressedStem | None:
+        """`_pressed` at maximum friction."""
+        return self._pressed_at(self._friction("friction_greatest"))
+
+    def _friction(self, name: str) -> OfGuides:
+        """Coefficients of friction of both guides by their key."""
+        return OfGuides(*(np.asarray(self.numbers[f"guides.{side}.{name}"]) for side in "ab"))
+
+    def _pressed_at(self, friction: OfGuides) -> PressedStem | None:
+        """`_pressed` at coefficients of friction; NaN where the axial force does not settle.
+
+        As in `_settled` the rubbing loads are those of the table at the force before.
+        """
+        block, second = self.block, self.block.second
+        squeeze = block.squeeze if self.pulls else None
+        if squeeze is None or second is None or self.pivot is not None:
+            return None
+        first, other = block.both_tracks(block.motion)
+        sides, reach = (first.side, other.side), np.asarray(second.reach)
+        direction, required = np.sign(self.slope), np.asarray(self.required)
+        axial, settled = required.copy(), np.zeros(required.shape, dtype=bool)
+        for _ in range(_FRICTION_ROUNDS):
+            loads = SideLoads.of(sides, reach, squeeze.forces(axial))
+            far = np.divide(loads.far, loads.size, out=0.0 * loads.size, where=loads.size > 0.0)
+            side = loads.side / loads.force
+            supports = block.supports_under(side, np.zeros_like(side), reach * far)
+            on_a, on_b = supports.rubbing(loads.force)
+            if settled.all():
+                break
+            rubs = friction.a * on_a + friction.b * on_b
+            jams = [rubs * np.abs(each) for each in sides]
+            now = axial_in_guides(squeeze, jams, required, direction)
+            moved = np.where(settled, 0.0, now - axial)
+            axial = axial + moved
+            settled |= np.abs(moved) <= _FRICTION_SETTLED * loads.force
+        factor = np.where(settled, supports.factor, np.nan)
+        return PressedStem(axial, loads, supports, OfGuides(on_a * factor, on_b * factor))
+
+    @cached_property
     def wall(self) -> Array:
+        if self._pressed is not None:
+            return wall_of(self._pressed.axial, held=True)
         return super().wall if self._between is None else self._between[1]
 
     @cached_property
@@ -171,9 +234,16 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def axial(self) -> Array:
+        if self._pressed is not None:
+            return self._pressed.axial
         if self.pivoted is not None:
             return self.pivoted.axial
         return self._free * self.wall / self.share
+
+    @property
+    def stem_force(self) -> Array:
+        """Force on the stem towards the track that carries (m, n), N, of a preload that of both."""
+        return self.axial * self.wall if self._pressed is None else self._pressed.loads.force
 
     def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
         if self.pulls:
@@ -213,21 +283,26 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def rubbing_share(self) -> OfGuides:
-        numbers = self.numbers
-        friction = OfGuides(
-            np.asarray(numbers["guides.a.friction"]), np.asarray(numbers["guides.b.friction"])
-        )
-        return self._settled(friction)
+        if self._pressed is not None:
+            return self._pressed.rubbing
+        return self._settled(self._friction("friction"))
 
     @cached_property
     def jam_worst(self) -> Array:
         """Jam index (m, n) at the greatest friction of guides or pivot, -."""
         if self.pivoted_worst is not None:
             return self.pivoted_worst.jam_index
-        keys = (f"guides.{side}.friction_greatest" for side in "ab")
-        most = OfGuides(*(np.asarray(self.numbers[key]) for key in keys))
-        rubbing = self._settled(most)
+        most, pressed = self._friction("friction_greatest"), self._pressed_worst
+        rubbing = self._settled(most) if pressed is None else pressed.rubbing
         return most.a * rubbing.a + most.b * rubbing.b
+
+    @cached_property
+    def hot(self) -> OfGuides | None:
+        pressed = self._pressed_worst
+        if pressed is None:
+            return super().hot
+        pairs = zip(self._friction("friction_greatest"), pressed.rubbing, strict=True)
+        return OfGuides(*(most * share * pressed.loads.force for most, share in pairs))
 
     def _settled(self, friction: OfGuides) -> OfGuides:
         """Summed normal loads of guides A and B over the axial force, of m designs at n cam angles
@@ -267,7 +342,7 @@ class ScreenedCam(LoadedCam):
     @cached_property
     def guides(self) -> GuideLoads:
         """Loads of the guides by their tables, N."""
-        return self.supports.loads(self.axial * self.wall)
+        return self.supports.loads(self.stem_force)
 
     @cached_property
     def rubbing(self) -> OfGuides:
@@ -316,9 +391,7 @@ class ScreenedCam(LoadedCam):
     @cached_property
     def friction_loss(self) -> Array:
         """Friction loss of guides and face over a cam turn (m,), J."""
-        rubbed = (
-            self.jam * self.axial * self.wall if self.pivoted is None else self.pivoted.friction
-        )
+        rubbed = self.jam * self.stem_force if self.pivoted is None else self.pivoted.friction
         work = rubbed * np.abs(self.slope) + self.axial * self.motion.sliding
         work = work + self.motion.lock * self.axial * self.slope
         return FULL_TURN * np.mean(work + self.viscous * self.slope, axis=-1)

@@ -23,6 +23,7 @@ FILES = {
     "stem": ROOT / "tests" / "data" / "conjugate_feeder.toml",
     "arm": ROOT / "tests" / "data" / "conjugate_arm.toml",
     "pressed": ROOT / "tests" / "data" / "preloaded_arm.toml",
+    "pressed_stem": ROOT / "tests" / "data" / "preloaded_feeder.toml",
     "yoke": ROOT / "tests" / "data" / "yoke_pump.toml",
 }
 RANGES = {
@@ -64,6 +65,11 @@ RANGES = {
         "cam.conjugate.interference": (18e-6, 24e-6), "cam.conjugate.arm_length": (0.084, 0.086),
         "follower.pivot.bush.friction": (0.04, 0.07),
     },
+    "pressed_stem": {
+        "cam.prime_radius": (0.067, 0.069), "cam.offset": (-3e-3, 3e-3),
+        "cam.conjugate.distance": (0.153, 0.157), "cam.conjugate.interference": (18e-6, 24e-6),
+        "guides.a.friction": (0.04, 0.1), "guides.spacing": (0.13, 0.134),
+    },
     "yoke": {
         "cam.prime_radius": (0.034, 0.036), "cam.offset": (-2e-3, 2e-3),
         "cam.yoke.clearance": (0.04e-3, 0.06e-3), "follower.mass": (1.8, 2.2),
@@ -89,6 +95,7 @@ OF_FORM = {
     "stem": _LANDS | {"second_disc_gap", "cam_radius"},
     "arm": _LANDS | {"second_disc_gap", "pivot_pressure"},
     "pressed": {"preload_least", "preload_pressure", "second_disc_gap", "pivot_pressure"},
+    "pressed_stem": {"preload_least", "preload_pressure", "second_disc_gap", "jam_index"},
     "yoke": {"landing_speed", "landing_pressure", "yoke_breadth"},
 }  # fmt: skip
 
@@ -110,7 +117,7 @@ def designs(name, count):
     return case, factors
 
 
-THOROUGH = "stem", "steps", "gravity", "pressed", "groove_arm"
+THOROUGH = "stem", "steps", "gravity", "pressed", "pressed_stem", "groove_arm"
 """Cams of which a slow test alone compares the previews."""
 
 

@@ -1,0 +1,202 @@
+"""Preloaded rollers of a stem: both contacts load the guides, whose friction depends on both.
+
+The case is tests/data/preloaded_feeder.toml; uneven() has one stroke a turn, an offset and a
+smaller second roller. The equilibrium is that of the stem in fixed axes under the forces of both
+contacts, by the points of the contours.
+"""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_conjugate_cam import uneven as uneven_pair
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.follower.disc_preload import Compliances, DiscPreload
+from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
+from camwright.pipeline.follower.friction_coupling import guided_loads
+from camwright.pipeline.follower.guide_reactions import guide_reactions
+
+FILE = Path(__file__).parents[1] / "data" / "preloaded_feeder.toml"
+
+
+def uneven():
+    return parse_case(uneven_pair().replace('clearance = "0.02 mm"', 'interference = "0.02 mm"'))
+
+
+@cache
+def pressed(name):
+    """Machine of the first load case, contour, and second track."""
+    case = read_case(FILE) if name == "feeder" else uneven()
+    contour = case.contour(given_lift(case))
+    machine = machines(case)[0]
+    return machine, contour, machine.cam.second.track(contour.pitch)
+
+
+def unit(contour, theta, turn):
+    """Centre of the roller and outward normal in fixed axes: across the stem, along it."""
+    angle = theta + turn
+    cos, sin = np.cos(angle), np.sin(angle)
+    # the stem of the first roller points along the turned axis; across it, 90 deg ahead
+    axes = np.array([[-sin, cos], [cos, sin]])
+    centre = np.einsum("ijn,jn->in", axes, contour.pitch.points(angle))
+    contact = np.einsum("ijn,jn->in", axes, contour.points(angle))
+    normal = (centre - contact) / contour.roller_radius
+    flip = np.cos(turn)  # half a turn ahead both axes point the other way
+    return flip * centre, flip * normal
+
+
+def normals(loads):
+    """Normal forces of the first and of the second disc, N."""
+    pulled = loads.axial_force < 0.0
+    both = loads.normal_force, loads.idle_force
+    return np.where(pulled, *both[::-1]), np.where(pulled, *both)
+
+
+def contacts(name, loads):
+    """Force of both contacts on the stem, and its moments about the middle of guide A, on the stem
+    axis, and about the cam axis.
+    """
+    machine, contour, track = pressed(name)
+    force, guide, cam = 0.0, 0.0, 0.0
+    height = contour.pitch.height_base + contour.lift.highest.value + machine.overhang_at_max_lift
+    discs = (contour, 0.0), (track.contour, track.turn)
+    axis = unit(contour, loads.theta, 0.0)[0][0]
+    assert np.ptp(axis) < 1e-12
+    for size, (disc, turn) in zip(normals(loads), discs, strict=True):
+        (across, along), normal = unit(disc, loads.theta, turn)
+        push = size * normal
+        force = force + push
+        guide = guide + (across - axis) * push[1] - (along - height) * push[0]
+        cam = cam + across * push[1] - along * push[0]
+    return force, guide, cam
+
+
+@pytest.mark.parametrize("name", ["feeder", "uneven"])
+@pytest.mark.parametrize("speed", [2.0, 31.4, 90.0])
+def test_equilibrium_of_the_stem_on_two_bushes(name, speed):
+    """Both bushes from forces and moments, their Coulomb friction, the force along the stem."""
+    machine, contour, _ = pressed(name)
+    theta, system = uniform_turn(240), machine.system
+    loads = follower_loads(contour.pitch, system, speed, theta)
+    force, guide, cam = contacts(name, loads)
+    on_b = guide / system.guide_spacing
+    on_a = -force[0] - on_b
+    rubbed = system.friction_a * np.abs(on_a) + system.friction_b * np.abs(on_b)
+    lift, slope, bend = contour.lift.derivatives(theta, 2)
+    moving = np.where(np.abs(slope) > 1e-9 * contour.lift.stroke, np.sign(slope), 0.0)
+    closing = system.spring.force(lift) + system.mass * bend * speed**2
+    scale = np.sum(normals(loads), axis=0).max()
+    assert np.abs(force[1] - moving * rubbed - closing).max() < 1e-8 * scale
+    for reaction, wanted in ((loads.reaction_a, on_a), (loads.reaction_b, on_b)):
+        assert np.abs(reaction) == pytest.approx(np.abs(wanted), abs=1e-8 * scale)
+    friction = loads.friction_force_a + loads.friction_force_b
+    assert friction == pytest.approx(rubbed, abs=1e-8 * scale)
+    assert np.abs(loads.cam_torque) == pytest.approx(np.abs(cam), abs=1e-8 * scale * lift.max())
+    assert (loads.axial_force < 0.0).any() and (loads.axial_force > 0.0).any()
+
+
+@pytest.mark.parametrize("name", ["feeder", "uneven"])
+def test_guides_of_finite_length_bear_both_contacts(name):
+    """The stem under both side loads, each by its own roller, and the friction of its bores."""
+    machine, contour, _ = pressed(name)
+    theta, system, stem = uniform_turn(90), machine.system, machine.stem
+    turn = guided_loads(contour.pitch, system, stem, machine.guides, machine.cam_speed, theta)
+    loads = turn.loads
+    force, guide, _ = contacts(name, loads)
+    overhang = system.overhang_at_max_lift + contour.lift.highest.value - contour.lift(theta)
+    couple = force[0] * overhang - guide  # of the second contact beside the first
+    bores = guide_reactions(force[0], overhang, stem, machine.guides, couple)
+    for side in "ab":
+        solved, own = (getattr(each, f"rubbing_load_{side}") for each in (turn.reactions, bores))
+        assert solved == pytest.approx(own, rel=1e-7, abs=1e-6)
+    rubbed = system.friction_a * bores.rubbing_load_a + system.friction_b * bores.rubbing_load_b
+    moving = np.sign(loads.lift_slope)
+    closing = system.spring.force(loads.lift) + loads.inertia_force
+    miss = force[1] - moving * rubbed - closing
+    assert np.abs(miss).max() < 1e-8 * np.sum(normals(loads), axis=0).max()
+    assert turn.residual.max() < 1e-10
+
+
+@pytest.mark.parametrize("name", ["feeder", "uneven"])
+def test_the_work_of_the_cam_is_the_friction_of_the_guides(name):
+    """Over a turn, on point supports and in guides of finite length."""
+    machine, contour, _ = pressed(name)
+    theta = uniform_turn(720)
+    for solved in (follower_loads, _guided):
+        loads = solved(contour.pitch, machine.system, machine.cam_speed, theta)
+        work = turn_integral(theta, loads.cam_torque)
+        assert work == pytest.approx(loads.friction_loss, rel=1e-6)
+        assert work > 1.0
+
+
+def _guided(path, system, speed, theta):
+    machine = pressed("feeder")[0]
+    return guided_loads(path, system, machine.stem, machine.guides, speed, theta).loads
+
+
+# --- preload ----------------------------------------------------------------------------------
+def test_the_preload_of_stated_compliances():
+    """P = i/(cos alpha_2 (C_1 + C_2)), at rest over a dwell without an axial force."""
+    machine, contour, track = pressed("uneven")
+    theta = uniform_turn(60)
+    given = DiscPreload(15e-6, Compliances(20e-9, 32e-9))
+    squeeze = replace(machine.system, preload=given).squeezed(contour.pitch, theta)
+    angle = track.contour.pitch.pressure_angle(theta + np.pi)
+    assert squeeze.preload == pytest.approx(15e-6 / np.cos(angle) / 52e-9, rel=1e-6)
+    assert squeeze.share == pytest.approx(32.0 / 52.0, rel=1e-12)
+
+
+def test_compliances_of_the_rollers_by_their_parts():
+    """Roller, pin and fork of each, and the stem between: F L/(E A) of a bar of 20 mm."""
+    machine, _, _ = pressed("feeder")
+    parts = machine.compliances
+    own = parts["bearing"] + parts["pin"] + parts["fork"]
+    between = 0.154 / (machine.stem.elastic_modulus * 0.25 * np.pi * 0.020**2)
+    first, second = machine.roller_compliances
+    assert (first, second) == pytest.approx((own, own + between), rel=1e-12)
+    stated = replace(machine, stiffness=40e6).roller_compliances
+    assert stated == pytest.approx((25e-9, 25e-9), rel=1e-12)
+
+
+@pytest.mark.parametrize("preload", [40e-9, 4e-6, 20e-6])
+def test_both_rollers_are_springs_that_only_push(preload):
+    """The place of the stem between them by bisection; under little preload one is without load."""
+    machine, contour, _ = pressed("uneven")
+    given = replace(machine.system.preload, interference=preload)
+    system, theta = replace(machine.system, preload=given), uniform_turn(120)
+    loads = follower_loads(contour.pitch, system, 90.0, theta)
+    (near, far), angle = machine.roller_compliances, pressed("uneven")[2].contour.pitch
+    angle = angle.pressure_angle(theta + np.pi)
+    low, high = np.full(120, -1e-3), np.full(120, 1e-3)
+    for _ in range(90):
+        y = 0.5 * (low + high)
+        pushed, pulled = np.maximum(-y, 0.0) / near, preload / np.cos(angle) + y
+        pulled = np.maximum(pulled, 0.0) / far
+        over = pushed - pulled > loads.axial_force
+        low, high = np.where(over, y, low), np.where(over, high, y)
+    first, second = normals(loads)
+    assert first * np.cos(contour.pitch.pressure_angle(theta)) == pytest.approx(pushed, rel=1e-6)
+    assert second * np.cos(angle) == pytest.approx(pulled, rel=1e-6, abs=1e-6)
+    assert (pulled.min() > 0.0) == (pushed.min() > 0.0) == (preload > 10e-6)
+
+
+@pytest.mark.parametrize("name", ["feeder", "uneven"])
+def test_a_vanishing_interference_is_a_pair_without_clearance(name):
+    """An interference of a picometre has the forces of either disc alone, of 5e-5 N about."""
+    machine, contour, _ = pressed(name)
+    theta = uniform_turn(180)
+    light = replace(machine.system.preload, interference=1e-12)
+    systems = replace(machine.system, preload=light), replace(machine.system, preload=None)
+    names = "axial_force", "normal_force", "cam_torque", "friction_force", "reaction_a"
+    for solved in (follower_loads, _guided):
+        pressed_, loose = (solved(contour.pitch, each, 60.0, theta) for each in systems)
+        carries = np.abs(loose.axial_force) > 1.0
+        for each in (*names, "jam_index", "overhang"):
+            of_pressed, of_loose = (getattr(loads, each)[carries] for loads in (pressed_, loose))
+            assert of_pressed == pytest.approx(of_loose, abs=1e-3), each
