@@ -676,15 +676,20 @@ def cheek_to_cam(numbers: Numbers) -> Value:
 
 def _in_fork(numbers: Numbers) -> Gaps:
     """Gaps of cheeks and bridge from roller and cam, m."""
-    inner, radius = _inner_face(numbers), numbers["roller.radius"]
+    inner, radius, width = _inner_face(numbers), numbers["roller.radius"], numbers["roller.width"]
     to_cam = np.where(0.5 * numbers[_HEIGHT] > radius, cheek_to_cam(numbers), np.inf)
     groove = numbers.known_case.cam.groove
+    nearest: Value = inner
+    largest: Value = radius
     if groove is not None:
-        groove, second = numbers.of_part(groove), groove.second and numbers.of_part(groove.second)
-        to_cam = np.asarray(inner - groove.middle(radius, numbers["roller.width"], second))
+        second = groove.second and numbers.of_part(groove.second)
+        to_cam = np.asarray(inner - numbers.of_part(groove).middle(radius, width, second))
+        if second is not None:
+            nearest = inner + np.minimum(second.beyond(radius), 0.0)
+            largest = np.maximum(radius, second.radius)
     return {
-        "cheek to roller": inner - 0.5 * numbers["roller.width"],
-        "bridge to roller": numbers[_LENGTH] - radius,
+        "cheek to roller": nearest - 0.5 * width,
+        "bridge to roller": numbers[_LENGTH] - largest,
         "cheek to cam": to_cam,
     }
 

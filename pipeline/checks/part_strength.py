@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,6 +24,7 @@ from camwright.pipeline.case.limits import (
     UNBALANCE,
     Limit,
 )
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check, of_key
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, force_over, normal_force
@@ -68,17 +69,22 @@ def _of_force(stress: Stress) -> PerLoad:
     return PerLoad(lambda numbers: stress(1.0, 0.0, numbers))
 
 
-def _level_force(stress: Stress) -> Measure:
+def _level_force(stress: Stress, moment: Measure = lambda cam: cam.follower_moment) -> Measure:
     """Measure of the force in the middle of the roller that gives the same stress of a part as the
-    contact with its moment.
+    contact with its moment, of two rollers on a pin about the first one.
     """
 
     def level_force(cam: LoadedCam) -> Array:
         """Force in the middle of the roller that stresses the part as the contact does, N."""
         numbers, force = cam.numbers, not_negative(cam.normal)
-        return stress(force, cam.follower_moment, numbers) / stress(1.0, 0.0, numbers)
+        return stress(force, moment(cam), numbers) / stress(1.0, 0.0, numbers)
 
     return level_force
+
+
+def _on_pin(cam: LoadedCam) -> Array:
+    """Moment of the contact on the pin, N m."""
+    return cam.pin_couple
 
 
 def _bending(force: Value, moment: Value, numbers: Numbers) -> Array:
@@ -150,7 +156,7 @@ roller_pin = check(
     deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(_level_force(_bending))
+)(_level_force(_bending, _on_pin))
 
 
 _PIN_FIBRES = 180  # around the pin; between two of them the stress differs by 1e-4 at most
@@ -203,7 +209,7 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     def of_fibres(cycle: Cycle) -> tuple[Array, Array]:
         """Amplitude and mean of the stress, Pa."""
         loads = cycle.loads
-        greatest = roller.pin_stress(loads.normal_force, cycle.follower_moment)
+        greatest = roller.pin_stress(loads.normal_force, cycle.pin_couple)
         per_newton = np.divide(
             np.full_like(loads.normal_force, np.nan) if greatest is None else greatest,
             loads.normal_force,
@@ -282,7 +288,7 @@ roller_pin_shear = check(
     deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(_level_force(_shear))
+)(_level_force(_shear, _on_pin))
 
 
 def _seat(force: Value, moment: Value, numbers: Numbers) -> Array:
@@ -432,7 +438,7 @@ cheek_pressure = check(
     deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(_level_force(_cheek))
+)(_level_force(_cheek, _on_pin))
 
 
 @check(
@@ -487,6 +493,7 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
     missing = [
         key for part, keys in parts.missing.items() if machine.scope.covers(part) for key in keys
     ]
+    masses |= _of_second(machine, masses)
     bar = machine.arm_bar
     if machine.arm is None:
         masses["stem"], lacks = _stem_mass(solution, parts.inset)
@@ -500,6 +507,21 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
     elif machine.spring.shape is None and machine.scope.covers("spring"):
         missing.append("spring.design")
     return masses, tuple(missing)
+
+
+def _of_second(machine: Machine, masses: Mapping[str, float]) -> dict[str, float]:
+    """Masses of a second roller on the pin of the first, and of the pin up to it, kg; {} without
+    one.
+    """
+    second = machine.cam.on_pin
+    if second is None:
+        return {}
+    roller = machine.roller
+    added = {"second roller": replace(roller, radius=second.radius).drawn_mass}
+    if roller.pin is None or "pin" not in masses:
+        return added
+    longer = max(float(second.beyond(roller.radius)), 0.0)
+    return added | {"pin": masses["pin"] + roller.pin.mass_per_length * longer}
 
 
 def _stem_mass(solution: Solution, inset: float) -> tuple[float, tuple[str, ...]]:

@@ -170,6 +170,10 @@ class GrooveRoller(Part):
         """Second roller on the path of the first."""
         return CoaxialRoller(self.radius)
 
+    def beyond(self, radius: Value) -> Value:
+        """Distance by which it is farther into the groove than the first roller, of a radius, m."""
+        return np.where(self.radius > radius, -self.spacing, self.spacing)
+
 
 @dataclass(frozen=True, kw_only=True)
 class CamGroove(Part):
@@ -215,7 +219,7 @@ class CamGroove(Part):
         lowest: Value = self.depth - self.corner_radius - 0.5 * width
         if second is None:
             return lowest
-        return np.where(second.radius > radius, lowest, lowest - second.spacing)
+        return np.minimum(lowest, lowest - second.beyond(radius))
 
     def steps(self, radius: float) -> tuple[GrooveStep, ...]:
         """Steps of the groove from the face of the disc down, of one roller one.
@@ -416,9 +420,14 @@ class CamBody(Part):
         """Second roller, on a disc or an outer wall of its own, or face; None without one."""
         if self.yoke is not None:
             return OppositeFace()
-        if self.groove is not None and self.groove.second is not None:
-            return self.groove.second.roller
+        if self.on_pin is not None:
+            return self.on_pin.roller
         return None if self.conjugate is None else self.conjugate.roller
+
+    @property
+    def on_pin(self) -> GrooveRoller | None:
+        """Second roller on the pin of the first; None without one."""
+        return None if self.groove is None else self.groove.second
 
     @property
     def clearance(self) -> float:

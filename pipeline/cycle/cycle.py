@@ -37,6 +37,7 @@ from camwright.pipeline.cycle.length_history import LengthHistory, TurnOfLine, l
 from camwright.pipeline.cycle.part_loads import (
     PartLoads,
     PivotPush,
+    beside_first,
     part_loads,
     shaft_of,
     spring_surge,
@@ -230,6 +231,13 @@ class Cycle(Tabled):
         """
         length = None if self.end is not None else self.length
         return turn_of_line(self).rigid_moment if length is None else length.follower_moment
+
+    @property
+    def pin_couple(self) -> Array:
+        """Greatest moment of the contact on the pin (n,) about the middle of the first roller, N m:
+        `follower_moment`, and the force of a second one beside it.
+        """
+        return self.follower_moment + beside_first(self.machine, self.loads)
 
     @KeptResult
     def sideways(self) -> GuideReactions | None:
@@ -678,6 +686,13 @@ class _ThinnedCycle(Cycle):
     @property
     def follower_moment(self) -> Array:
         return self.whole.follower_moment[:: self.step]
+
+    @property
+    def pin_couple(self) -> Array:
+        """Greatest moment of the contact on the pin (n,) about the middle of the first roller, N m:
+        `follower_moment`, and the force of a second one beside it.
+        """
+        return self.follower_moment + beside_first(self.machine, self.loads)
 
     @KeptResult
     def sideways(self) -> GuideReactions | None:

@@ -696,6 +696,19 @@ class LoadedCam:
         return 0.0 * self.normal
 
     @property
+    def pin_couple(self) -> Array:
+        """Greatest moment of the contact on the pin about the middle of the first roller, N m:
+        `follower_moment`, and the force of a second one beside it.
+        """
+        case = self.numbers.case
+        second = None if case is None else case.cam.on_pin
+        if second is None:
+            return self.follower_moment
+        beyond = self.numbers.of_part(second).beyond(self.numbers["roller.radius"])
+        beside = np.where(self.wall < 0.0, beyond * self.normal, 0.0)
+        return np.asarray(self.follower_moment + beside)
+
+    @property
     def pressure_factor(self) -> Value:
         """Contact pressure over that of plane-strain half-planes."""
         return 1.0

@@ -184,7 +184,9 @@ def part_loads(
         shaft_bearing_2=None if shaft is None else shaft.load_2,
         spring_stress=None if spring is None else spring.stress(_own_force(machine, loads)),
         surge_force=spring_surge(machine, loads.lift),
-        pin_stress=machine.follower.pin_stress(loads.normal_force, moment),
+        pin_stress=machine.follower.pin_stress(
+            loads.normal_force, moment + beside_first(machine, loads)
+        ),
         roller_spin=None if motion is None else motion.spin,
         roller_spin_acceleration=None if motion is None else motion.spin_acceleration,
         ring_amplitude=amplitude,
@@ -192,6 +194,15 @@ def part_loads(
         ring_correction=correction,
         pivot_edge_pressure=None if pivot is None else pivot.edge_pressure,
     )
+
+
+def beside_first(machine: Machine, loads: Loads) -> Array:
+    """Moment (n,), N m, of a second roller on the pin about the middle of the first; 0 without."""
+    second = machine.cam.on_pin
+    if second is None:
+        return np.zeros(loads.theta.size)
+    beyond = second.beyond(machine.roller.radius)
+    return np.where(loads.wall < 0.0, beyond * loads.normal_force, 0.0)
 
 
 class PivotPush(NamedTuple):

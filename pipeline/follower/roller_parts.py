@@ -188,7 +188,12 @@ class Pin(Part):
         An overhung pin ends as far beyond the middle of the bearing as it starts before it.
         """
         length = 2.0 * self.span + cheek_width if self.overhung else self.span + cheek_width
-        return float(self.material.density * 0.25 * pi * self.diameter**2 * length)
+        return float(self.mass_per_length * length)
+
+    @property
+    def mass_per_length(self) -> float:
+        """Of the solid pin, kg/m."""
+        return self.material.density * 0.25 * pi * self.diameter**2
 
 
 @dataclass(frozen=True, kw_only=True)

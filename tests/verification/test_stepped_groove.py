@@ -168,6 +168,30 @@ def test_landings_press_the_wall_of_each_roller():
         assert one.pressure == pytest.approx(pressure, rel=1e-6)
 
 
+def test_the_pin_under_the_force_of_each_roller_at_its_place():
+    """Beam held at the cheek: M = N l of the first, N (l + a) of the deeper second roller."""
+    cycle, machine = running()
+    pin, loads = machine.roller.pin, cycle.loads
+    place = np.where(loads.axial_force < 0.0, pin.span + 0.018, pin.span)
+    moment = loads.normal_force * place + cycle.follower_moment
+    stress = 32.0 * moment / (np.pi * pin.diameter**3)
+    assert cycle.parts.pin_stress == pytest.approx(stress, rel=1e-12)
+    fast = max(trial().cycles, key=lambda each: each.cam_speed)
+    assert demand("roller_pin").demand == pytest.approx(fast.parts.pin_stress.max(), rel=1e-2)
+    over = fast.loads.normal_force * np.where(
+        fast.loads.axial_force < 0.0, pin.span + 0.018, pin.span
+    )
+    edge = 6.0 * (over + fast.follower_moment) + 4.0 * 0.010 * fast.loads.normal_force
+    pressure = (edge / (pin.diameter * 0.010**2)).max()
+    assert demand("cheek_pressure").demand == pytest.approx(pressure, rel=1e-2)
+    # with the larger roller second, at the face, the first is the deeper one
+    second = replace(machine.cam.groove.second, radius=0.026)
+    assert second.beyond(machine.roller.radius) == -0.018
+    groove = replace(machine.cam.groove, second=second)
+    assert groove.middle(0.0235, 0.0175, second) == pytest.approx(0.036 - 0.0004 - 0.00875)
+    assert [each.outer for each in groove.steps(0.0235)] == pytest.approx([0.02601, 0.024])
+
+
 # --- the body ---------------------------------------------------------------------------------
 def test_mass_of_the_disc_by_the_volume_of_both_steps():
     """Chords of both walls of each step; 7200 chords miss 1e-6 of an area."""
