@@ -305,9 +305,12 @@ def _stores(case: Case, stated_as: str) -> None:
         limit = f"given with {stated_as} and without [lift]: it stores the work of the torque"
         raise InputError("spring", "missing", limit)
     if case.smoothing.kind == "constrained" and (
-        case.cam.groove is None or case.cam.second is not None or not case.spring.preload > 0.0
+        case.cam.yoke is not None
+        or (case.cam.groove is not None and case.cam.second is not None)
+        or not (case.cam.clearance > 0.0 and case.spring.preload > 0.0)
     ):
-        limit = f"a filter with {stated_as}: it is done for a groove of one roller with a"
+        limit = f"a filter with {stated_as}: it is done for a groove of one roller and for discs, "
+        limit += "with a clearance and a"
         limit += " spring.preload > 0 N"
         raise InputError("smoothing.kind", "constrained", limit)
 

@@ -22,11 +22,13 @@ from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion, Reaction, Sliding
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import RollerMotion, RoundMotion, magnitude, rolling_share
+from camwright.geometry.second_track import SecondMotion
 from camwright.pipeline.case.case_values import wound_spring
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import NO_TORQUE, gear_force
+from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import levers, wall_of
 from camwright.pipeline.follower.pivot_forces import (
     FRICTION,
@@ -104,6 +106,13 @@ def on_wall(motion: Motion, wall: Array) -> Motion:
     if not isinstance(motion, RollerMotion | ArmMotion):
         raise GeometryError("the follower in the groove is no roller")
     return replace(motion, size=wall * motion.size)
+
+
+def carried(first: Motion, second: SecondMotion | None, wall: Array) -> Motion:
+    """Motion of the roller or face on the track that carries, from that of the first; wall (...) as
+    of `LoadedCam.wall`. second: None in a groove.
+    """
+    return on_wall(first, wall) if second is None else second.carried(first, wall < 0.0)
 
 
 def roller_of(path: Motion) -> RoundMotion:
@@ -754,6 +763,113 @@ class LoadedCam:
         load = force / numbers["contact.width"]
         square = half_width_square(load, radius, numbers["contact.modulus"])
         return np.sqrt(square) / self.pressure_factor
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DiscCam(LoadedCam):
+    """Unloaded cam of which the motion on a disc is known."""
+
+    track: Motion
+
+    @property
+    def motion(self) -> Motion:
+        return self.track
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CarriedCam(LoadedCam):
+    """Loaded cam whose motion is that on the track that carries: of a cam that pulls its follower
+    one of two, at each cam angle.
+    """
+
+    @cached_property
+    def first(self) -> Motion:
+        """Motion on the first track, of the unloaded cam."""
+        return motion_of(self.jet, self.numbers)
+
+    @property
+    def second(self) -> SecondMotion | None:
+        """Motion of a second roller or face; None without one."""
+        return None
+
+    @property
+    def squeeze(self) -> Squeezed | None:
+        """Preload of both discs with their interference; None without one."""
+        return None
+
+    @cached_property
+    def motion(self) -> Motion:
+        return carried(self.first, self.second, self.wall) if self.pulls else self.first
+
+    @property
+    def travel(self) -> Value:
+        return self.first.travel
+
+    @property
+    def turned(self) -> Value:
+        second = self.second
+        return 0.0 if second is None else np.where(self.wall < 0.0, second.turned, 0.0)
+
+    @property
+    def reach(self) -> Value:
+        second = self.second
+        return 0.0 if second is None else np.asarray(second.reach * (self.wall < 0.0))
+
+    @cached_property
+    def _between(self) -> tuple[PivotBalance, Array] | None:
+        """Equilibrium of an arm between two tracks, and the track that carries; None of a stem and
+        of a cam that does not pull.
+        """
+        if self.pivot is None or not self.pulls:
+            return None
+        return self._swung(self.pivot, self.required, self._pull(self.pivot))
+
+    @cached_property
+    def wall(self) -> Array:
+        return super().wall if self._between is None else self._between[1]
+
+    @cached_property
+    def pivoted(self) -> PivotBalance | None:
+        return super().pivoted if self._between is None else self._between[0]
+
+    def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
+        if self.pulls:
+            return self._swung(pivot, required, pull)[0]
+        return super()._balanced(pivot, required, pull)
+
+    def _swung(self, pivot: ArmPivot, required: Array, pull: Pull) -> tuple[PivotBalance, Array]:
+        """Equilibrium of an arm between two tracks, and the track that carries (..., n)."""
+        one = np.ones(np.shape(self.first.jet.lift))
+        push, pulled = (
+            Pressed.of(carried(self.first, self.second, side * one)) for side in (1.0, -1.0)
+        )
+        pressed, direction = (push, pulled), np.asarray(np.sign(np.real(self.slope)))
+        squeeze = self.squeeze
+        if squeeze is None:
+            return pivot.between(required, pressed, pull, direction)
+        return pivot.squeezed(required, pressed, squeeze, pull, direction)
+
+    @property
+    def on_bodies(self) -> tuple[BodyContact, ...]:
+        second, squeeze, axial = self.second, self.squeeze, self.axial
+        if second is None:
+            return super().on_bodies
+        alone = not_negative(axial), not_negative(-axial)
+        push, pull = alone if squeeze is None else squeeze.forces(axial)
+        pulled = BodyContact.of(second.motion, second.leverage * pull)
+        return BodyContact.of(self.first, push), pulled
+
+    @cached_property
+    def normal(self) -> Array:
+        squeeze = self.squeeze if self.pulls else None
+        if squeeze is None:
+            return super().normal
+        first, second = squeeze.forces(self.axial)
+        return np.asarray(np.where(self.wall > 0.0, first, second) * self.motion.gain)
+
+    @cached_property
+    def surged(self) -> Array:
+        return self.normal if self.pulls and self.squeeze is not None else super().surged
 
 
 _LEAST_FORCE = 1.0  # N, of a half-width

@@ -45,7 +45,7 @@ class Squeezed(NamedTuple):
         """Forces (n,) of the first and of the second track at axial forces (n,), N, >= 0."""
         first = self.preload + self.share * axial
         second = self.preload - (1.0 - self.share) * axial
-        pushed, pulled = second < 0.0, first < 0.0
+        pushed, pulled = np.real(second) < 0.0, np.real(first) < 0.0
         first = np.where(pushed, axial, np.where(pulled, 0.0, first))
         second = np.where(pulled, -axial, np.where(pushed, 0.0, second))
         return first, second
@@ -53,7 +53,7 @@ class Squeezed(NamedTuple):
     def both(self, axial: Array) -> Array:
         """Whether both tracks are pressed at axial forces (n,), N; bool (n,)."""
         first, second = self.forces(axial)
-        return np.asarray((first > 0.0) & (second > 0.0))
+        return np.asarray((np.real(first) > 0.0) & (np.real(second) > 0.0))
 
 
 class Compliances(NamedTuple):

@@ -291,7 +291,7 @@ class ArmPivot:
         self, required: Array, pressed: tuple[Pressed, Pressed], pull: Pull, direction: Array
     ) -> tuple[PivotBalance, Array]:
         """Equilibrium as by `balanced` on the track of two that carries, and which one does: 1 the
-        first, which pushes, -1 the second; real arrays (..., n).
+        first, which pushes, -1 the second.
 
         Where the friction alone holds the arm, neither track is pressed. The jam index is
         that of the contact force alone, of which an arm locks at 1: that of the whole load has a
@@ -305,10 +305,11 @@ class ArmPivot:
         direction : array (..., n)   1 on the rise, -1 on the return, 0 at rest
         """
         pushed, pulled = (self.balanced(required, one, pull, direction) for one in pressed)
-        wall = np.where(pushed.axial > 0.0, 1.0, -1.0)
-        first, axial = wall > 0.0, np.where(wall > 0.0, pushed.axial, np.minimum(pulled.axial, 0.0))
+        first = np.real(pushed.axial) > 0.0
+        back = np.where(np.real(pulled.axial) < 0.0, pulled.axial, 0.0 * pulled.axial)
+        wall, axial = np.where(first, 1.0, -1.0), np.where(first, pushed.axial, back)
         one = Pressed(*(np.where(first, *pair) for pair in zip(*pressed, strict=True)))
-        rubbed = np.where(direction == 0.0, 0.0, np.abs(one.share * axial - required))
+        rubbed = np.where(direction == 0.0, 0.0, magnitude(one.share * axial - required))
         load = _size(one.total(axial, pull))
         return PivotBalance(axial, load, rubbed, self._locking(one)), wall
 
@@ -347,7 +348,7 @@ class ArmPivot:
         still = np.where(direction == 0.0, 0.0, balance.friction)
         jam = np.where(pair, self._locking(mixed), alone.jam_index)
         return balance._replace(friction=still, jam_index=jam), np.where(
-            balance.axial < 0.0, -1.0, 1.0
+            np.real(balance.axial) < 0.0, -1.0, 1.0
         )
 
 

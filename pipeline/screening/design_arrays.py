@@ -31,10 +31,11 @@ from camwright.pipeline.checks.arm_strength import bar_of
 from camwright.pipeline.checks.torque_balance import NO_MEAN
 from camwright.pipeline.cycle.crossover_history import WallImpact, impacts
 from camwright.pipeline.cycle.loaded_cam import (
+    DiscCam,
     LoadedCam,
+    carried,
     face_of,
     motion_of,
-    on_wall,
     pivot_of,
     roller_of,
 )
@@ -249,7 +250,7 @@ class Designs:
         if second is None:
             return (first,)
         other = roller_of(second.motion)
-        return first, _DiscCam(other.jet, self.numbers, first.highest, track=other)
+        return first, DiscCam(other.jet, self.numbers, first.highest, track=other)
 
     @property
     def top(self) -> LoadedCam:
@@ -260,15 +261,6 @@ class Designs:
         preload = np.max([cam.state.preload for cam in self.cams], axis=0)
         numbers = self.numbers | {"spring.preload_greatest": preload}
         return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), numbers, lift)
-
-    def carried(self, motion: Motion, wall: Array) -> Motion:
-        """Motion (m, n) of the roller or face that carries, by that of the first on the unloaded
-        cams; wall (m, n) as of `LoadedCam.wall`.
-        """
-        if not self.case.cam.pulls:
-            return motion
-        second = self.second_of(motion)
-        return on_wall(motion, wall) if second is None else second.carried(motion, wall < 0.0)
 
     def second_of(self, motion: Motion) -> SecondMotion | None:
         """Motion of the second roller or face by that of the first (m, n); None without one."""
@@ -286,8 +278,8 @@ class Designs:
 
     def both_tracks(self, first: Motion) -> tuple[Motion, Motion]:
         """Motion (m, n) on each track of cams that pull, by that of the first roller or face."""
-        one = np.ones(first.jet.lift.shape)
-        return self.carried(first, one), self.carried(first, -one)
+        second, one = self.second_of(first), np.ones(first.jet.lift.shape)
+        return carried(first, second, one), carried(first, second, -one)
 
     @KeptResult
     def tracks(self) -> tuple[Motion, ...]:
@@ -594,17 +586,6 @@ class Designs:
         """Crank speed (m,) of over-speed, at least of the fastest load case, rad/s."""
         speeds = np.stack([np.maximum(each.speed, CREEP)[:, 0] for each in self.states])
         return np.asarray(np.nanmax(speeds, axis=0))
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class _DiscCam(LoadedCam):
-    """Unloaded cams of which the motion on a disc is known."""
-
-    track: Motion
-
-    @property
-    def motion(self) -> Motion:
-        return self.track
 
 
 @dataclass(frozen=True, eq=False)

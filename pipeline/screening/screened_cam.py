@@ -17,7 +17,7 @@ from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.oil_film import LineFilm, lambda_ratio, minimum_film
 from camwright.pipeline.cycle.contact_heat import flash_rise
-from camwright.pipeline.cycle.loaded_cam import BodyContact, LoadedCam, OfGuides, face_of
+from camwright.pipeline.cycle.loaded_cam import CarriedCam, OfGuides, face_of
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
@@ -85,7 +85,6 @@ class Block(DesignValues, Protocol):
     @property
     def relative_radius(self) -> Array: ...
     def relative_radius_of(self, motion: Motion) -> Array: ...
-    def carried(self, motion: Motion, wall: Array) -> Motion: ...
     @property
     def second(self) -> SecondMotion | None: ...
     @property
@@ -99,7 +98,7 @@ class Block(DesignValues, Protocol):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ScreenedCam(LoadedCam):
+class ScreenedCam(CarriedCam):
     """Loaded cams of many designs in a load case; arrays (m, n).
 
     The loads are clipped as `Loads`: no axial force where the follower has left the cam, and a
@@ -111,23 +110,17 @@ class ScreenedCam(LoadedCam):
     crank_speed: Array
     figures: dict[tuple[object, ...], Array] = field(default_factory=dict, repr=False)
 
-    @cached_property
-    def motion(self) -> Motion:
-        return self.block.carried(self.block.motion, self.wall) if self.pulls else self.block.motion
+    @property
+    def first(self) -> Motion:
+        return self.block.motion
 
     @property
-    def travel(self) -> Value:
-        return self.block.motion.travel
+    def second(self) -> SecondMotion | None:
+        return self.block.second
 
     @property
-    def turned(self) -> Value:
-        second = self.block.second
-        return 0.0 if second is None else np.where(self.wall < 0.0, second.turned, 0.0)
-
-    @property
-    def reach(self) -> Value:
-        second = self.block.second
-        return 0.0 if second is None else np.asarray(second.reach * (self.wall < 0.0))
+    def squeeze(self) -> Squeezed | None:
+        return self.block.squeeze
 
     @cached_property
     def supports(self) -> SupportOfMany:
@@ -137,15 +130,6 @@ class ScreenedCam(LoadedCam):
         if self._pressed is not None:
             return self._pressed.supports
         return self.block.supports_of(self.motion, self.reach)
-
-    @cached_property
-    def _between(self) -> tuple[PivotBalance, Array] | None:
-        """Equilibrium of arms between two tracks, and the track that carries (m, n); None of stems
-        and of cams that do not pull.
-        """
-        if self.pivot is None or not self.pulls:
-            return None
-        return self._swung(self.pivot, self.required, self._pull(self.pivot))
 
     @cached_property
     def _pressed(self) -> PressedStem | None:
@@ -193,13 +177,8 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def wall(self) -> Array:
-        if self._pressed is not None:
-            return wall_of(self._pressed.axial, held=True)
-        return super().wall if self._between is None else self._between[1]
-
-    @cached_property
-    def pivoted(self) -> PivotBalance | None:
-        return super().pivoted if self._between is None else self._between[0]
+        pressed = self._pressed
+        return super().wall if pressed is None else wall_of(pressed.axial, held=True)
 
     @cached_property
     def relative_radius(self) -> Array:
@@ -247,39 +226,8 @@ class ScreenedCam(LoadedCam):
 
     def _balanced(self, pivot: ArmPivot, required: Array, pull: Pull) -> PivotBalance:
         if self.pulls:
-            return self._swung(pivot, required, pull)[0]
+            return super()._balanced(pivot, required, pull)
         return pivot.clipped(required, Pressed.of(self.motion), pull, self.direction, JAM_FLOOR)
-
-    def _swung(self, pivot: ArmPivot, required: Array, pull: Pull) -> tuple[PivotBalance, Array]:
-        """Equilibrium of arms between two tracks, and the track that carries (m, n)."""
-        push, pulled = (Pressed.of(each) for each in self.block.both_tracks(self.block.motion))
-        pressed, direction = (push, pulled), np.sign(self.slope)
-        squeeze = self.block.squeeze
-        if squeeze is None:
-            return pivot.between(required, pressed, pull, direction)
-        return pivot.squeezed(required, pressed, squeeze, pull, direction)
-
-    @property
-    def on_bodies(self) -> tuple[BodyContact, ...]:
-        second, squeeze, axial = self.block.second, self.block.squeeze, self.axial
-        if second is None:
-            return super().on_bodies
-        alone = np.maximum(axial, 0.0), np.maximum(-axial, 0.0)
-        push, pull = alone if squeeze is None else squeeze.forces(axial)
-        pulled = BodyContact.of(second.motion, second.leverage * pull)
-        return BodyContact.of(self.block.motion, push), pulled
-
-    @cached_property
-    def normal(self) -> Array:
-        squeeze = self.block.squeeze if self.pulls else None
-        if squeeze is None:
-            return super().normal
-        first, second = squeeze.forces(self.axial)
-        return np.asarray(np.where(self.wall > 0.0, first, second) * self.motion.gain)
-
-    @cached_property
-    def surged(self) -> Array:
-        return self.normal if self.pulls and self.block.squeeze is not None else super().surged
 
     @cached_property
     def rubbing_share(self) -> OfGuides:

@@ -54,12 +54,14 @@ def ratings_of(case: Case) -> Ratings:
     """Ratings of a case: its limits as bounds of the constraints of a synthesis, with the numbers
     of the machine.
 
-    The wall over the bore limits a prime radius that is a variable. The root of a keyway under a
+    The wall over the bore limits a prime radius that is a variable, and the second of two discs,
+    whose radius follows from the lift. The root of a keyway under a
     fit is left to finite elements: its bound is too wide.
     """
     states = machines(case)
     numbers, machine = numbers_of(case, states), states[0]
-    held = machine.cam.held_radius if "prime_radius" in case.smoothing.free else None
+    varies = "prime_radius" in case.smoothing.free or case.cam.conjugate is not None
+    held = machine.cam.held_radius if varies else None
     keyway = keyway_root_of(numbers)
     ratings = Ratings(
         numbers | {"cam.held_radius": held, "guides.a.mouth": numbers["guides.a.mouth"]},

@@ -18,6 +18,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude, rolling_share
+from camwright.geometry.second_track import SecondMotion
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     PRESSURE_ANGLE,
@@ -28,10 +29,11 @@ from camwright.pipeline.checks.check import Declaration, Kept, Kind, Stroke
 from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.loaded_cam import (
+    CarriedCam,
+    DiscCam,
     LoadedCam,
     OfGuides,
     not_negative,
-    on_wall,
     roller_of,
 )
 from camwright.pipeline.cycle.numbers import Numbers
@@ -101,8 +103,26 @@ def unloaded(jet: Jet, variables: DesignVariables, ratings: Ratings) -> LoadedCa
     return LoadedCam(jet, _numbers(variables, ratings))
 
 
+def second_disc(cam: LoadedCam, highest: float) -> LoadedCam | None:
+    """Disc of a second roller, from the unloaded cam of the first and its maximum lift, m; None
+    without one.
+    """
+    second = _second_of(cam, cam.motion, highest)
+    if second is None or not cam.numbers.known_case.cam.conjugate:
+        return None
+    other = second.motion
+    return DiscCam(roller_of(other).jet, cam.numbers, highest, track=other)
+
+
+def _second_of(cam: LoadedCam, first: Motion, highest: Value) -> SecondMotion | None:
+    """Motion of a second roller or face by that of the first; None without one."""
+    case = cam.numbers.case
+    fixed = None if case is None else case.cam.second
+    return None if fixed is None else fixed.motion(first, highest)
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ScenarioCam(LoadedCam):
+class ScenarioCam(CarriedCam):
     """Loaded cam of a scenario at n cam angles; of stacked scenarios (..., n).
 
     What finite elements, the surge or the heat of a solved cam add is in the `Correction` of the
@@ -114,10 +134,8 @@ class ScenarioCam(LoadedCam):
     ratings: Ratings
 
     @cached_property
-    def motion(self) -> Motion:
-        """On the wall of a groove that carries."""
-        unloaded = super().motion
-        return on_wall(unloaded, self.wall) if self.pulls else unloaded
+    def second(self) -> SecondMotion | None:
+        return _second_of(self, self.first, self.highest)
 
     @property
     def fix(self) -> Correction:
@@ -138,7 +156,7 @@ class ScenarioCam(LoadedCam):
         that the last solved cam has, or, before there is a solved cam, the ratio of prime circle to
         roller without slip.
         """
-        rolling, path = self.fix.rolling[..., :1], roller_of(self.motion)  # one value
+        rolling, path = self.fix.rolling[..., :1], roller_of(self.first)  # one value
         prime = path.prime_radius[..., :1]
         share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
         return np.asarray(self.speed * share)
@@ -307,7 +325,7 @@ class Mean(NamedTuple):
 
 
 _COMPLEX_STEP = 1e-30  # complex step of a mean
-_INAPPLICABLE_USE = -10.0  # utilisation in a scenario to which a limit does not apply
+INAPPLICABLE_USE = -10.0  # utilisation in a scenario to which a limit does not apply
 _SECOND_STEP = 1e-5  # of a mean: step of the second derivatives
 
 
@@ -362,6 +380,7 @@ class Constraint(Generic[State]):
     kept : Kept              unit and slope of a limit of a part, how far that of a row is relaxed
     needs : str              kind of follower; "": any
     stroke : str             key of the limit of one stroke of the follower; "": of the whole turn
+    discs : bool             whether it holds on each of two discs
     """
 
     check: str
@@ -371,6 +390,7 @@ class Constraint(Generic[State]):
     kept: Kept = field(default=Kept(), repr=False)
     needs: Kind = ""
     stroke: str = ""
+    discs: bool = False
 
     @property
     def name(self) -> str:
@@ -384,7 +404,7 @@ class Constraint(Generic[State]):
 
 def where_applies(applies: Value, use: Array) -> Array:
     """Utilisation where a limit applies; far below it in the other scenarios."""
-    return np.where(np.asarray(applies) != 0.0, use, _INAPPLICABLE_USE + 0.0 * use)
+    return np.where(np.asarray(applies) != 0.0, use, INAPPLICABLE_USE + 0.0 * use)
 
 
 def kept(declared: Declaration) -> Constraint[LoadedCam]:
@@ -411,6 +431,7 @@ def kept(declared: Declaration) -> Constraint[LoadedCam]:
         row,
         how.kept,
         how.kept.needs or declared.needs,
+        discs=how.reduce == "contour",
     )
 
 

@@ -12,12 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping
 
+import numpy as np
+
 from camwright.geometry.arrays import Array
 from camwright.geometry.lift import Jet
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.smoothing.cam_state import (
+    INAPPLICABLE_USE,
     Constraint,
     Mean,
     ScenarioCam,
@@ -26,6 +29,7 @@ from camwright.pipeline.smoothing.cam_state import (
     kept_loads,
     kept_strokes,
     loaded,
+    second_disc,
     unloaded,
 )
 from camwright.pipeline.smoothing.part_constraints import PARTS
@@ -33,10 +37,23 @@ from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scen
 
 
 def shape_utilisations(
-    jet: Jet, variables: DesignVariables, ratings: Ratings, names: Container[str] | None = None
+    jet: Jet,
+    variables: DesignVariables,
+    ratings: Ratings,
+    names: Container[str] | None = None,
+    highest: float = np.nan,
 ) -> Mapping[str, Array | Mean]:
-    """Utilisations (n,) of the limits on the cam's shape, or of those named, by check."""
-    return _utilisations(SHAPE, unloaded(jet, variables, ratings), ratings, names)
+    """Utilisations (n,) of the limits on the cam's shape, or of those named, by check; of two discs
+    (2, n) of those on a contour. highest: maximum lift, m, by which a second disc follows.
+    """
+    first = unloaded(jet, variables, ratings)
+    uses = dict(_utilisations(SHAPE, first, ratings, names))
+    if (other := second_disc(first, highest)) is None:
+        return uses
+    for name, use in _utilisations(_OF_DISCS, other, ratings, names).items():
+        both = uses.get(name, INAPPLICABLE_USE), use
+        uses[name] = np.stack(np.broadcast_arrays(*both))  # type: ignore[arg-type]
+    return uses
 
 
 def utilisations_of(
@@ -111,6 +128,7 @@ def constraints_of(
 
 SHAPE, _MEASURED = constraints_of(CHECKS)
 """Limits on the shape of the cam."""
+_OF_DISCS = tuple(each for each in SHAPE if each.discs)
 LOADS: tuple[Constraint[ScenarioCam], ...] = (*_MEASURED, *PARTS)
 """Limits on the loads of the cam in one scenario."""
 

@@ -152,7 +152,7 @@ def _of_rows(
         weights = {name: np.zeros(point.size) for name in names}
         for (each, price), k, start in zip(pairs, active, starts, strict=False):
             weights[each.name][start : start + int(k.sum())] = price[k]
-        function = search.function(names, state, search.pairs(state, row, point))
+        function = search.at_pairs(names, state, row, point)
         at = search.point(state, summit.lift, point)
         second = second_derivatives(function, at, search.freed, weights)
         total += _assembled(search, state, summit, second, point)

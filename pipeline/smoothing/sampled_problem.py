@@ -285,6 +285,31 @@ class Search:
         """Limits on the shape of the cam."""
         return partial(self._shape, names)
 
+    def at_pairs(
+        self,
+        names: frozenset[str],
+        state: State,
+        rows: NDArray[np.intp],
+        points: NDArray[np.intp],
+    ) -> Function:
+        """As `function`, at pairs (m,) of row and angle of a state: the row is the scenario of a
+        limit on loads, the disc of one on a contour.
+        """
+        if not names <= SHAPE_LIMITS:
+            return self.function(names, state, self.pairs(state, rows, points))
+
+        def on_discs(
+            jet: Jet, top: float, variables: DesignVariables
+        ) -> Mapping[str, Array | Mean]:
+            uses = self._shape(names, jet, top, variables)
+            return {
+                name: use if isinstance(use, Mean) or use.ndim == 1
+                else use[rows, np.arange(points.size)]
+                for name, use in uses.items()
+            }  # fmt: skip
+
+        return on_discs
+
     def function(
         self, names: frozenset[str], state: State, take: Callable[[Array], Array]
     ) -> Function:
@@ -312,9 +337,9 @@ class Search:
         return {**self._judged(utilisations_of(loads, names)), **charged}
 
     def _shape(
-        self, names: frozenset[str] | None, jet: Jet, _top: float, variables: DesignVariables
+        self, names: frozenset[str] | None, jet: Jet, top: float, variables: DesignVariables
     ) -> Mapping[str, Array | Mean]:
-        return self._judged(shape_utilisations(jet, variables, self.problem.ratings, names))
+        return self._judged(shape_utilisations(jet, variables, self.problem.ratings, names, top))
 
     def _judged(self, uses: Mapping[str, Array | Mean]) -> Mapping[str, Array | Mean]:
         """Utilisations as a run judges them, see `Problem`."""
@@ -372,7 +397,7 @@ class Search:
         variables : DesignVariables   with which it is a cam
         grid : Grid                   n equal cam angles
         """
-        loads = self._loaded(coefficients, variables, grid, self.stack(grid, variables))
+        loads = self.loads_at(coefficients, variables, grid)
         pointwise, means = self._uses(loads, variables, grid.theta.size)
         worst = {name: value.max(axis=0) for name, value in pointwise.items()}
         return worst | {name: each.value.max(keepdims=True) for name, each in means.items()}
@@ -389,10 +414,14 @@ class Search:
         variables : DesignVariables   with which it is a cam
         grid : Grid                   n cam angles
         """
-        loads = self._loaded(coefficients, variables, grid, self.stack(grid, variables))
+        loads = self.loads_at(coefficients, variables, grid)
         values, _ = self._uses(loads, variables, 0)
         limits = values.keys() - self.costs
         return {name: value.max(axis=0) for name, value in values.items() if name in limits}
+
+    def loads_at(self, coefficients: Array, variables: DesignVariables, grid: Grid) -> ScenarioCam:
+        """Cam of an energy, by its coefficients, J, in all scenarios at the angles of a grid."""
+        return self._loaded(coefficients, variables, grid, self.stack(grid, variables))
 
     def _loaded(
         self, coefficients: Array, variables: DesignVariables, grid: Grid, stack: Scenario
@@ -419,7 +448,7 @@ class Search:
         points : int                  the first angles, which are equally spaced and give the means;
                                       0: no means
         """
-        shape = self.shape()(loads.jet, np.nan, variables)  # the maximum lift does not matter
+        shape = self.shape()(loads.jet, float(loads.highest), variables)
         charged = self._charged(self.costs, self._weights, loads, variables)
         pointwise: dict[str, Array] = {}
         means: dict[str, Mean] = {}
@@ -655,10 +684,10 @@ class Search:
         for names in self.families(name for name, rows in wanted.items() if rows.any()):
             any_row = np.any(np.broadcast_arrays(*(wanted[name] for name in names)), axis=0)
             scenario, point = np.nonzero(any_row)
-            function = self.function(names, state, self.pairs(state, scenario, point))
+            function = self.at_pairs(names, state, scenario, point)
             at = self.point(state, summit.lift, point)
             for name, gradient in differentiated(function, at, self.freed).items():
-                here = np.broadcast_to(wanted[name], any_row.shape)[scenario, point]
+                here = _of_rows(wanted[name], len(any_row))[scenario, point]
                 if here.any():
                     entries = self._entries(
                         point[here], gradient.local[:, here], gradient.shared[:, here],
@@ -861,6 +890,13 @@ def _norms(
     return np.array(
         [np.linalg.norm(columns(item, values)) for item, values in zip(items, left, strict=True)]
     )
+
+
+def _of_rows(wanted: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:
+    """Which of (count, n) rows are wanted, from those of a limit that has as many or a single one:
+    that of two discs, of one on the lift alone.
+    """
+    return np.pad(wanted, ((0, count - len(wanted)), (0, 0)))
 
 
 def _unit(name: str, variables: DesignVariables) -> float:

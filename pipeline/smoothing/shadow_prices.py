@@ -18,7 +18,7 @@ from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.flat_face_sliding import face_pv
 from camwright.pipeline.records.run_summary import MachinePriceRecord, PriceRecord
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
-from camwright.pipeline.smoothing.cam_state import lift_jet, unloaded
+from camwright.pipeline.smoothing.constraints import utilisations_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Ratings
@@ -295,7 +295,8 @@ def _before(problem: Problem) -> float:
 
 def _load_share(design: Design, problem: Problem, name: str) -> float:
     """Share of the load, N / F_lim, in the utilisation of the contact pressure, the rest being that
-    of the curvature: mean over the cam angles at which the limit binds; 1 where it never binds.
+    of the curvature on the track that carries in the worst scenario: mean over the cam angles at
+    which the limit binds; 1 where it never binds.
 
     Parameters
     ----------
@@ -305,9 +306,12 @@ def _load_share(design: Design, problem: Problem, name: str) -> float:
     binds = _binding(use)
     if not binds.any():
         return 1.0
-    jet = lift_jet(problem.grid(theta[binds]).energy(design.coefficients), design.variables)
-    sharpness = unloaded(jet, design.variables, problem.ratings).motion.sharpness
-    return float(np.mean(np.asarray(use)[binds] - sharpness))
+    grid = problem.grid(theta[binds])
+    cam = Search(problem).loads_at(design.coefficients, design.variables, grid)
+    uses = np.atleast_2d(np.asarray(utilisations_of(cam, {name})[name]))
+    sharpness = np.broadcast_to(cam.motion.sharpness, uses.shape)
+    worst = uses.argmax(axis=0), np.arange(binds.sum())
+    return float(np.mean(np.asarray(use)[binds] - sharpness[worst]))
 
 
 def _sentence(known: Bound, price: float, of: str) -> str:

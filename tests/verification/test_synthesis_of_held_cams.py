@@ -1,0 +1,192 @@
+"""Constrained synthesis of cams that pull: derivatives by one complex step through all of it, and
+the optimum by a nonlinear program on the finished contours.
+"""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+from camwright.geometry.arrays import readonly, uniform_turn
+from camwright.geometry.lift import Lift
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.follower.follower_forces import follower_loads
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.smoothing.cam_state import Mean, lift_jet, loaded
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.constraints import shape_utilisations, utilisations_of
+from camwright.pipeline.smoothing.objective import TORQUE, Weighted
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE, coarsened
+
+DATA = Path(__file__).parents[1] / "data"
+WAVES = ((1, 0.1, 0.5), (2, -0.12, 0.08), (3, 0.03, 0.05))
+FAST = {'"300 rpm"': '"1500 rpm"', '"330 rpm"': '"1600 rpm"', "landing_speed": "# landing_speed"}
+
+
+def text_of(name, torque, preload, changes=()):
+    """A held cam of the tests whose lift is drawn from a torque of harmonics, crank N m."""
+    rows = ", ".join(
+        f'{{ order = {k}, cosine = "{torque * a} N m", sine = "{torque * b} N m" }}'
+        for k, a, b in WAVES
+    )
+    text = (DATA / f"{name}.toml").read_text(encoding="utf-8")
+    begin, end = text.index("[lift]"), text.index("[mechanism]")
+    drawn = (
+        f'[torque]\nkind = "harmonics"\nmean = "0 N m"\nharmonics = [{rows}]\n\n'
+        f'[spring]\nrate = "20 kN/m"\npreload = "{preload} N"\ntravel_max = "40 mm"\n'
+        f'source = "chosen"\n\n[smoothing]\nkind = "constrained"\nstarts = 1\n'
+        "coefficients = 24\n\n"
+    )
+    text = text[:begin] + drawn + text[end:].replace("gear_ratio = 1.0", 'gear_ratio = "2:1"')
+    text = text.replace("[limits]", "[limits]\ntorque_reduction = 0.05")
+    for old, new in dict(changes).items():
+        text = text.replace(old, new)
+    return text
+
+
+STEM = "conjugate_feeder", 8.0, 60.0, tuple(FAST.items())
+ARM = "conjugate_arm", 4.0, 20.0, (('"300 rpm"', '"2000 rpm"'), ('"330 rpm"', '"2100 rpm"'),
+                                   ("landing_speed", "# landing_speed"))  # fmt: skip
+PAIRS = pytest.mark.parametrize("pair", [STEM, ARM], ids=["stem", "arm"])
+
+
+@cache
+def problem(pair):
+    case = parse_case(text_of(*pair))
+    return case, problem_of(case, engine_torques(case))
+
+
+@PAIRS
+def test_every_derivative_is_that_of_a_complex_step_through_the_cam(pair):
+    """Of the coefficients to the utilisation of each limit on either disc; 1e-8 of the greatest."""
+    _, whole = problem(pair)
+    search = Search(coarsened(whole))
+    state = search.state(search.exact, search.problem.variables)
+    assert (np.real(state.pointwise["undercut"]).shape) == (2, state.grid.theta.size)
+    step = np.random.default_rng(3).normal(size=search.size)
+    tiny = 1e-30j
+    moved = state.coefficients + tiny * search.scale * step
+    summit = search.summit(state)
+    top = lift_jet(search._peaks(state.coefficients).energy(moved), state.variables).lift[0]
+    jet = lift_jet(state.grid.energy(moved), state.variables)
+    ratings, variables = search.problem.ratings, state.variables
+    cam = loaded(jet, top, variables, ratings, state.stack)
+    uses = {**shape_utilisations(jet, variables, ratings, highest=top), **utilisations_of(cam)}
+    pointwise = {k: each for k, each in uses.items() if not isinstance(each, Mean)}
+    wanted = {k: np.ones(np.shape(each), dtype=bool) for k, each in state.pointwise.items()}
+    assert wanted.keys() == pointwise.keys()
+    seen = set()
+    for rows in search.rows(state, summit, wanted):
+        exact = np.imag(np.atleast_2d(pointwise[rows.name])) / 1e-30
+        exact = exact[rows.scenario, rows.point]
+        assert np.abs(rows.change(step) - exact).max() <= 1e-8 * np.abs(exact).max() + 1e-14
+        seen.add(rows.name)
+    assert {"contact_pressure", "pressure_angle", "curvature_ratio", "minimum_wall"} <= seen
+    torque = np.imag(cam.torque[search.weighted, : search.problem.points]) / 1e-30
+    norms = search.norms(state, summit, np.arange(len(search.weighted)))
+    scaled = np.sqrt(search.problem.points) * np.std(search.problem.scenarios[0].torque)
+    left = -torque[0] / search.problem.gear_ratio
+    spread = np.linalg.norm(left - left.mean()) / scaled
+    assert np.linalg.norm(norms[0].slopes @ step) == pytest.approx(spread, rel=1e-8)
+
+
+class Finished:
+    """Ripple and limits of a cam by its finished contours and the solved forces of its load case.
+
+    The lift is that of the spring's energy; both discs are those of `SecondTrack`, splines through
+    the samples of the lift, and the forces those of `follower_loads`.
+    """
+
+    def __init__(self, case, whole, samples):
+        self.case, self.problem = case, whole
+        self.theta = uniform_turn(samples)
+        self.basis = whole.grid(self.theta)
+        self.machine = machines(case)[0]
+        self.item = next(each for each in whole.scenarios if each.weight > 0)
+        self._last = None
+
+    def at(self, coefficients):
+        """Torque ripple over that of the engine, and the room within each limit, >= 0."""
+        if self._last is not None and np.array_equal(self._last[0], coefficients):
+            return self._last[1]
+        spring, limits = self.machine.spring, self.case.limits
+        energy = self.basis.energy(coefficients)[0]
+        dead = self.problem.variables.closing - spring.preload
+        force = spring.preload + dead
+        inside = force**2 + 2.0 * spring.rate * np.maximum(energy, 0.0)
+        contour = self.case.contour(
+            Lift(self.theta, readonly((np.sqrt(inside) - force) / spring.rate))
+        )
+        loads = follower_loads(
+            contour.pitch, self.machine.system, self.machine.cam_speed, self.theta
+        )
+        engine = self.item.torque[:: self.item.torque.size // self.theta.size]
+        left = engine - loads.cam_torque / self.problem.gear_ratio
+        keep, rooms = 1.0 - RESERVE, []
+        track = self.case.cam.second.track(contour.pitch)
+        for disc, turn in ((contour, 0.0), (track.contour, track.turn)):
+            radius, curved = disc.roller_radius, disc.pitch.curvature(self.theta + turn)
+            ratio = limits.curvature_ratio * radius * curved
+            angle = np.abs(disc.pitch.pressure_angle(self.theta + turn)) / limits.pressure_angle
+            wall = limits.minimum_wall * self.case.cam.held_radius
+            wall = wall / np.hypot(*disc.points(self.theta + turn))
+            rooms += [keep - ratio, keep - angle, keep - wall]
+        rooms.append(20.0 * energy)  # at minimum lift the spring stores nothing
+        made = float(np.std(left) / np.std(engine)), np.concatenate(rooms), loads
+        self._last = coefficients.copy(), made
+        return made
+
+
+@pytest.mark.slow
+@PAIRS
+def test_a_nonlinear_program_on_the_finished_discs_finds_the_same_ripple(pair):
+    """SLSQP, differences for derivatives, from another start: the ripple to 0.1 %."""
+    case, whole = problem(pair)
+    scenarios = tuple(replace(each, torque=each.torque[::2]) for each in whole.scenarios)
+    alone = {"objective": (Weighted(TORQUE, 1.0),), "jerk_weight": 1e-9}
+    whole = replace(whole, points=360, scenarios=scenarios, **alone)
+    design = synthesise(whole)
+    assert design.feasible and design.converged
+    own, there = Finished(case, whole, 360), np.asarray(design.coefficients)
+    ripple, rooms, loads = own.at(there)
+    assert ripple == pytest.approx(design.ripple, rel=1e-5)
+    assert np.abs(rooms).min() < 1e-4 and rooms.min() > -1e-4  # a limit binds
+    assert loads.axial_force.min() < -20.0  # the second disc carries
+    scale, away = np.abs(there).max(), np.random.default_rng(5).normal(size=there.size)
+    start = there / scale
+    found = minimize(
+        lambda x: own.at(scale * x)[0],
+        start + 0.02 * away,
+        method="SLSQP",
+        bounds=[(each - 0.1, each + 0.1) for each in start],
+        constraints={"type": "ineq", "fun": lambda x: own.at(scale * x)[1]},
+        options={"maxiter": 200, "ftol": 1e-9, "eps": 1e-6},
+    )
+    print(f"{pair[0]}: {design.ripple:.6f}, SLSQP {found.fun:.6f} in {found.nit} steps")
+    assert found.success and np.abs(found.x - start).max() < 0.1, found.message
+    assert found.fun == pytest.approx(design.ripple, rel=1e-3)
+
+
+@pytest.mark.slow
+@PAIRS
+def test_a_synthesised_pair_keeps_its_limits_when_it_is_solved(pair):
+    """As a preview judges it, contours of both discs and both signs of the force."""
+    trial = preview_case(parse_case(text_of(*pair)), corners=False)
+    assert trial.synthesis["feasible"]
+    running = next(each for each in trial.cycles if each.load_case == "running")
+    assert running.loads.axial_force.min() < -20.0 < 20.0 < running.loads.axial_force.max()
+    kept = {"contact_pressure", "pressure_angle", "curvature_ratio", "undercut", "minimum_wall",
+            "torque_reduction", "roller_static", "self_intersection"}  # fmt: skip
+    status = {each.id: each.status for each in trial.checks}
+    assert {name: status[name] for name in kept} == dict.fromkeys(kept, "pass")
+    use = {each.id: each.utilisation for each in trial.checks}
+    for name in ("pressure_angle", "curvature_ratio", "minimum_wall"):
+        kept_use = trial.synthesis["utilisation"][name]
+        assert use[name] == pytest.approx(kept_use, rel=1e-3), name
