@@ -170,7 +170,7 @@ def arm_forces(cam: LoadedCam, number: int = 0) -> ArmForces:
     """Forces on the arm of a loaded cam (..., n), or on the second one of conjugate discs, number
     1, along and across its own travel, which is opposite to that of the first.
     """
-    motion, across, normal = cam.on_bodies[number]
+    motion, across, normal, _ = cam.on_bodies[number]
     sense, inertia = _arm_of(cam.numbers).sense, np.asarray(cam.inertia - cam.output_inertia)
     closing = np.asarray(cam.closing - cam.output_closing)
     if number:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -131,8 +131,7 @@ def _strength_data(machine: Machine) -> _Shaft | tuple[str, ...]:
     key_length = 0.0 if cam.key is None else cam.key.length or 0.0
     reach = 0.5 * max(cam.width, key_length)
     gear_reach = 0.0 if shaft.gear is None else 0.5 * shaft.gear.width
-    spacing = 0.0 if cam.conjugate is None else cam.conjugate.spacing
-    sections = judged_sections(shaft, shaft.diameter, reach, gear_reach, spacing)
+    sections = judged_sections(shaft, shaft.diameter, reach, gear_reach, cam.spacing or 0.0)
     return _Shaft(shaft, shaft.material, shaft.thinnest, sections)
 
 
@@ -722,12 +721,13 @@ def _rotor(machine: Machine, contour: Contour) -> Rotor:
     """
     shaft, cam = camshaft_of(machine), machine.cam
     gear, card, twist = gear_of(shaft), shaft.material, _RIGID_STIFFNESS
+    discs = discs_of(contour, cam.second)
+    rings = [each.contour.polar_moment() - 0.5 * np.pi * cam.bore_radius**4 for each in discs]
+    ring = sum(rings)
     if shaft.thinnest is not None and card is not None:
         section = np.pi * shaft.thinnest**4 / 32.0
-        apart = abs(shaft.cam_position - shaft.gear_position)
+        apart = _twisted([each / ring for each in rings], shaft, cam.spacing)
         twist = min(twist, card.E / (2.0 * (1.0 + card.nu)) * section / apart)
-    discs = discs_of(contour, cam.second)
-    ring = sum(each.contour.polar_moment() - 0.5 * np.pi * cam.bore_radius**4 for each in discs)
     return Rotor(
         gear=gear.inertia(shaft.gear_radius),
         cam=cam.material.density * cam.width * ring,
@@ -735,6 +735,23 @@ def _rotor(machine: Machine, contour: Contour) -> Rotor:
         mesh=_mesh_stiffness(gear) * gear.width,
         radius=shaft.gear_radius,
     )
+
+
+def _twisted(shares: Sequence[float], shaft: Camshaft, spacing: float | None) -> float:
+    """Length of the shaft, m, that discs twist against the gear as one.
+
+    Mean of the lengths that both of two discs twist, each by its share of the inertia: of the
+    energy of the shaft while both are accelerated alike. Of one disc its distance from the gear.
+
+    References
+    ----------
+    Rayleigh's quotient with the twist by the inertia of equal accelerations.
+    """
+    spacings = np.array([0.0] if spacing is None else [0.0, spacing])
+    from_gear = shaft.cam_position + spacings - shaft.gear_position
+    lengths = np.minimum(np.abs(from_gear)[:, None], np.abs(from_gear))
+    lengths = np.where(from_gear[:, None] * from_gear > 0.0, lengths, 0.0)
+    return float(np.asarray(shares) @ lengths @ np.asarray(shares))
 
 
 def _hardest_impact(cycle: Cycle, rotor: Rotor, drag: float, backlash: float) -> Impact | None:

@@ -430,6 +430,11 @@ class CamBody(Part):
         return None if self.groove is None else self.groove.second
 
     @property
+    def spacing(self) -> float | None:
+        """Of a second disc from the first along the shaft, m; None of one disc."""
+        return None if self.conjugate is None else self.conjugate.spacing
+
+    @property
     def clearance(self) -> float:
         """Clearance of the follower between both tracks, square to them, m; 0 of one track."""
         stated = self._two_tracks

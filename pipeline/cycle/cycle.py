@@ -33,7 +33,12 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.crossover_history import Flights, WallImpact, flights, landed
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
-from camwright.pipeline.cycle.length_history import LengthHistory, TurnOfLine, length_histories
+from camwright.pipeline.cycle.length_history import (
+    LengthHistory,
+    TurnOfLine,
+    camshaft_compliance,
+    length_histories,
+)
 from camwright.pipeline.cycle.part_loads import (
     PartLoads,
     PivotPush,
@@ -49,7 +54,7 @@ from camwright.pipeline.follower.camshaft_loads import ShaftLoads
 from camwright.pipeline.follower.follower_forces import Loads, axial_of_surge, follower_loads
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions, guide_reactions
-from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of, slopes_of
+from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_under, slopes_of
 from camwright.pipeline.follower.spring import Spring
 
 LIFT = Column("lift", "mm", "Lift")
@@ -359,16 +364,13 @@ class Cycle(Tabled):
 
         Zero where the case does not state the diameter and material of a camshaft.
         """
-        slope, loads = slope_of(self.machine.camshaft), self.shaft
-        if slope is None or loads is None:
+        machine, loads = self.machine, self.shaft
+        slopes = slopes_of(machine.camshaft, machine.cam.spacing)
+        if not slopes or loads is None:
             return np.zeros(self.theta.size)
-        bent, second = slope.under(loads.cam, loads.gear, loads.counterweight), loads.second
-        discs = None if second is None else slopes_of(self.machine.camshaft, second.spacing)
-        if second is not None and discs is not None:
-            beside = loads.gear, loads.counterweight
-            first = discs[0].under(loads.cam, *beside, second.force)
-            other = discs[1].under(second.force, *beside, loads.cam)
-            bent = np.where(self.loads.wall < 0.0, other, first)
+        pushes = (loads.cam,) if loads.second is None else (loads.cam, loads.second.force)
+        pulls = self.loads.wall < 0.0
+        bent = slope_under(slopes, pushes, loads.gear, loads.counterweight, pulls)
         return in_the_normal(bent, self.loads.normal_direction)
 
     @KeptResult
@@ -645,7 +647,8 @@ def turn_of_line(cycle: Cycle) -> TurnOfLine:
     """Inputs of the pressure along the line of contact of a cycle."""
     force = cycle.loads.normal_force
     turn = cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt
-    return TurnOfLine(*turn, np.hypot(*cycle.loads.pivot_load), cycle.pin_slope)
+    yields = camshaft_compliance(cycle.machine, cycle.loads.wall < 0.0)
+    return TurnOfLine(*turn, np.hypot(*cycle.loads.pivot_load), yields, cycle.pin_slope)
 
 
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:

@@ -45,7 +45,7 @@ from camwright.pipeline.cycle.line_tilt import (
 )
 from camwright.pipeline.follower.follower_tilt import FollowerTilt, TiltingLoads
 from camwright.pipeline.follower.guide_reactions import GuideReactions
-from camwright.pipeline.follower.shaft_strength import slope_of
+from camwright.pipeline.follower.shaft_strength import of_disc, slopes_of
 from camwright.pipeline.follower.spring import NO_FORCE
 
 _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
@@ -201,8 +201,9 @@ class TurnOfLine(NamedTuple):
     """Inputs of the pressure along the line over one turn.
 
     force (n,): normal force, N; shaft (n,): slope of the camshaft at the cam, rad, as of
-    `Cycle.shaft_tilt`; pivot (n,): load of an arm on its pivot, N, 0 without one; pin (n,): slope
-    of its pin per couple, rad/(N m), by finite elements; None: on a foundation.
+    `Cycle.shaft_tilt`; pivot (n,): load of an arm on its pivot, N, 0 without one; yields: as of
+    `camshaft_compliance`; pin (n,): slope of the pin per couple, rad/(N m), by finite elements;
+    None: on a foundation.
     """
 
     machine: Machine
@@ -211,6 +212,7 @@ class TurnOfLine(NamedTuple):
     guides: GuideReactions
     shaft: Array
     pivot: Array
+    yields: Value
     pin: Array | None = None
 
     @property
@@ -292,11 +294,11 @@ class TurnOfLine(NamedTuple):
     @property
     def tilt_compliance(self) -> Value:
         """Slope of stem or arm and camshaft together under the moment of the contact, rad/(N m); of
-        a pin by finite elements at each angle (n,).
+        a pin by finite elements, and of two discs, at each angle (n,).
         """
         machine = self.machine
         follower = self.tilting.compliance(machine.overhang_at_max_lift, machine.guides.spacing)
-        return follower + camshaft_compliance(machine)
+        return follower + self.yields
 
     def history(self, solved: FactorRange | None) -> LengthHistory:
         """Pressure along the line over the turn from the factors at the angles with contact; None:
@@ -425,10 +427,13 @@ def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> F
     return FactorRange(level.centre, level.value, tilted, moment / raised, at_corner)
 
 
-def camshaft_compliance(machine: Machine) -> float:
-    """Slope of the camshaft at the cam per moment there, rad/(N m); 0 of a rigid one."""
-    shaft = slope_of(machine.camshaft)
-    return 0.0 if shaft is None else shaft.couple
+def camshaft_compliance(machine: Machine, pulls: NDArray[np.bool_]) -> Value:
+    """Slope of the camshaft at the disc that carries per moment there, rad/(N m); 0 of a rigid one.
+
+    pulls : (n,)   where the second disc of a pair carries
+    """
+    slopes = slopes_of(machine.camshaft, machine.cam.spacing)
+    return of_disc([each.couple for each in slopes], pulls) if slopes else 0.0
 
 
 class TiltedPair(Protocol):

@@ -39,7 +39,13 @@ from camwright.pipeline.follower.pivot_forces import (
     arm_pivot,
 )
 from camwright.pipeline.follower.rocker import RockerOutput
-from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of, slopes_of
+from camwright.pipeline.follower.shaft_strength import (
+    CamSlope,
+    in_the_normal,
+    of_disc,
+    slope_under,
+    slopes_of,
+)
 from camwright.pipeline.follower.spring import end_travel, lever
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise
 from camwright.pipeline.follower.spring_link import SpringBehindRocker
@@ -161,17 +167,19 @@ def not_negative(values: Array) -> Array:
 
 class BodyContact(NamedTuple):
     """Contact of one roller or face with its disc: motion in its own travel, axial force there and
-    normal force (..., n), N, both 0 where another one carries all.
+    normal force (..., n), N, both 0 where another one carries all; turned: travel from that of the
+    first, rad.
     """
 
     motion: Motion
     axial: Array
     normal: Array
+    turned: Value = 0.0
 
     @classmethod
-    def of(cls, motion: Motion, axial: Array) -> BodyContact:
+    def of(cls, motion: Motion, axial: Array, turned: Value = 0.0) -> BodyContact:
         """From the axial force of a roller along its own travel (..., n), N."""
-        return cls(motion, axial, np.asarray(axial * motion.gain))
+        return cls(motion, axial, np.asarray(axial * motion.gain), turned)
 
 
 class OfGuides(NamedTuple):
@@ -665,9 +673,24 @@ class LoadedCam:
         return None if hot is None else OfGuides(*(magnitude(each * self.velocity) for each in hot))
 
     @property
-    def thrown(self) -> tuple[Value, Value]:
-        """Centrifugal forces on cam and counterweight, N; here those of a balanced shaft."""
-        return 0.0, 0.0
+    def thrown(self) -> tuple[tuple[Value, ...], Value]:
+        """Centrifugal forces on each disc and the counterweight, N; here of a balanced shaft."""
+        return tuple(0.0 for _ in self.on_bodies), 0.0
+
+    @cached_property
+    def shaft_slopes(self) -> tuple[CamSlope, ...]:
+        """Slopes of the camshaft at each disc; () of a rigid one."""
+        case = self.numbers.case
+        if case is None or case.cam.spacing is None:
+            return slopes_of(None if case is None else case.camshaft)
+        flat, size = self.numbers.each(_disc_slopes, (_SPACING,)), len(CamSlope._fields)
+        return tuple(CamSlope(*flat[k : k + size]) for k in range(0, len(flat), size))
+
+    @property
+    def shaft_yield(self) -> Value:
+        """Slope of the camshaft at the disc that carries per moment there, rad/(N m)."""
+        couples = [each.couple for each in self.shaft_slopes]
+        return of_disc(couples, self.wall < 0.0) if couples else 0.0
 
     @cached_property
     def shaft_tilt(self) -> Array:
@@ -676,19 +699,17 @@ class LoadedCam:
         As of `Cycle.shaft_tilt`.
         """
         shaft = None if self.numbers.case is None else self.numbers.case.camshaft
-        slope = slope_of(shaft)
-        if shaft is None or slope is None:
+        if shaft is None or not self.shaft_slopes:
             return np.zeros(self.normal.shape)
-        travel, on_cam, held = self.motion.travel, *self.thrown
-        cos, sin = np.cos(travel), np.sin(travel)
-        along, across = self.axial * self.motion.pressing, self.axial * self.motion.side
-        pushed = -np.stack([along * cos + across * sin, across * cos - along * sin])
-        acting = pushed + on_cam, gear_force(self.torque, shaft), held
-        pair = None if self.numbers.case is None else self.numbers.case.cam.conjugate
-        discs = None if pair is None else slopes_of(shaft, pair.spacing)
-        bent = slope.under(*acting)
-        if discs is not None:
-            bent = np.where(self.wall < 0.0, discs[1].under(*acting), bent)
+        travel, (on_discs, held), pushes = self.motion.travel, self.thrown, list[Array]()
+        for (motion, axial, _, turned), thrown in zip(self.on_bodies, on_discs, strict=True):
+            cos, sin = np.cos(travel + turned), np.sin(travel + turned)
+            along, across = axial * motion.pressing, axial * motion.side
+            pushes.append(
+                thrown - np.stack([along * cos + across * sin, across * cos - along * sin])
+            )
+        gear, pulls = gear_force(self.torque, shaft), self.wall < 0.0
+        bent = slope_under(self.shaft_slopes, pushes, gear, held, pulls)
         return in_the_normal(bent, self.motion.pressure_angle - travel - self.turned)
 
     @property
@@ -852,11 +873,11 @@ class CarriedCam(LoadedCam):
     @property
     def on_bodies(self) -> tuple[BodyContact, ...]:
         second, squeeze, axial = self.second, self.squeeze, self.axial
-        if second is None:
+        if second is None or self.numbers.known_case.cam.conjugate is None:
             return super().on_bodies
         alone = not_negative(axial), not_negative(-axial)
         push, pull = alone if squeeze is None else squeeze.forces(axial)
-        pulled = BodyContact.of(second.motion, second.leverage * pull)
+        pulled = BodyContact.of(second.motion, second.leverage * pull, second.turned)
         return BodyContact.of(self.first, push), pulled
 
     @cached_property
@@ -870,6 +891,15 @@ class CarriedCam(LoadedCam):
     @cached_property
     def surged(self) -> Array:
         return self.normal if self.pulls and self.squeeze is not None else super().surged
+
+
+_SPACING = "cam.conjugate.spacing"
+
+
+def _disc_slopes(numbers: Numbers) -> tuple[Value, ...]:
+    """Fields of the slopes of the camshaft at each disc of a pair, one disc after another."""
+    slopes = slopes_of(numbers.known_case.camshaft, float(numbers[_SPACING]))
+    return tuple(value for each in slopes for value in each)
 
 
 _LEAST_FORCE = 1.0  # N, of a half-width

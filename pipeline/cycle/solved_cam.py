@@ -190,14 +190,15 @@ class ForcesCam(ContourCam):
     @property
     def on_bodies(self) -> tuple[BodyContact, ...]:
         loads = self.loads
-        if loads.second is None:
+        if loads.second is None or not loads.second.own_disc:
             return super().on_bodies
-        motions = self._of_first, loads.second.track(self.contour.pitch).motion(loads.theta)
-        return tuple(
-            BodyContact.of(
-                motion, np.where(carries, loads.normal_force, loads.idle_force) / motion.gain
-            )
-            for motion, carries in zip(motions, (self.wall > 0.0, self.wall < 0.0), strict=True)
+        track, force = loads.second.track(self.contour.pitch), loads.normal_force
+        push, pull = self._of_first, track.motion(loads.theta)
+        first, second = (np.where(carries, force, loads.idle_force) for carries in (
+            self.wall > 0.0, self.wall < 0.0))  # fmt: skip
+        return (
+            BodyContact.of(push, first / push.gain),
+            BodyContact.of(pull, second / pull.gain, track.turned(loads.theta)),
         )
 
     @property

@@ -9,7 +9,7 @@ from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, Value, distinct, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
@@ -340,11 +340,11 @@ class CamSlope(NamedTuple):
     couple: per moment at the cam, rad/(N m), > 0; beside: per force at the other disc of a pair.
     """
 
-    cam: float
-    gear: float
-    counterweight: float
-    couple: float
-    beside: float = 0.0
+    cam: Value
+    gear: Value
+    counterweight: Value
+    couple: Value
+    beside: Value = 0.0
 
     def under(
         self, cam: Array, gear: Array, counterweight: ArrayLike = 0.0, beside: ArrayLike = 0.0
@@ -413,13 +413,44 @@ def slope_of(shaft: Camshaft | None, beside: float = 0.0) -> CamSlope | None:
     return cam_slope(shaft, shaft.thinnest, shaft.material.E, beside)
 
 
-def slopes_of(shaft: Camshaft | None, spacing: float) -> tuple[CamSlope, CamSlope] | None:
-    """Slopes at the first and at the second disc of a pair, a spacing, m, apart; see `slope_of`."""
-    if shaft is None:
-        return None
-    there = replace(shaft, cam_position=shaft.cam_position + spacing)
-    first, second = slope_of(shaft, spacing), slope_of(there, -spacing)
-    return None if first is None or second is None else (first, second)
+def slopes_of(shaft: Camshaft | None, spacing: float | None = None) -> tuple[CamSlope, ...]:
+    """Slopes at each disc of a cam; () as `slope_of` is None.
+
+    Parameters
+    ----------
+    spacing : float   of a second disc from the first, m; None: of one disc
+    """
+    first = slope_of(shaft, spacing or 0.0)
+    if first is None or shaft is None:
+        return ()
+    if spacing is None:
+        return (first,)
+    second = slope_of(replace(shaft, cam_position=shaft.cam_position + spacing), -spacing)
+    return (first,) if second is None else (first, second)
+
+
+def of_disc(values: Sequence[Value], pulls: NDArray[np.bool_]) -> Value:
+    """Of values (...), one a disc, those of the disc that carries: the second where it pulls."""
+    first, *others = values
+    return np.where(pulls, others[0], first) if others else first
+
+
+def slope_under(
+    slopes: Sequence[CamSlope],
+    pushes: Sequence[Array],
+    gear: Array,
+    counterweight: ArrayLike,
+    pulls: NDArray[np.bool_],
+) -> Array:
+    """Slope (2, ...), rad, of the shaft at the disc that carries, under forces on every disc, gear
+    and counterweight (2, ...), N; slopes, pushes : one a disc.
+    """
+    if len(slopes) == 1:
+        return slopes[0].under(pushes[0], gear, counterweight)
+    pairs = zip(slopes, pushes, pushes[::-1], strict=True)
+    return np.asarray(
+        of_disc([at.under(on, gear, counterweight, beside) for at, on, beside in pairs], pulls)
+    )
 
 
 def in_the_normal(slope: Array, pressure_angle: Array) -> Array:

@@ -445,34 +445,40 @@ class Designs:
         push = Push(side, arm, self.value("guides.spacing"))
         return SupportOfMany.of(known.stem, known.guides, push, np.asarray(overhang))
 
-    @KeptResult
+    @property
     def unbalance(self) -> tuple[Array, Array]:
-        """Unbalance of the cams, kg m, and its direction, rad, both (m, 1); zero with a
-        counter-hole.
+        """Unbalance of the cams, kg m, and its direction, rad, both (m, 1), of both discs of a pair
+        in one plane; zero with a counter-hole.
         """
-        cam = self.machine.cam
-        if cam.counter_hole is not None:
-            return np.zeros((self.count, 1)), np.zeros((self.count, 1))
-        moment = self._moment_of_plates if cam.groove is None else self._moment_of_groove
-        if cam.keyway is not None:
-            cut = keyway_cut(self.value("cam.bore_radius"), cam.keyway.width, cam.keyway.depth)
-            discs = 1 if cam.conjugate is None else 2
-            moment = moment - discs * cut.moment * np.exp(1j * cam.keyway.angle)
-        product = cam.material.density * self.value("cam.width") * moment
+        first, *others = self.unbalances
+        if not others:
+            return first
+        product = sum(size * np.exp(1j * angle) for size, angle in self.unbalances)
         return np.abs(product), np.angle(product)
 
+    @KeptResult
+    def unbalances(self) -> tuple[tuple[Array, Array], ...]:
+        """Unbalance of each disc, kg m, and its direction, rad, both (m, 1)."""
+        cam = self.machine.cam
+        moments = self._moments_of_plates if cam.groove is None else (self._moment_of_groove,)
+        if cam.counter_hole is not None:
+            return ((np.zeros((self.count, 1)), np.zeros((self.count, 1))),) * len(moments)
+        if cam.keyway is not None:
+            cut = keyway_cut(self.value("cam.bore_radius"), cam.keyway.width, cam.keyway.depth)
+            moments = tuple(each - cut.moment * np.exp(1j * cam.keyway.angle) for each in moments)
+        products = (cam.material.density * self.value("cam.width") * each for each in moments)
+        return tuple((np.abs(each), np.angle(each)) for each in products)
+
     @property
-    def _moment_of_plates(self) -> Array:
-        """First moment of the plane of the cams about their axis (m, 1), m3; of both discs of a
-        pair, in one plane.
-        """
+    def _moments_of_plates(self) -> tuple[Array, ...]:
+        """First moment of the plane of each disc of the cams about their axis (m, 1), m3."""
         first = self.whole.motion
         second = self.second_of(first) if self.case.cam.conjugate is not None else None
         moment = _moment(_in_cam_axes(first))
         if second is None:
-            return moment
+            return (moment,)
         ahead = second.turned + first.travel - second.motion.travel
-        return moment + _moment(_in_cam_axes(second.motion) * np.exp(1j * ahead))
+        return moment, _moment(_in_cam_axes(second.motion) * np.exp(1j * ahead))
 
     @property
     def _moment_of_groove(self) -> Array:
@@ -536,13 +542,16 @@ class Designs:
         second = self.second
         return squeezed(interference, self.compliances, second.touch, second.leverage)
 
-    def thrown(self, speed: Value) -> tuple[Array, Array]:
-        """Centrifugal forces on cam and counterweight (2, m, n), N, at cam speeds (m, 1), rad/s."""
-        shaft, made = self.machine.camshaft, self.unbalance
-        force = rotating_force(*made, speed, self.theta)
+    def thrown(self, speed: Value) -> tuple[tuple[Array, ...], Array]:
+        """Centrifugal forces on each disc and the counterweight (2, m, n), N, at cam speeds (m, 1),
+        rad/s.
+        """
+        shaft = self.machine.camshaft
+        forces = tuple(rotating_force(*each, speed, self.theta) for each in self.unbalances)
         if shaft is None or shaft.counterweight is None:
-            return force, np.zeros_like(force)
-        return force, rotating_force(*shaft.counterweight.against(*made), speed, self.theta)
+            return forces, np.zeros_like(forces[0])
+        against = shaft.counterweight.against(*self.unbalance)
+        return forces, rotating_force(*against, speed, self.theta)
 
     @KeptResult
     def contact_width(self) -> Array:

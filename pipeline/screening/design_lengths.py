@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.pipeline.case.limits import (
     AXIS_PARALLELISM,
     CAM_RUN_OUT,
@@ -20,7 +20,6 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMENT
 from camwright.pipeline.cycle.length_history import (
     ContactLoads,
-    camshaft_compliance,
     factor_range,
     lines_pressed,
     raised_load,
@@ -83,30 +82,39 @@ class LineFactors(NamedTuple):
 class FollowerTurning(NamedTuple):
     """What turns the followers of designs across the plane of the cam, arrays (m, n).
 
-    shaft: slope of the camshaft at the cam, rad, as of `LineTilt`; held: couple that the follower
-    holds without a tilt, N m; twist: of an arm under a contact beside its middle, rad
+    shaft: slope of the camshaft at the cam, rad, as of `LineTilt`; yields: of it per moment there,
+    rad/(N m); held: couple that the follower holds without a tilt, N m; twist: of an arm under a
+    contact beside its middle, rad
     """
 
     shaft: Array
+    yields: Value
     held: Array
     twist: Array
 
 
 def turning_of(
-    designs: DesignValues, shaft: Array, force: Array, rubbing: tuple[Array, Array], pivot: Array
+    designs: DesignValues,
+    shaft: Array,
+    yields: Value,
+    force: Array,
+    rubbing: tuple[Array, Array],
+    pivot: Array,
 ) -> FollowerTurning:
     """What turns the followers of designs.
 
     Parameters
     ----------
     shaft : array (m, n)          slope of the camshaft at the cam, rad
+    yields : float or (m, n)      of it per moment there, rad/(N m)
     force, pivot : array (m, n)   normal force, and load of an arm on its pivot, N
     rubbing : two arrays (m, n)   normal loads of guides A and B, N
     """
     on_a, on_b = (designs.numbers[f"guides.{side}.friction_greatest"] for side in "ab")
     loads = TiltingLoads(force, rubbing, (on_a, on_b), pivot, _spacing(designs))
     follower = designs.tilting
-    return FollowerTurning(shaft, follower.held(loads), follower.turned(loads, designs.stem_offset))
+    twist = follower.turned(loads, designs.stem_offset)
+    return FollowerTurning(shaft, yields, follower.held(loads), twist)
 
 
 def factors_of(
@@ -135,7 +143,7 @@ def factors_of(
     tilt = _tilt(designs, turning)
     greatest, forced, yields, couple = (
         np.broadcast_to(each, force.shape)
-        for each in (tilt.greatest, tilt.forced, _yields(designs), turning.held)
+        for each in (tilt.greatest, tilt.forced, _yields(designs, turning), turning.held)
     )
     whole = LineFactors(np.ones(force.shape), np.ones(force.shape), np.zeros(force.shape))
     contact = lines_pressed(designs.machine, force, radius)
@@ -219,7 +227,7 @@ def moment_on_follower(
     forced, held = _tilt(designs, turning).forced, turning.held
     if factors is None:
         most = GREATEST_MOMENT * force * designs.numbers["contact.width"]
-        line = rigid_moment(forced, _yields(designs), held, most)
+        line = rigid_moment(forced, _yields(designs, turning), held, most)
     else:
         line = np.maximum(force, 0.0) * factors.arm
     return follower_moment(line, forced, held, force * designs.stem_offset)
@@ -274,11 +282,10 @@ def _tilt(designs: DesignValues, turning: FollowerTurning) -> LineTilt:
     )
 
 
-def _yields(designs: DesignValues) -> Array:
-    """Slope of stem and camshaft under the moment of the contact (m, 1), rad/(N m)."""
+def _yields(designs: DesignValues, turning: FollowerTurning) -> Array:
+    """Slope of stem and camshaft under the moment of the contact (m, 1) or (m, n), rad/(N m)."""
     overhang = designs.value("follower.overhang_at_max_lift")
-    yields = camshaft_compliance(designs.machine)
-    return np.asarray(designs.tilting.compliance(overhang, _spacing(designs)) + yields)
+    return np.asarray(designs.tilting.compliance(overhang, _spacing(designs)) + turning.yields)
 
 
 def _spacing(designs: DesignValues) -> Array:

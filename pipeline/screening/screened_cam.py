@@ -94,7 +94,7 @@ class Block(DesignValues, Protocol):
     def supports_under(self, side: Array, arm: Array, reach: Value) -> SupportOfMany: ...
     @property
     def least_radius(self) -> Array: ...
-    def thrown(self, speed: Value) -> tuple[Array, Array]: ...
+    def thrown(self, speed: Value) -> tuple[tuple[Array, ...], Array]: ...
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -323,7 +323,9 @@ class ScreenedCam(CarriedCam):
     @cached_property
     def _turning(self) -> FollowerTurning:
         pivot = np.zeros(self.normal.shape) if self.pivoted is None else self.pivot_load
-        return turning_of(self.block, self.shaft_tilt, self.normal, self.rubbing, pivot)
+        return turning_of(
+            *(self.block, self.shaft_tilt, self.shaft_yield, self.normal, self.rubbing, pivot)
+        )
 
     @cached_property
     def ends(self) -> LoadEnds:
@@ -371,7 +373,7 @@ class ScreenedCam(CarriedCam):
         return factors_of(self.block, self.p0_line, *loads)
 
     @property
-    def thrown(self) -> tuple[Array, Array]:
+    def thrown(self) -> tuple[tuple[Array, ...], Array]:
         return self.block.thrown(self.speed)
 
     @cached_property

@@ -150,7 +150,8 @@ def test_a_row_is_the_single_design(name):
             else:
                 wanted = pytest.approx(single[column][0], rel=1e-12, nan_ok=True)
                 assert values[k] == wanted, column
-    pressed = name in ("gravity", "pressed")  # elsewhere the force passes from track to track
+    # elsewhere the force passes from track to track
+    pressed = name in ("gravity", "pressed", "pressed_stem")
     assert (rows["headline.normal_force_min_N"] > 0.0).all() == pressed
     judged = {each.check for each in SCREENED if f"{each.check}.demand" in rows}
     assert OF_FORM[name] <= judged

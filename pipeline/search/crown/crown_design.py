@@ -382,7 +382,7 @@ def crown(
         states=states,
         families=families(chosen, length, pair.curvature, pair.contact_modulus, reach),
         factor=_factor_of(machine.limits[END_MEAN_LENGTH]),
-        compliance=float(turn_of_line(cycles[0]).tilt_compliance),
+        compliance=float(np.min(turn_of_line(cycles[0]).tilt_compliance)),
     )
     middle = middle_crown(least_crown(problem, ratio), ratio)
     return CrownDesign(

@@ -1,0 +1,127 @@
+"""The camshaft under both discs of a pair, against a direct stiffness matrix of beam elements."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.checks.camshaft_strength import _rotor
+from camwright.pipeline.cycle.cycle import turn_of_line
+from camwright.pipeline.follower.shaft_strength import slopes_of
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.screening.design_arrays import Designs, LiftOrigin
+from camwright.pipeline.screening.design_screening import step_of
+
+DATA = Path(__file__).parents[1] / "data"
+
+
+@cache
+def solved(name):
+    return preview_case(read_case(DATA / f"{name}.toml"), corners=False).solution
+
+
+def flexibility(shaft, places):
+    """Deflections, m, and slopes, rad, at places by unit forces and couples there (2k, 2k).
+
+    Bernoulli's beam elements between all places and the bearings, which are held: exact.
+    """
+    nodes = sorted({0.0, shaft.bearing_spacing, *places})
+    stiff = shaft.material.E * np.pi * shaft.diameter**4 / 64.0
+    whole = np.zeros((2 * len(nodes), 2 * len(nodes)))
+    for k, length in enumerate(np.diff(nodes)):
+        element = np.array([
+            [12.0, 6.0 * length, -12.0, 6.0 * length],
+            [6.0 * length, 4.0 * length**2, -6.0 * length, 2.0 * length**2],
+            [-12.0, -6.0 * length, 12.0, -6.0 * length],
+            [6.0 * length, 2.0 * length**2, -6.0 * length, 4.0 * length**2],
+        ])  # fmt: skip
+        whole[2 * k : 2 * k + 4, 2 * k : 2 * k + 4] += stiff / length**3 * element
+    held = [2 * nodes.index(at) for at in (0.0, shaft.bearing_spacing)]
+    free = [k for k in range(2 * len(nodes)) if k not in held]
+    inverse = np.zeros_like(whole)
+    inverse[np.ix_(free, free)] = np.linalg.inv(whole[np.ix_(free, free)])
+    at = [2 * nodes.index(place) + turned for turned in (0, 1) for place in places]
+    return inverse[np.ix_(at, at)]
+
+
+@pytest.mark.parametrize("spacing", [0.02, 0.04, 0.09])
+def test_slope_and_couple_of_each_disc(spacing):
+    """Between the bearings and overhung; the load of the gear at its place."""
+    shaft = replace(solved("preloaded_arm").machine.camshaft, cam_position=0.035)
+    places = (0.035, 0.035 + spacing, shaft.gear_position)
+    beam, slopes = flexibility(shaft, places), slopes_of(shaft, spacing)
+    assert len(slopes) == 2
+    for k, slope in enumerate(slopes):
+        turned = beam[3 + k]
+        assert slope.cam == pytest.approx(turned[k], rel=1e-9, abs=1e-12)
+        assert slope.beside == pytest.approx(turned[1 - k], rel=1e-9, abs=1e-12)
+        assert slope.gear == pytest.approx(turned[2], rel=1e-9)
+        assert slope.couple == pytest.approx(turned[3 + k], rel=1e-9)
+
+
+def test_the_line_of_contact_yields_with_the_shaft_at_its_own_disc():
+    """An overhung second disc turns by 2.4 times as much per moment as the first."""
+    cycle = solved("preloaded_arm").cycles[0]
+    shaft = replace(cycle.machine.camshaft, bearing_spacing=0.06)
+    machine = replace(cycle.machine, camshaft=shaft)
+    moved = replace(cycle, turn=replace(cycle.turn, machine=machine))
+    pulls, line = cycle.loads.wall < 0.0, turn_of_line(moved)
+    beam = flexibility(shaft, (0.035, 0.075))
+    wanted = np.where(pulls, beam[3, 3], beam[2, 2])
+    np.testing.assert_allclose(line.yields, wanted, rtol=1e-9)
+    assert 0.0 < pulls.mean() < 1.0
+    assert beam[3, 3] / beam[2, 2] > 2.0
+
+
+@pytest.mark.parametrize("name", ["conjugate_arm", "preloaded_arm", "conjugate_feeder"])
+def test_a_screening_bends_the_shaft_under_both_discs(name):
+    """Slope of the shaft in the screening against that of the preview, at the same angles.
+
+    Guides of a stem by tables differ by 2e-5, arms by round-off; both discs are out of balance.
+    """
+    solution = solved(name)
+    share = 5e-5 if name == "conjugate_feeder" else 1e-9
+    lift = given_lift(solution.case).values
+    designs = Designs(
+        case=solution.case, columns={}, source=LiftOrigin(lift=lift), torques={}, count=1,
+        step=step_of(lift.size, 720), throughputs={},
+    )  # fmt: skip
+    for cycle, cam in zip(solution.cycles, designs.cams, strict=True):
+        wanted = cycle.shaft_tilt
+        slope = np.broadcast_to(cam.shaft_tilt, (1, wanted.size))[0]
+        np.testing.assert_allclose(slope, wanted, atol=share * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize(
+    ("gear", "most"), [(-0.025, 1.02), (0.2, 1.01), (0.0, 1.05), (0.055, 1.25)]
+)
+def test_both_discs_twist_against_the_gear(gear, most):
+    """Natural frequency of the free shaft as two inertias against that of gear and both discs.
+
+    Never below it, by Rayleigh; 1.6 % above it where the gear is beside both discs as in the case.
+    Of a gear between the discs, which then swing against one another, 21 %.
+    """
+    solution = solved("conjugate_arm")
+    machine = solution.machine
+    shaft = replace(machine.camshaft, gear_position=gear)
+    rotor = _rotor(replace(machine, camshaft=shaft), solution.contour)
+    places = (shaft.gear_position, shaft.cam_position, shaft.cam_position + 0.04)
+    discs = [
+        7.85e3 * machine.cam.width * (each.contour.polar_moment() - 0.5 * np.pi * 0.015**4)
+        for each in solution.discs
+    ]
+    assert rotor.cam == pytest.approx(sum(discs), rel=1e-6)
+    inertias = dict(zip(places, (rotor.gear, *discs), strict=True))
+    along, whole = sorted(places), np.zeros((3, 3))
+    card = shaft.material
+    rigid = card.E / (2.0 * (1.0 + card.nu)) * np.pi * shaft.diameter**4 / 32.0
+    for k, length in enumerate(np.diff(along)):
+        whole[k : k + 2, k : k + 2] += rigid / length * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    squares = eigh(whole, np.diag([inertias[each] for each in along]), eigvals_only=True)
+    two = rotor.shaft * rotor.inertia / (rotor.gear * rotor.cam)
+    assert 1.0 - 1e-9 <= np.sqrt(two / squares[1]) < most
