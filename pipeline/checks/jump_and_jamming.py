@@ -158,7 +158,7 @@ def _on_points(demand: Demand, solution: Solution) -> Demand:
         "mu_B": "guides.b.friction",
         "R_A": "guide_normal_load_A",
         "R_B": "guide_normal_load_B",
-        "F_a": "axial_force",
+        "F_a": "stem_force",
     },
     reason="at 1 the follower locks on the rise and the cam or the stem breaks.",
     rests_on="contact",
@@ -189,7 +189,7 @@ def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
     rubbed = (loads.friction_force_a[k], mu_a), (loads.friction_force_b[k], mu_b)
     pushes = [float(force) / mu if mu else 0.0 for force, mu in rubbed]
     stated = {"mu_A": mu_a, "mu_B": mu_b, "R_A": pushes[0], "R_B": pushes[1]}
-    return replace(demand, stated=stated | {"F_a": float(loads.axial_force[k])})
+    return replace(demand, stated=stated | {"F_a": float(loads.stem_force[k] * loads.wall[k])})
 
 
 def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:

@@ -438,14 +438,17 @@ class Cycle(Tabled):
 
     @property
     def _wall_column(self) -> dict[Column, Cells]:
-        """Track that carries at each angle, and of preloaded discs the force on the other one;
-        nothing of a cam that only pushes.
+        """Track that carries at each angle, the force on a stem, and of preloaded discs that on the
+        other one; nothing of a cam that only pushes.
         """
         loads, machine = self.loads, self.machine
         if not loads.held:
             return {}
         words = "Track that carries: 1 the inner wall or first track, -1 the outer or second"
         columns: dict[Column, Cells] = {Column("wall", "", words): loads.wall}
+        if machine.arm is None:
+            words = "Axial force towards the track that carries; of preloaded discs that of both"
+            columns[Column("stem_force", "N", words)] = loads.stem_force * loads.wall
         if machine.disc_preload is not None:
             words = "Normal force on the preloaded disc that bears less"
             columns[Column("idle_force", "N", words)] = loads.idle_force

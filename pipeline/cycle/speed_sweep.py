@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import NamedTuple
 
@@ -19,6 +19,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import (
     Carried,
+    PressedGuides,
     Rubbing,
     follower_loads,
     in_guides,
@@ -327,7 +328,7 @@ class _Follower:
     cam speed; gain: normal force over axial force without friction; arm: cam torque over that
     force, m; with a pivot or a preload, whose friction is no share of that force, over the axial
     force. pulls: on an arm, at rest and per square of the speed; squeeze: of discs without
-    clearance; guided: axial force of their stem, see `in_guides`.
+    clearance; guided: guides of their stem.
     """
 
     machine: Machine
@@ -346,7 +347,7 @@ class _Follower:
     direction: Array
     pulls: tuple[Pull, Pull, Pull] | None
     squeeze: Squeezed | None
-    guided: Callable[[Array, Array], Array] | None
+    guided: PressedGuides | None
 
     @classmethod
     def of(cls, machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> _Follower:

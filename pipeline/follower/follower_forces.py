@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -331,7 +330,9 @@ class Loads(Displayed):
     the force of both along the travel beyond the axial force; 0 of others. `stem_force`: axial
     force, of preloaded discs on a stem the sum of the forces of both along the travel, with its
     sign, of which the jam index is a share; `side_load`: size of its load on the guides,
-    side-load factor times force.
+    side-load factor times force. `driving_jam`: jam index where the track that carries drives the
+    follower against friction, negative where it does not; of preloaded discs on a stem that of the
+    track that drives.
     """
 
     theta: Array
@@ -371,6 +372,7 @@ class Loads(Displayed):
     pressed_along: Array = field(default_factory=lambda: readonly(0.0))
     stem_force: Array = field(default_factory=lambda: readonly(0.0))
     side_load: Array = field(default_factory=lambda: readonly(0.0))
+    driving_jam: Array = field(default_factory=lambda: readonly(0.0))
     held: bool = False
     second: SecondFollower | None = None
 
@@ -457,12 +459,12 @@ class Loads(Displayed):
     @property
     def jammed(self) -> NDArray[np.bool_]:
         """Where the follower jams at any force (n,), bool; in guides where the cam drives it."""
-        return np.asarray(np.sign(self.driving_slope) * self.jam_index + self.lock >= 1.0)
+        return np.asarray(self.driving_jam + self.lock >= 1.0)
 
     @property
     def share(self) -> Array:
         """Ratio of the axial force without friction to that with it, see `share_left`."""
-        return share_left(self.driving_slope, self.jam_index, self.lock)
+        return share_left(1.0, self.driving_jam, self.lock)
 
     @property
     def ends(self) -> LoadEnds:
@@ -584,7 +586,7 @@ def wall_of(required: Values, *, held: bool) -> Array:
     return np.where(pulls, -1.0, 1.0)
 
 
-def share_left(lift_slope: Array, jam_index: Array, lock: Values | float = 0.0) -> Array:
+def share_left(lift_slope: Values | float, jam_index: Array, lock: Values | float = 0.0) -> Array:
     """Ratio of the axial force without friction to that with it, at least `JAM_FLOOR`.
 
     lock: of a face on an arm, see `Loads`
@@ -746,6 +748,9 @@ def follower_loads(
     if stem_force is None:
         stem_force = axial_force
     side_load = stem_force * wall * push.side_factor
+    driving_jam = np.sign(slope * wall) * jam_index
+    if guided is not None:
+        driving_jam = driving(guided.jams, np.sign(slope))
     friction_a = system.friction_a * rubbing_a * side_load
     friction_b = system.friction_b * rubbing_b * side_load
     sliding = axial_force * slide.torque
@@ -809,6 +814,7 @@ def follower_loads(
         pressed_along=pressed_along,
         stem_force=stem_force,
         side_load=side_load,
+        driving_jam=driving_jam,
         held=system.held,
         second=system.second,
     )
@@ -897,37 +903,46 @@ def sides_of(
     return (first.push.side, second.push.side), np.asarray(second.reach)
 
 
-def in_guides(
-    pitch: FollowerPath, system: FollowerSystem, theta: Array
-) -> Callable[[Array, Array], Array] | None:
-    """Function for the axial force (..., n), N, at cam angles (n,) of a stem whose rollers are
-    preloaded, by the axial force without friction and the direction of the motion, 1 on the rise,
-    -1 on the return, 0 at rest; None of other followers.
+class PressedGuides(NamedTuple):
+    """Preload of both rollers of a stem (n,), and the jam index of each track (2, n)."""
 
-    While both tracks are pressed friction is linear in the axial force, else a share of it; below
-    a jam index of 1 one of the three holds.
-    """
+    squeeze: Squeezed
+    jams: tuple[Array, Array]
+
+    def __call__(self, required: Array, direction: Array) -> Array:
+        """Axial force (..., n), N, from the one without friction and the direction of the motion.
+
+        direction (..., n): 1 on the rise, -1 on the return, 0 at rest
+
+        While both tracks are pressed friction is linear in the axial force, else a share of it: of
+        the three one holds, as the jam index of the track that drives is taken as
+        1 - `JAM_FLOOR` at most.
+        """
+        squeeze, most = self.squeeze, 1.0 - JAM_FLOOR
+        first, second = (
+            np.where((way * direction > 0.0) & (jam > most), most, jam)
+            for way, jam in zip((1.0, -1.0), self.jams, strict=True)
+        )
+        mixed = squeeze.share * first - (1.0 - squeeze.share) * second
+        pressed = required + direction * squeeze.preload * (first + second)
+        held, wall = pressed / (1.0 - direction * mixed), wall_of(required, held=True)
+        alone = required / (1.0 - direction * wall * np.where(wall > 0.0, first, second))
+        return np.where(squeeze.both(held), held, alone)
+
+
+def driving(jams: tuple[Array, Array], direction: Array) -> Array:
+    """Jam index (..., n) of the track of two that drives a follower; 0 at rest."""
+    return np.where(direction > 0.0, jams[0], np.where(direction < 0.0, jams[1], 0.0))
+
+
+def in_guides(pitch: FollowerPath, system: FollowerSystem, theta: Array) -> PressedGuides | None:
+    """Guides of a stem whose rollers are preloaded at cam angles (n,); None of other followers."""
     squeeze = system.squeezed(pitch, theta)
     if squeeze is None or system.pivot is not None:
         return None
     one = np.ones(theta.shape)
-    jams = tuple(jam_index(pitch, system, theta, wall) for wall in (one, -one))
-    return partial(axial_in_guides, squeeze, jams)
-
-
-def axial_in_guides(
-    squeeze: Squeezed, jams: Sequence[Array], required: Array, direction: Array
-) -> Array:
-    """Axial force (..., n), N, of a preloaded stem, see `in_guides`; jams (2, ..., n): jam index of
-    each track.
-    """
-    first, second = jams
-    mixed = squeeze.share * first - (1.0 - squeeze.share) * second
-    pressed = required + direction * squeeze.preload * (first + second)
-    held = pressed / share_left(direction, mixed)
-    wall = wall_of(required, held=True)
-    alone = required / share_left(direction * wall, np.where(wall > 0.0, first, second))
-    return np.where(squeeze.both(held), held, alone)
+    first, second = (jam_index(pitch, system, theta, wall) for wall in (one, -one))
+    return PressedGuides(squeeze, (first, second))
 
 
 _Swung = Callable[[Array, Pull, Array], tuple[PivotBalance, Array]]

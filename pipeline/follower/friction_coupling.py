@@ -18,10 +18,10 @@ from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
     FollowerSystem,
     Loads,
+    PressedGuides,
     Push,
     Rubbing,
     SideLoads,
-    axial_in_guides,
     follower_loads,
     share_left,
     sides_of,
@@ -337,7 +337,8 @@ class _BothTracks:
 
     @property
     def bracket(self) -> tuple[Array, Array, Array]:
-        most = (np.abs(self.force) + 2.0 * self.squeeze.preload) / JAM_FLOOR
+        preload, share = self.squeeze
+        most = (np.abs(self.force) + preload / (share * (1.0 - share))) / JAM_FLOOR
         return np.zeros_like(most), most, self.on_points
 
     def on_guides(self, unknown: Array, at: NDArray[np.intp]) -> _OnGuides:
@@ -347,9 +348,9 @@ class _BothTracks:
         return _OnGuides(loads.side, -np.sign(loads.side) * loads.far * loads.reach, loads.size)
 
     def balance(self, rubs: Array, at: NDArray[np.intp]) -> Array:
-        jams = [rubs * np.abs(each[at]) for each in self.sides]
+        near, far = (rubs * np.abs(side[at]) for side in self.sides)
         force, direction = self.force[at], self.direction[at]
-        axial = axial_in_guides(self.squeeze.part(at), jams, force, direction)
+        axial = PressedGuides(self.squeeze.part(at), (near, far))(force, direction)
         return np.asarray(direction * (axial - force))
 
 

@@ -80,6 +80,8 @@ _CLOSED_FORM = {
     "half_width_fe": ("half_width_conforming", "half_width_hertz"),
 }
 """Columns in place of one that a run without finite elements leaves empty: the first it has."""
+_FOR_OTHERS = {"stem_force": "axial_force"}
+"""Column in place of one that a run has of some closures alone."""
 ONLY = "?"
 """Symbol of the keys and words for which a formula holds, such as ``follower.kind roller``."""
 
@@ -574,7 +576,8 @@ class _Evaluation:
 
     def _column(self, name: str) -> tuple[str, Array]:
         """Unit and values (n,), in this unit, of a column of the cycle, by its name without the
-        unit; the closed form in place of a column of finite elements that is not solved.
+        unit; the closed form in place of a column of finite elements that is not solved, and the
+        column of other closures in place of one that the closure lacks.
 
         Raises
         ------
@@ -588,6 +591,8 @@ class _Evaluation:
             if name in _CLOSED_FORM and np.isnan(self._rows[header]).all():
                 return self._column(next(each for each in _CLOSED_FORM[name] if self._has(each)))
             return unit, self._rows[header]
+        if name in _FOR_OTHERS:
+            return self._column(_FOR_OTHERS[name])
         raise ResultError(f"5_cycle.csv: no column {name}")
 
 

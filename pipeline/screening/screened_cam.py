@@ -23,8 +23,9 @@ from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
     REST,
     LoadEnds,
+    PressedGuides,
     SideLoads,
-    axial_in_guides,
+    driving,
     ends_of,
     share_left,
     wall_of,
@@ -64,13 +65,15 @@ class ScreenedState(NamedTuple):
 
 class PressedStem(NamedTuple):
     """Stem whose rollers are preloaded in its guides (m, n): axial force, N, side loads of both
-    rollers, the guides under them, and their rubbing loads over the sum of both forces.
+    rollers, the guides under them, their rubbing loads over the sum of both forces, and the jam
+    index of the track that drives.
     """
 
     axial: Array
     loads: SideLoads
     supports: SupportOfMany
     rubbing: OfGuides
+    driving_jam: Array
 
 
 class Block(DesignValues, Protocol):
@@ -164,16 +167,18 @@ class ScreenedCam(CarriedCam):
             side = loads.side / loads.force
             supports = block.supports_under(side, np.zeros_like(side), reach * far)
             on_a, on_b = supports.rubbing(loads.force)
+            rubs = friction.a * on_a + friction.b * on_b
             if settled.all():
                 break
-            rubs = friction.a * on_a + friction.b * on_b
-            jams = [rubs * np.abs(each) for each in sides]
-            now = axial_in_guides(squeeze, jams, required, direction)
+            jams = rubs * np.abs(first.side), rubs * np.abs(other.side)
+            now = PressedGuides(squeeze, jams)(required, direction)
             moved = np.where(settled, 0.0, now - axial)
             axial = axial + moved
             settled |= np.abs(moved) <= _FRICTION_SETTLED * loads.force
         factor = np.where(settled, supports.factor, np.nan)
-        return PressedStem(axial, loads, supports, OfGuides(on_a * factor, on_b * factor))
+        jam = driving((rubs * np.abs(first.side), rubs * np.abs(other.side)), direction)
+        rubbing = OfGuides(on_a * factor, on_b * factor)
+        return PressedStem(axial, loads, supports, rubbing, jam)
 
     @cached_property
     def wall(self) -> Array:
@@ -330,7 +335,9 @@ class ScreenedCam(CarriedCam):
     @cached_property
     def ends(self) -> LoadEnds:
         """First angles at which followers leave the cam or lock; see `Loads.ends`."""
-        index = self.direction * self.jam + self.motion.lock
+        pressed = self._pressed
+        driven = self.direction * self.jam if pressed is None else pressed.driving_jam
+        index = driven + self.motion.lock
         return ends_of((self.normal <= 0.0) & (not self.pulls), index >= 1.0)
 
     @cached_property

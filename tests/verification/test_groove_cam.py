@@ -244,6 +244,7 @@ def test_the_sheets_of_a_run_have_the_conforming_contact(tmp_path):
     altered = SheetRun(run.run.path, replace(run.run, trials=(final,)))
     for name in ("contact_pressure", "shakedown", "shakedown_traction"):
         assert run.sheet(name).agrees and not altered.sheet(name).agrees, name
+    assert run.sheet("jam_index").agrees and run.sheet("jam_index_friction_max").agrees
 
 
 def test_the_roller_turns_the_other_way_on_the_outer_wall():

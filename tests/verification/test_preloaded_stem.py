@@ -17,10 +17,13 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.disc_preload import Compliances, DiscPreload
 from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
 from camwright.pipeline.follower.friction_coupling import guided_loads
 from camwright.pipeline.follower.guide_reactions import guide_reactions
+from camwright.pipeline.hand_check.hand_sheet import SheetRun
+from camwright.pipeline.run import run_case
 
 FILE = Path(__file__).parents[1] / "data" / "preloaded_feeder.toml"
 
@@ -200,3 +203,27 @@ def test_a_vanishing_interference_is_a_pair_without_clearance(name):
         for each in (*names, "jam_index", "overhang"):
             of_pressed, of_loose = (getattr(loads, each)[carries] for loads in (pressed_, loose))
             assert of_pressed == pytest.approx(of_loose, abs=1e-3), each
+
+
+def test_a_follower_that_locks_has_bounded_forces():
+    """Guides with a friction of 1.5 close together: equilibrium fails, the loads say where."""
+    machine, contour, _ = pressed("uneven")
+    rough = replace(machine.system, friction_a=1.5, friction_b=1.5)
+    turn = guided_loads(
+        contour.pitch, rough, machine.stem, machine.guides, machine.cam_speed, uniform_turn(180)
+    )
+    loads = turn.loads
+    assert loads.jammed.any() and not loads.jammed.all()
+    assert loads.end[1] == "locks"
+    assert np.isfinite(loads.normal_force).all() and turn.residual.max() < 1e-10
+    most = (np.abs(loads.required_force) + 4.0 * loads.idle_force.max()) / 0.01
+    assert (np.abs(loads.axial_force) < most).all()
+
+
+@pytest.mark.slow
+def test_the_sheet_of_a_run_has_the_force_of_both_discs(tmp_path):
+    """The jam index by its formula on the columns of the run, over the sum of both forces."""
+    run_case(read_case(FILE), tmp_path / "run", positions=48, depth=Tier.PREVIEW, jobs=1)
+    run = SheetRun(tmp_path / "run")
+    for name in ("jam_index", "jam_index_friction_max", "preload_least", "preload_pressure"):
+        assert run.sheet(name).agrees, name
