@@ -191,9 +191,10 @@ def _start(case: Case) -> Iterator[Rule]:
         limit = f"given with [torque]: {ratio_text(case.torque.cycle / FULL_TURN)} for one cycle"
         raise InputError("mechanism.gear_ratio", "missing", f"{limit} of {cycle} in a cam turn")
     _closure(case)
-    if not case.cam.pulls or case.spring.design is not None or case.spring.shape is not None:
-        limit = '> 0 N, or cam.closure = "groove", "conjugate" or "yoke" with a linear spring'
-        yield _more("spring.preload", _fixed(0.0), limit)
+    key = case.spring.preload_key
+    if key and (not case.cam.pulls or case.spring.design is not None):
+        limit = '> {}, or cam.closure = "groove", "conjugate" or "yoke" without spring.design'
+        yield _more(key, _fixed(0.0), limit)
     if case.valve_train is not None and case.follower.arm is not None:
         raise InputError("valve_train", "a table", "left out with an arm")
     if case.rocker_linkage is not None and case.rocker is not None and case.rocker.lift == "output":
@@ -299,11 +300,16 @@ def _stores(case: Case, stated_as: str) -> None:
     ------
     InputError
         If the spring is missing, or the lift is that of a constrained synthesis that is not done:
-        of a pair or a yoke, or of a spring that pulls.
+        of a pair or a yoke, or of a spring that pulls; or that of a spring which pulls by a force
+        that is not linear in the lift.
     """
     if case.spring.absent:
         limit = f"given with {stated_as} and without [lift]: it stores the work of the torque"
         raise InputError("spring", "missing", limit)
+    shape, key = case.spring.shape, case.spring.preload_key
+    if shape is not None and not (shape.linear or case.spring.preload > 0.0):
+        limit = "> 0 without [lift]: the lift of a spring that pulls needs a force linear in it"
+        raise InputError(key, text_of(case, key), limit)
     if case.smoothing.kind == "constrained" and (
         case.cam.yoke is not None
         or (case.cam.groove is not None and case.cam.second is not None)

@@ -98,7 +98,7 @@ def beyond_ranges(case: Case) -> tuple[Implied, ...]:
             value = value_of(case, key)
             absent = key.startswith("spring.") and case.spring.absent
             if isinstance(value, float) and not absent:
-                size = abs(value) if key == "spring.preload" else value  # it may pull
+                size = abs(value) if key == case.spring.preload_key else value  # it may pull
                 judged.append(usual.finding(key, size, f"{key} = {text_of(case, key)}"))
     return tuple(one for one in judged if one is not None)
 

@@ -47,17 +47,30 @@ def _torsion(cam: LoadedCam) -> TorsionWire:
     return torsion
 
 
-def _bending_stress(cam: LoadedCam) -> Array:
-    """Bending stress of the hardest spring in tolerance, Pa; NaN without the wire."""
+def _bending_stresses(cam: LoadedCam) -> tuple[Array, Array]:
+    """Bending stress of the hardest spring in tolerance at maximum and at zero lift, Pa, below zero
+    where it is unwound; NaN without the wire.
+    """
     torsion, work = _torsion(cam), cam.hardest
-    return torsion.bending_stress(torsion.moment_at(work.greatest, work.travel))
+    rest = torsion.moment_at(work.preload, 0.0 * work.travel)
+    at_top = torsion.bending_stress(torsion.moment_at(work.greatest, work.travel))
+    return at_top, torsion.bending_stress(rest)
+
+
+def _bending_stress(cam: LoadedCam) -> Array:
+    """Greatest bending stress of the spring in tolerance, Pa; that of one which is unwound at zero
+    lift may be there, with its preload far low.
+    """
+    at_top, rest = _bending_stresses(cam)
+    spread = cam.numbers["spring.preload_tolerance"]
+    unwound = -rest * (1.0 + spread) / (1.0 - spread)
+    return np.asarray(np.where(np.real(unwound) > np.real(at_top), unwound, at_top))
 
 
 def _stress_range(cam: LoadedCam) -> Array:
     """Bending stress less that at zero lift, Pa."""
-    torsion, work = _torsion(cam), cam.hardest
-    least = torsion.bending_stress(torsion.moment_at(work.preload, 0.0 * work.travel))
-    return _bending_stress(cam) - least
+    at_top, rest = _bending_stresses(cam)
+    return at_top - rest
 
 
 def _of_torsion(demand: Demand, solution: Solution) -> Demand:
@@ -134,9 +147,10 @@ torsion_stress = _torsion_check(
         " has 0.7 R_m",
         confirmed=False,
     ),
-    method="q 32 M/(pi d^3) at maximum lift, preload and rise of the force high",
-    formula="q 32 M / (pi d^3) <= 0.54 R_m; M: moment at maximum lift with the tolerances high,"
-    " q = (w + 0.07)/(w - 0.75), w = D/d, R_m: tensile strength of the wire",
+    method="q 32 M/(pi d^3) at maximum lift, preload and rise of the force high; at zero lift where"
+    " the spring is unwound there and its moment greater",
+    formula="q 32 M / (pi d^3) <= 0.54 R_m; M: greatest moment with the tolerances, at maximum or"
+    " zero lift, q = (w + 0.07)/(w - 0.75), w = D/d, R_m: tensile strength of the wire",
     reason="A spring beyond its yield strength sets and loses the force that keeps the follower on"
     " the cam.",
 )

@@ -389,7 +389,9 @@ class LoadedCam:
         spreads = numbers["spring.preload_tolerance"], numbers["spring.rate_tolerance"]
         if numbers.case is not None and numbers.case.spring.design is not None:
             return self.wire.at_work(preload, travel, *spreads)
-        hard, rate = preload * (1.0 + spreads[0]), self.spring_rate * (1.0 + spreads[1])
+        # a preload that pulls is greatest at its low end
+        side = np.where(np.asarray(preload).real < 0.0, -1.0, 1.0)
+        hard, rate = preload * (1.0 + side * spreads[0]), self.spring_rate * (1.0 + spreads[1])
         law = None if self.spring_shape is None else self.spring_shape.own
         risen = travel if law is None else rise(law, travel).travel
         return SpringWork(hard, hard + rate * risen, travel, rate)

@@ -58,7 +58,7 @@ from camwright.pipeline.follower.wound_wire import (
     WoundWire,
 )
 
-NO_FORCE = 1e-6  # N, of a spring that stands in for none
+NO_FORCE, _RATE_OF_NONE = 1e-6, 1e-2  # N, N/m, of a spring that stands in for none
 DAMPING, LEAST_DAMPING = 0.01, 0.002  # ratio of the surge that a case does not state
 
 WireModulus = Annotated[float, In("GPa", above=0, at_most=1e5)]
@@ -387,7 +387,7 @@ class Spring(Part):
     @property
     def absent(self) -> bool:
         """Whether it stands in for no spring, which form closure does without."""
-        return abs(self.preload) <= NO_FORCE
+        return abs(self.preload) <= NO_FORCE and self.rate <= _RATE_OF_NONE
 
     @property
     def parts(self) -> dict[str, Part | None]:
@@ -398,6 +398,11 @@ class Spring(Part):
         stated = {kind: getattr(self, kind) for kind in SHAPES}
         parts |= dict.fromkeys(TABLES_OF_PARTS)
         return parts | {each.part: each for each in stated.values() if each is not None}
+
+    @property
+    def preload_key(self) -> str:
+        """Dotted key that states the force at zero lift with its sign, see `SpringShape`."""
+        return "spring.preload" if self.shape is None else self.shape.preload_key
 
     @property
     def derived(self) -> tuple[str, ...]:

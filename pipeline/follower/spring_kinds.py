@@ -81,13 +81,21 @@ class SpringShape(Part, ABC):
     has another travel and force at its own ends.
 
     part: its name in `[scope]`; carried: what it acts on, "": either; linkable: whether it can
-    stand between a point of an arm and a fixed one; pulls: its ends together
+    stand between a point of an arm and a fixed one; pulls: its ends together; linear: in the lift
     """
 
     part: ClassVar[SpringPart]
     carried: ClassVar[Literal["", "stem", "arm"]] = ""
     linkable: ClassVar[bool] = False
     pulls: ClassVar[bool] = False
+    linear: ClassVar[bool] = False
+
+    @property
+    def preload_key(self) -> str:
+        """Key that states the force at zero lift with its sign; "": it cannot change its sign, as
+        that of a piston, whose rod is pushed alone, or of hooks, which are pulled alone.
+        """
+        return ""
 
     @property
     @abstractmethod
@@ -395,8 +403,11 @@ class TorsionWire(SpringShape):
         If a value is out of its bounds.
     """
 
-    moment: Annotated[float, In("N m", above=0, at_most=1e6), Known("spring drawing", "12 N m")]
-    """moment at zero lift"""
+    moment: Annotated[
+        float, In("N m", at_least=-1e6, at_most=1e6), Known("spring drawing", "12 N m")
+    ]
+    """moment at zero lift; negative of a spring with its ends held both ways that is unwound there,
+    which a cam that pulls permits"""
     angular_rate: Annotated[
         float,
         In("N m/rad", above=0, at_most=1e6),
@@ -412,6 +423,10 @@ class TorsionWire(SpringShape):
         Pressure | None, Known("fatigue diagram of DIN EN 13906-3, or the maker", "500 MPa")
     ] = None
     """permissible range of the bending stress for the target life"""
+
+    @property
+    def preload_key(self) -> str:
+        return f"{self.table}.moment"
 
     @abstractmethod
     def moment_at(self, force: ArrayLike, lift: ArrayLike) -> Array:
@@ -537,6 +552,7 @@ class PivotSpring(TorsionWire):
     table: ClassVar[str] = "spring.torsion_pivot"
     part: ClassVar[SpringPart] = "torsion_spring"
     carried: ClassVar[Literal["", "stem", "arm"]] = "arm"
+    linear: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("length",)
 
     source: TableSource = NO_SOURCE

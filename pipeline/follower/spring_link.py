@@ -13,7 +13,15 @@ import numpy as np
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.rocker_lift import RockerLinkage
-from camwright.pipeline.base.quantities import In, Known, Length, Part, Preload, Rate, TableSource
+from camwright.pipeline.base.quantities import (
+    In,
+    Known,
+    Length,
+    Part,
+    Rate,
+    SignedForce,
+    TableSource,
+)
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.rocker import UNIFORM, Rocker
@@ -58,8 +66,9 @@ class SpringLink(Part):
     """whether the spring pushes its ends apart, or pulls them together"""
     rate: Annotated[Rate | None, Known("spring catalogue or drawing", "24.2 kN/m")] = None
     """force of a coil spring per travel of its ends"""
-    preload: Annotated[Preload | None, Known("spring drawing", "242 N")] = None
-    """force of a coil spring at zero lift"""
+    preload: Annotated[SignedForce | None, Known("spring drawing", "242 N")] = None
+    """force of a coil spring at zero lift; negative against its `action`, which a cam that pulls
+    permits"""
     diameter: Annotated[Length | None, Known("spring drawing, or data sheet", "28 mm")] = None
     """greatest diameter of the spring's body; of coils that are described theirs"""
     plane_offset: Annotated[float, In("mm", at_least=0, at_most=1000), Known("drawing", "0 mm")] = (
@@ -196,7 +205,7 @@ class RockerSpring(Part):
 
     rate: Annotated[Rate | None, Known("spring catalogue or drawing", "24.2 kN/m")] = None
     """force of a coil spring per lift of the output"""
-    preload: Annotated[Preload | None, Known("spring drawing", "242 N")] = None
+    preload: Annotated[SignedForce | None, Known("spring drawing", "242 N")] = None
     """force of a coil spring on the output at zero lift"""
     source: TableSource = NO_SOURCE
     rocker: Rocker = UNIFORM
@@ -284,6 +293,10 @@ class LinkedSpring(SpringShape):
             limit = f"> {least}: the force on the cam must rise with the lift"
             table = self.table if spring is None else spring.table
             raise InputError(f"{table}.rate", shown(float(self._own[1]), "kN/m"), limit)
+
+    @property
+    def preload_key(self) -> str:
+        return f"{self.table}.preload" if self.spring is None else self.spring.preload_key
 
     @property
     def stated(self) -> Part:
