@@ -22,6 +22,7 @@ from camwright.pipeline.case.cards.catalogue import (
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.cards.substitution import (
     AS_GIVEN,
+    OF_LINING,
     OF_USE_OF_SPRING,
     OWN_OF_BEARING,
     OWN_OF_BUSH,
@@ -238,8 +239,8 @@ EXCHANGES = {
     "cam": lambda case, _: with_cam_material(case, "c45", None),
 }
 OWN = {
-    "roller": OWN_OF_ROLLER, "roller.bearing": OWN_OF_BEARING, "guides.a": OWN_OF_BUSH,
-    "guides.b": OWN_OF_BUSH, "follower.pivot.bush": OWN_OF_BUSH, "cam": {"material"},
+    "roller": OWN_OF_ROLLER, "roller.bearing": OWN_OF_BEARING, "cam": {"material"},
+    **dict.fromkeys(("guides.a", "guides.b", "follower.pivot.bush"), OWN_OF_BUSH | OF_LINING),
     "spring": {"rate", "travel_max", "source"},
     "spring.design": {each.name for each in fields(HelicalSpring)} - OF_USE_OF_SPRING | {"card"},
 }  # fmt: skip
@@ -273,8 +274,7 @@ def entries(tables, path=""):
 def test_an_exchanged_part_leaves_all_that_is_not_its_own(parts, name, exchange):
     """Every key of its tables stays, but those of the part and those that follow from its size."""
     case = read_case(CASES / f"{name}.toml")
-    rubs = {f"{table}.wear_rate": "2e-7 mm^3/N/m" for table in case.bushes}
-    case = with_values(case, USE | rubs | {f"{t}.housing_resistance": "2 K/W" for t in case.bushes})
+    case = with_values(case, USE | {f"{t}.housing_resistance": "2 K/W" for t in case.bushes})
     after = dict(entries(EXCHANGES[exchange](case, parts).tables()))
     kept = 0
     for key, value in entries(case.tables()):
@@ -296,8 +296,23 @@ def test_what_stays_of_an_exchanged_bush_keeps_its_source(parts):
     case = read_case(CASES / "gx120-arm.toml")
     text = case.follower.pivot.bush.source
     changed = variant(case, parts, Choice(AS_GIVEN, AS_GIVEN, "bronze"), None)
-    assert str(changed.sources["follower.pivot.bush.wear_rate"].text) in str(text)
+    assert str(changed.sources["follower.pivot.bush.housing_resistance"].text) in str(text)
     assert "SKF" in str(changed.sources["follower.pivot.bush.friction"].text)
+
+
+@pytest.mark.parametrize(("name", "stays"), [("bronze", False), ("ptfe_lined", True)])
+def test_a_figure_of_a_lining_does_not_pass_to_another_material(parts, name, stays):
+    """Wear rate, stiffness and thermal resistance, measured with PTFE, say nothing of bronze."""
+    measured = {
+        "wear_rate": "2e-7 mm^3/N/m", "stiffness": "5e4 N/mm", "thermal_resistance": "3 K/W",
+    }  # fmt: skip
+    case = read_case(CASES / "gx120-redesign.toml")
+    case = with_values(case, {f"guides.a.{key}": value for key, value in measured.items()})
+    choice = Choice(AS_GIVEN, AS_GIVEN, name)
+    for changed in (with_bush(case, "guides.a", name, None), variant(case, parts, choice, None)):
+        left = {key: getattr(changed.guides.a, key) is not None for key in measured}
+        assert left == dict.fromkeys(measured, stays)
+        assert ("guides.a.wear_rate" in changed.sources) == stays
 
 
 @pytest.mark.parametrize(("spring", "kept"), [("", 2), (TORSION, 3)], ids=["coil", "torsion"])

@@ -12,6 +12,7 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.crossing import first_passing
 from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of, nearest_spring
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case import Case
@@ -39,6 +40,8 @@ OWN_OF_BUSH = frozenset(
     }
 )
 """Keys of a bush that another one brings; the others are of its place and use."""
+OF_LINING = frozenset({"wear_rate", "stiffness", "thermal_resistance"})
+"""Keys of a bush, measured with its material, that one of another material leaves open."""
 OWN_OF_BEARING = frozenset(
     {
         *("card", "name", "C", "C0", "fatigue_load_limit", "radial_limit", "static_radial_limit"),
@@ -154,7 +157,7 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
     _put_mass(data, case, roller_mass, spring_mass, arm_mass)
     if choice.bush != AS_GIVEN:
         for table in case.bushes:
-            _put_bush(data, table, choice.bush)
+            _put_bush(data, case, table, choice.bush, folder)
     _put_search(data, case, choice, radius)
     return case_of(data, folder)
 
@@ -192,7 +195,7 @@ def with_bush(case: Case, table: str, name: str, folder: Path | None) -> Case:
         If the bush does not fit into the case.
     """
     data = tables_of(case)
-    _put_bush(data, table, name)
+    _put_bush(data, case, table, name, folder)
     return completed(case_of(data, folder), case.folder)
 
 
@@ -354,11 +357,13 @@ def _heavier_arm(case: Case, card: BearingCard) -> float:
     return arm.material.density * _wider(case, card) * arm.depth * arm.length
 
 
-def _put_bush(data: Tables, table: str, name: str) -> None:
+def _put_bush(data: Tables, case: Case, table: str, name: str, folder: Path | None) -> None:
     """Write the card of a bush into its table of a case, by its dotted name, in place; what is of
-    its place and use is kept.
+    its place and use is kept, and what was measured with the material if that stays.
     """
-    _emptied(data, table, OWN_OF_BUSH)["card"] = name
+    card = known_cards(folder)["bushes"].get(name, {})
+    same = card.get("material") == case.bushes[table].material.name
+    _emptied(data, table, OWN_OF_BUSH if same else OWN_OF_BUSH | OF_LINING)["card"] = name
 
 
 def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None:
