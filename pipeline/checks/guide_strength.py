@@ -195,7 +195,7 @@ def power_at(side: Place, temperature: float | None, numbers: Numbers) -> float 
 def hottest(solution: Solution, side: Place) -> Extreme:
     """Temperature of a bush at maximum friction in the hottest load case, K.
 
-    NaN where ambient or thermal resistance is not known.
+    NaN where ambient or thermal resistance is not known, and where the follower locks.
     """
     return worst_measure(
         solution,
@@ -205,6 +205,14 @@ def hottest(solution: Solution, side: Place) -> Extreme:
         at_least=False,
         order=2,
     )
+
+
+def locks_hot(solution: Solution) -> str:
+    """Why the bushes have no steady temperature, in words; "" unless the follower locks."""
+    locks = [
+        each.load_case for each in solution.cycles if each.parts.friction.greatest.bounded.any()
+    ]
+    return f"the follower locks at the greatest friction ({', '.join(locks)})" if locks else ""
 
 
 class _Limit(NamedTuple):
@@ -237,8 +245,8 @@ def _at_temperature(
         return _Limit(cold, notes=("limit at 20 degC, an upper bound",))
     temperature = hottest(solution, side).value
     if np.isnan(temperature):
-        words = "the temperature of the guide is not known: limit at 20 degC"
-        return _Limit(cold, notes=(words,))
+        why = locks_hot(solution) or "the temperature of the guide is not known"
+        return _Limit(cold, notes=(f"{why}: limit at 20 degC",))
     limit = limit_at(temperature)
     at = shown(celsius(temperature), "degC", 3)
     if limit is None or np.isnan(limit):
@@ -610,8 +618,10 @@ def _guide_temperature(side: Place) -> Declaration:
         machine = solution.machine
         card = guide_of(machine, side).material
         missing = (*heat_path_lacks(machine, side), *lacking_of_card(card, "temperature_limit"))
-        sourced = replace(demand, missing=missing, source=card.source.of(card.name))
-        if demand.at is None or not demand.at.load_case:
+        sourced = replace(
+            demand, missing=missing, source=card.source.of(card.name), note=locks_hot(solution)
+        )
+        if sourced.note or demand.at is None or not demand.at.load_case:
             return sourced
         cycle = cycle_of(solution.cycles, demand.at)
         return replace(sourced, stated={"Q": mean_of(solution, HEAT[side], cycle)})

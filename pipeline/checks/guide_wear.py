@@ -34,6 +34,7 @@ from camwright.pipeline.checks.guide_strength import (
     has_bush,
     heat_path_lacks,
     hottest,
+    locks_hot,
     table_of,
 )
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
@@ -98,7 +99,7 @@ def _guide_expansion(side: Place) -> Declaration:
         if stem is None:
             return Demand(None, guide.clearance, missing=(seat.pin,))
         growth_of_stem, moisture = stem.expansion, bush.moisture_growth
-        hot = hottest(solution, side)
+        hot, locks = hottest(solution, side), locks_hot(solution)
         missing = (
             *lacking(table_of(side), guide, "wall"),
             *lacking_of_card(bush, "expansion"),
@@ -111,8 +112,9 @@ def _guide_expansion(side: Place) -> Declaration:
             or bush.expansion is None
             or growth_of_stem is None
             or moisture is None
+            or locks
         ):
-            return Demand(None, guide.clearance, missing=missing)
+            return Demand(None, guide.clearance, missing=missing, note=locks)
         free, held = closures(guide, bush.expansion, growth_of_stem, moisture, hot.value)
         return Demand(
             max(free, held),

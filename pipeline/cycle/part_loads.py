@@ -41,7 +41,8 @@ class PartLoads(Displayed):
     """Loads of the parts over one turn; arrays (n,), SI, None for a part not described.
 
     guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest;
-    heat_* is the friction power of the guides, heat_max_* that at the greatest friction of both.
+    heat_* is the friction power of the guides, heat_max_* that at the greatest friction of both,
+    NaN where the follower locks at it.
     pivot_edge_pressure is that of the pin in the bush of an arm's pivot where its line load is
     greatest.
     ring_amplitude and ring_mean are of the stress in the groove of the bearing's outer ring, which
@@ -97,7 +98,10 @@ class PartLoads(Displayed):
                 "normal_force_friction_min", "N", "Normal force at minimum guide friction"
             ): friction.normal_force_min,
             Column(
-                "normal_force_friction_max", "N", "Normal force at maximum guide friction"
+                "normal_force_friction_max",
+                "N",
+                "Normal force at maximum guide friction; unknown where the follower locks",
+                unknown=True,
             ): friction.normal_force_max,
             Column(
                 "jam_index_friction_max", "", "Jam index at maximum guide friction, rise"
@@ -164,13 +168,14 @@ def part_loads(
     pair = machine.guides
     nominal, worst = machine.guide_friction.nominal, friction.greatest
     pivot = PivotPush.of(machine, loads, moment)
+    locked = np.where(worst.bounded, np.nan, 0.0)
     return PartLoads(
         guide_edge_pressure_a=edge_pressure_of(machine, pair.a)(guide_lines[0]),
         guide_edge_pressure_b=edge_pressure_of(machine, pair.b)(guide_lines[1]),
         heat_a=friction_power(nominal[0] * guides.rubbing_load_a, loads.velocity),
         heat_b=friction_power(nominal[1] * guides.rubbing_load_b, loads.velocity),
-        heat_max_a=friction_power(worst.friction_force_a, worst.velocity),
-        heat_max_b=friction_power(worst.friction_force_b, worst.velocity),
+        heat_max_a=locked + friction_power(worst.friction_force_a, worst.velocity),
+        heat_max_b=locked + friction_power(worst.friction_force_b, worst.velocity),
         friction=friction,
         viscous_force=loads.viscous_force,
         reversals=torque_reversals(

@@ -268,7 +268,8 @@ class SolvedCam(ForcesCam):
     @property
     def pivot_heat(self) -> Array:
         worst = self.cycle.parts.friction.greatest
-        return worst.pivot_friction * np.abs(worst.velocity)
+        heat = worst.pivot_friction * np.abs(worst.velocity)
+        return np.where(worst.bounded, np.nan, heat)
 
     @property
     def p0(self) -> Array:

@@ -467,6 +467,11 @@ class Loads(Displayed):
         return share_left(1.0, self.driving_jam, self.lock)
 
     @property
+    def bounded(self) -> NDArray[np.bool_]:
+        """Where friction bears so much that the forces are bounded, not in equilibrium (n,)."""
+        return np.asarray(self.share <= JAM_FLOOR)
+
+    @property
     def ends(self) -> LoadEnds:
         """First angles at which followers leave the cam or lock; the loads end there.
 

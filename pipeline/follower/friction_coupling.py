@@ -476,6 +476,5 @@ def _residual(
     miss = loads.axial_force - rubs - loads.lock * loads.axial_force - free
     if system.held:
         miss = np.where(np.abs(miss) > 10.0 * _HELD_ROUND_OFF, miss, 0.0)
-    bounded = loads.share <= JAM_FLOOR
-    push = np.where(bounded, 0.0, loads.stem_force * loads.wall)
+    push = np.where(loads.bounded, 0.0, loads.stem_force * loads.wall)
     return np.divide(np.abs(miss), push, out=np.zeros_like(miss), where=push > 0.0)

@@ -127,8 +127,9 @@ class FrictionBounds:
 
     @property
     def normal_force_max(self) -> Array:
-        """Maximum contact force (n,) over the friction bounds, N."""
-        return np.maximum(self.least.normal_force, self.greatest.normal_force)
+        """Maximum contact force (n,) over the friction bounds, N; NaN where the follower locks."""
+        most = np.maximum(self.least.normal_force, self.greatest.normal_force)
+        return np.where(self.greatest.bounded, np.nan, most)
 
     @property
     def jam_index_max(self) -> Array:

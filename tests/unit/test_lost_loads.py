@@ -158,6 +158,29 @@ def test_a_follower_that_locks_is_judged_by_its_jam_alone() -> None:
         assert made[name].demand is None and made[name].status == "not_evaluated"
 
 
+@pytest.mark.parametrize("friction", ["0.11", "0.98"])
+def test_a_follower_that_locks_at_the_greatest_friction_has_no_steady_temperature(
+    friction: str,
+) -> None:
+    """The friction that locks it is bounded, not found: 1e5 degC of it stood beside the jam."""
+    made = trial(
+        (OVERSPEED, ""),
+        ('spacing = "80 mm"', 'spacing = "40 mm"\nambient_temperature = "60 degC"'),
+        ("friction_max = 0.11 ", f'thermal_resistance = "3 K/W"\nfriction_max = {friction} '),
+        ("friction_max = 0.25 ", f"friction_max = {max(0.25, float(friction))} "),
+    )
+    locks, judged = friction == "0.98", checks(made)
+    worst = [each.parts.friction.greatest for each in made.cycles]
+    assert any((each.jam_index >= 1.0).any() for each in worst) == locks
+    warm = judged["guide_temperature_A"]
+    assert (warm.status == "not_evaluated") == locks
+    assert ("locks at the greatest friction (" in warm.note) == locks
+    assert ("locks at the greatest friction (" in judged["guide_pressure_A"].note) == locks
+    assert locks or 60.0 < float(warm.demand or 0.0) < 300.0
+    most = made.cycles[0].parts.friction.normal_force_max
+    assert np.isnan(most).any() == locks and np.nanmax(most) < 100.0 * np.nanmin(most[most > 0.0])
+
+
 def test_loads_on_a_crank_that_stalls_are_no_results() -> None:
     light = trial(
         (OVERSPEED, ""),
