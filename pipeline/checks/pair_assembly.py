@@ -222,7 +222,8 @@ def second_track_gap(solution: Solution) -> Demand | None:
             lacks.append(ARM_WIDTH)
         return Demand(None, limit, missing=tuple(lacks))
     name = min(gaps, key=gaps.__getitem__)
-    return Demand(gaps[name], limit, note=name, stated=_stated(pairs[name]))
+    frame = "" if solution.machine.cam.yoke is None else "; the frame is not in the case"
+    return Demand(gaps[name], limit, note=f"{name}{frame}", stated=_stated(pairs[name]))
 
 
 def _stated(pair: PartGap) -> dict[str, float]:

@@ -129,7 +129,8 @@ MODEL_LIMITS = (
         " under the pair of forces of a preload the camshaft there is rigid. The wear of clearance"
         " is that of one side, and both rollers load the life of one bearing. The moment of"
         " inertia of two arms is shared as that of two bars of one section with equal ends; the"
-        " couples of both contacts on the pin of their pivot add up by their sizes."
+        " couples of both contacts on the pin of their pivot add up by their sizes. The frame of a"
+        " yoke around its cam is not in the case: neither its strength nor its room is judged."
     ),
     ModelLimit(
         "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference"

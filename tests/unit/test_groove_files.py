@@ -8,6 +8,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from dxf_arcs import arc_points, away_from
 
 from camwright.geometry.arrays import rotation, uniform_turn
 from camwright.geometry.errors import InputError
@@ -79,7 +80,7 @@ def test_the_solid_has_the_mass_of_the_disc_less_its_groove(workshop):
 
 
 def test_both_walls_and_the_circle_are_in_the_drawing_file(workshop):
-    """Areas within the polylines of arcs, by the closed form of their segments."""
+    """Arcs within 1 um of the walls to be made, and areas by the closed form of their segments."""
     space = ezdxf.readfile(workshop / "contour.dxf").modelspace()
     lines = [each for each in space.query("LWPOLYLINE") if each.dxf.layer == "groove"]
     circles = [each.dxf.radius for each in space.query("CIRCLE") if each.dxf.layer == "cut"]
@@ -95,6 +96,8 @@ def test_both_walls_and_the_circle_are_in_the_drawing_file(workshop):
     _, contour = feeder()
     walls = [groove_wall(contour, side, 23.51e-3) for side in ("inner", "outer")]
     assert areas == pytest.approx([1e6 * wall.area() for wall in walls], rel=2e-6)
+    away = [away_from(wall, arc_points(line)) for wall, line in zip(walls, lines, strict=True)]
+    assert max(away) < 1.001e-3  # mm, the error of the arcs
 
 
 def test_dimensions_of_the_groove(workshop):

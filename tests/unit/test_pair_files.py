@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import ezdxf
 import numpy as np
 import pytest
+from dxf_arcs import arc_points, away_from
 
 from camwright.geometry.arrays import rotation, uniform_turn
 from camwright.geometry.errors import InputError
@@ -105,13 +106,9 @@ def test_solid_and_drawing_are_those_of_the_contour(workshops, name, end):
     # OpenCASCADE integrates along splines of the contour
     assert volume == pytest.approx(area * cam.width, rel=1e-6)
     space = ezdxf.readfile(workshops[name] / f"contour{end}.dxf").modelspace()
-    lines = [np.array(each.get_points("xy")).T for each in space.query('LWPOLYLINE[layer=="cut"]')]
-    drawn = max(lines, key=lambda points: np.hypot(*points).max())
-    theta = uniform_turn(36_000)
-    points, normal = 1e3 * surface.points(theta), surface.normal(theta)
-    nearest = [int(np.hypot(*(points - at[:, None])).argmin()) for at in drawn.T]
-    off = ((drawn - points[:, nearest]) * normal[:, nearest]).sum(axis=0)
-    assert np.abs(off).max() < 1e-3  # mm, the error of the arcs
+    lines = space.query('LWPOLYLINE[layer=="cut"]')
+    drawn = max(lines, key=lambda line: np.abs(line.get_points("xy")).max())
+    assert away_from(surface, arc_points(drawn)) < 1.001e-3  # mm, the error of the arcs
     notes = [each.dxf.text for each in space.query('TEXT[layer=="note"]')]
     assert notes[1:] == [*notes_of(case, end), *second_track_notes(case, contour, end)]
 
