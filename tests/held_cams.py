@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
@@ -60,3 +61,26 @@ def landing_of(
     exact = solve_ivp(flown, (0.0, 0.1), begin, events=lands, rtol=1e-10, atol=1e-14)
     theta, moving = start + speed * exact.t_events[0][0], exact.y_events[0][0][1]
     return float(theta), float(-moving if first else moving - opening(theta))
+
+
+def turned_by_friction(
+    targets: Array, limit: Array, inertia: float, step: float, turns: int = 4
+) -> Array:
+    """Speed of the surface of a roller past its centre (n,), m/s, over the last of some turns after
+    rolling: it follows the track as far as friction moves the mass of its rim. Where friction never
+    suffices, what it begins with remains.
+
+    Parameters
+    ----------
+    targets : array (n,)   speed of rolling, m/s
+    limit : array (n,)     greatest friction, N
+    inertia : float        moment of inertia over the radius squared, kg
+    step : float           time between the angles, s
+    """
+    surface, speed = np.zeros(targets.size), float(targets[-1])
+    for _ in range(turns):
+        for k, (target, most) in enumerate(zip(targets.tolist(), limit.tolist(), strict=True)):
+            change = most * step / inertia
+            speed = min(max(target, speed - change), speed + change)
+            surface[k] = speed
+    return surface

@@ -649,30 +649,35 @@ def landing_balance(solution: Solution) -> Demand | None:
     CROSSOVER_SLIP,
     title="Maximum slip of the roller at a crossover",
     tier=Tier.SCREENING,
-    method="the roller keeps its spin in flight: one alone in a groove lands where it is to turn"
-    " the other way, one of two with the spin at which it left its track",
+    method="spin of each roller by the friction of its tracks and the drag of its bearing, at equal"
+    " angles, without the flights",
     lift_can_help=True,
     needs="roller",
     closed_by="form",
     if_limited=True,
-    formula="2 w v <= limits.crossover_slip; w: cam speed, v: at the landing, of one roller in a"
-    " groove the speed along the pitch curve by the cam angle, of two rollers half of the radius"
-    " times the change of the spin over the cam speed since the roller left its track",
-    symbols={"w": f"{STATED} [rad/s]", "v": f"{STATED} [mm]"},
+    formula="max |v| <= limits.crossover_slip; v: speed of the surface of the roller that carries"
+    " against its track",
+    symbols={"v": "slip_speed"},
     reason="It wears and heats roller and walls at the same places in each turn.",
-    values=(*given.LOADS, *_CLEARANCES),
+    values=(*given.LOADS, "roller.friction"),
     levers=(levers.one("cam.prime_radius", -1, 2.0),),
     page="Contact",
 )
 def crossover_slip(solution: Solution) -> Demand:
-    """Greatest slip of the roller's surface at a landing, m/s; 0 without a crossover."""
-    limit = solution.machine.limits[CROSSOVER_SLIP]
-    worst = _worst_impact(solution, lambda one: one.slip)
+    """Greatest slip of the roller that carries over the turn, m/s."""
+
+    def slip(cycle: Cycle) -> Array | None:
+        contact = cycle.rolling.contact
+        return None if contact is None else np.abs(contact.slip)
+
+    machine, worst = solution.machine, _of_turns(solution, slip, 1.0)
+    limit = machine.limits[CROSSOVER_SLIP]
     if worst is None:
-        return Demand(0.0, limit, note=_no_landing(solution))
-    speed = worst.cycle.cam_speed
-    stated = {"w": speed, "v": 0.5 * worst.value / speed}
-    return Demand(worst.value, limit, worst.at, note=worst.words, stated=stated)
+        lacks = () if machine.follower.friction is not None else ("roller.friction",)
+        return Demand(None, limit, missing=lacks)
+    value, cycle, k = worst
+    at = Extreme(value, cycle.load_case, float(cycle.theta[k]))
+    return Demand(value, limit, at)
 
 
 @check(

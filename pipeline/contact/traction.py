@@ -240,18 +240,12 @@ def rolling_contact(
     ----------
     Carter (1926) for the creepage; Moreau (1988) for the steps.
     """
-    positive("roller.radius", radius, "m")
-    positive("period", period, "s")
-    force = np.maximum(finite("normal_force", normal_force), 0.0)
-    rolling, limit = finite("spin", spin), drag.friction * force
-    rate = finite("spin_acceleration", spin_acceleration)
-    speed = np.abs(finite("rolling_speed", rolling_speed))
-    step = period / force.size
-    resisting = drag.bearing_torque(force)
-    demand = rolling_demand(drag.inertia, resisting, rolling, rate, radius)
-    tangential, turning = _steps(rolling, demand, limit, resisting, drag.inertia, radius, step)
-    slip = radius * (rolling - turning)
-    sliding = np.abs(slip) > _SPEED_CONVERGED * radius * np.abs(rolling).max(initial=1e-300)
+    demand, tangential, slip = rolling_slip(
+        normal_force, spin, spin_acceleration, drag=drag, radius=radius, period=period
+    )
+    limit = drag.friction * np.maximum(normal_force, 0.0)
+    speed, step = np.abs(finite("rolling_speed", rolling_speed)), period / limit.size
+    sliding = slip != 0.0
     share = np.divide(np.abs(tangential), limit, out=np.zeros_like(limit), where=limit > 0)
     creep = creepage(np.clip(share, 0, 1), drag.friction, half_width, relative_radius)
     gross = np.divide(np.abs(slip), speed, out=np.zeros_like(slip), where=speed > 0)
@@ -260,12 +254,37 @@ def rolling_contact(
     return RollingContact(
         demand=demand,
         force=tangential,
-        slip=np.where(sliding, slip, 0.0),
+        slip=slip,
         creepage=creep,
         skidding=(sliding & (limit > 0)).astype(float),
         utilisation=np.divide(np.abs(demand), limit, out=idle, where=limit > 0),
         loss=float(np.sum(np.abs(tangential) * creep * speed) * step),
     )
+
+
+def rolling_slip(
+    normal_force: ArrayLike,
+    spin: ArrayLike,
+    spin_acceleration: ArrayLike,
+    *,
+    drag: Drag,
+    radius: float,
+    period: float,
+) -> tuple[Array, Array, Array]:
+    """Tangential force that rolling without slip needs and that which is transmitted (n,), N, and
+    slip of the roller (n,), m/s; see `rolling_contact`.
+    """
+    positive("roller.radius", radius, "m")
+    positive("period", period, "s")
+    force = np.maximum(finite("normal_force", normal_force), 0.0)
+    rolling, limit = finite("spin", spin), drag.friction * force
+    rate, resisting = finite("spin_acceleration", spin_acceleration), drag.bearing_torque(force)
+    demand = rolling_demand(drag.inertia, resisting, rolling, rate, radius)
+    step = period / force.size
+    tangential, turning = _steps(rolling, demand, limit, resisting, drag.inertia, radius, step)
+    slip = radius * (rolling - turning)
+    sliding = np.abs(slip) > _SPEED_CONVERGED * radius * np.abs(rolling).max(initial=1e-300)
+    return demand, tangential, np.where(sliding, slip, 0.0)
 
 
 def _steps(

@@ -1,4 +1,4 @@
-"""Landings of a follower between two tracks in a turn of a load case: force, pressure, slip."""
+"""Landings of a follower between two tracks in a turn of a load case: force, pressure, energy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import scipy
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.follower_path import FollowerPath
-from camwright.geometry.second_track import SecondFollower, relative_radius, touch_of, tracks_of
+from camwright.geometry.second_track import SecondFollower, relative_radius, touch_of
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.conforming_line import concave_line
@@ -29,14 +29,13 @@ class WallImpact(NamedTuple):
     """Landing on a wall, with what it does there.
 
     flight; force : greatest normal force, N, of the mass on the stiffness of the follower, NaN
-    without one; pressure : under it, Pa, of Hertz or conforming; slip : of the roller's surface on
-    the wall as it lands, m/s, 0 on the wall that it has left; loss : energy that it takes, J
+    without one; pressure : under it, Pa, of Hertz or conforming; loss : energy that it
+    takes, J
     """
 
     flight: Landing
     force: float
     pressure: float
-    slip: float
     loss: float
 
 
@@ -215,23 +214,17 @@ def impacts(machine: Machine, contour: Contour) -> tuple[WallImpact, ...]:
 def landed(machine: Machine, contour: Contour, flown: Flights | None) -> tuple[WallImpact, ...]:
     """What the landings of flights do to their tracks.
 
-    A roller keeps its spin in flight: on the other wall of a groove it is to turn the other way, so
-    that its surface slips at twice the speed along the path; one that has a track of its own has
-    kept the spin with which it last left it. A mass m that lands at v under a force F on a
+    A mass m that lands at v under a force F on a
     stiffness k is stopped by F + sqrt(F^2 + k m v^2); contact and walls are taken as rigid.
     """
-    landings, second = () if flown is None else flown.landings, machine.cam.second
+    landings = () if flown is None else flown.landings
     ended = [k for k, one in enumerate(landings) if np.isfinite(one.landing)]
-    force, pressure, slip = np.full((3, len(landings)), np.nan)
+    force, pressure = np.full((2, len(landings)), np.nan)
     if ended:
         force[ended], pressure[ended] = _struck(machine, contour, [landings[k] for k in ended])
-    for k in ended:
-        crosses = landings[k].crosses
-        slip[k] = machine.cam_speed * _slip(contour, second, landings, k) if crosses else 0.0
-    every = zip(landings, force.tolist(), pressure.tolist(), slip.tolist(), strict=True)
+    every = zip(landings, force.tolist(), pressure.tolist(), strict=True)
     return tuple(
-        WallImpact(one, pushed, pressed, slid, one.loss(machine.mass))
-        for one, pushed, pressed, slid in every
+        WallImpact(one, pushed, pressed, one.loss(machine.mass)) for one, pushed, pressed in every
     )
 
 
@@ -263,32 +256,3 @@ def _struck(machine: Machine, contour: Contour, landings: Sequence[Landing]) -> 
             hertzian[full] = line.p0
     pressure[sound] = hertzian
     return force, pressure
-
-
-def _slip(
-    contour: Contour, second: SecondFollower | None, flights: Sequence[Landing], number: int
-) -> float:
-    """Slip of the roller on the track on which it lands, m: sliding speed over cam speed.
-
-    Of one roller in a groove, twice the speed along the path. Of two rollers, radius times the
-    change of the spin over the cam speed since that of this track last left it.
-
-    Parameters
-    ----------
-    second : SecondFollower or None     None: both tracks are the walls of a groove
-    flights, number : sequence, int   landings over the turn, in their order, and which of them
-    """
-    flight = flights[number]
-    if not contour.rolls:  # a face slides as ever
-        return 0.0
-    if second is None:
-        return 2.0 * float(contour.pitch.speed_and_curvature(np.array([flight.landing]))[0][0])
-    count = len(flights)
-    earlier = [flights[(number - k) % count] for k in range(1, count + 1)]
-    left = next((one for one in earlier if one.start == flight.wall), flight)
-    disc = tracks_of(contour, second)[0 if flight.wall == INNER else 1]
-    track = disc.contour.require_roller()
-    angles = np.array([flight.landing, left.take_off]) + disc.turn
-    motion = track.motion(track.lift.jet(angles, 2))
-    there, before = np.asarray(motion.rolling)
-    return float(track.roller_radius * abs(there - before))

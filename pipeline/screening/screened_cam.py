@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.follower_path import Motion
@@ -16,8 +18,9 @@ from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.oil_film import LineFilm, lambda_ratio, minimum_film
+from camwright.pipeline.contact.traction import Drag, rolling_slip
 from camwright.pipeline.cycle.contact_heat import flash_rise
-from camwright.pipeline.cycle.loaded_cam import CarriedCam, OfGuides, face_of
+from camwright.pipeline.cycle.loaded_cam import CarriedCam, OfGuides, face_of, roller_of
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
@@ -452,10 +455,59 @@ class ScreenedCam(CarriedCam):
         modulus = self.numbers["contact.modulus"]
         return np.sqrt(half_width_square(load, self.relative_radius, modulus))
 
+    @cached_property
+    def roller_slip(self) -> Array:
+        """Greatest slip of the roller that carries (m,), m/s; NaN where it is not known."""
+        drag, shape, greatest = self.drag, self.normal.shape, list[list[float]]()
+        if drag is None or self.numbers.known_case.facing.friction is None:
+            return np.full(shape[0], np.nan)
+        for track, force, carries in self._rollers:
+            size = roller_of(track).size
+            rate = self.speed**2 * roller_of(track).slide_slope / size
+            parts = force, self.speed * track.rolling, rate, np.abs(size), self.speed
+            rows = (np.broadcast_to(each, shape) for each in (*parts, self.rotor_inertia))
+            slips = [_slip_of(drag, *row) for row in zip(*rows, strict=True)]
+            greatest.append([float(np.max(np.abs(each), where=at, initial=0.0))
+                             for each, at in zip(slips, carries, strict=True)])  # fmt: skip
+        return np.max(greatest, axis=0)
+
+    @property
+    def _rollers(self) -> Sequence[tuple[Motion, Array, NDArray[np.bool_]]]:
+        """Motion, normal force, N, and where it carries, of each roller of a cam that pulls."""
+        every = np.ones(self.normal.shape, dtype=bool)
+        if self.block.second is None:
+            return [(self.motion, self.normal, every)]
+        tracks, on = self.block.both_tracks(self.block.motion), (self.wall > 0.0, self.wall < 0.0)
+        squeeze = self.block.squeeze
+        if squeeze is None:
+            forces = [np.where(at, self.normal, 0.0) for at in on]
+        else:
+            along = squeeze.forces(self.axial)
+            forces = [one * track.gain for one, track in zip(along, tracks, strict=True)]
+        return list(zip(tracks, forces, on, strict=True))
+
     @property
     def _unsolved(self) -> Array:
         """Pressure along a line that is not solved: its lower bound, or NaN."""
         return self.p0_line if has_many_shapes(self.block) else np.full_like(self.p0_line, np.nan)
+
+
+def _slip_of(
+    drag: Drag,
+    force: Array,
+    spin: Array,
+    rate: Array,
+    radius: Array,
+    speed: Array,
+    inertia: Array,
+) -> Array:
+    """Slip of a roller over a turn (n,), m/s, NaN where force or spin are not known, by values
+    (n,); speed of the cam and inertia are those of every angle.
+    """
+    if not np.isfinite([force, spin, rate]).all():
+        return np.full(force.shape, np.nan)
+    own, period = replace(drag, inertia=float(inertia[0])), FULL_TURN / float(speed[0])
+    return rolling_slip(force, spin, rate, drag=own, radius=float(radius.max()), period=period)[2]
 
 
 _FRICTION_ROUNDS, _FRICTION_SETTLED = 30, 1e-6  # of the guide friction

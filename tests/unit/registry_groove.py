@@ -7,6 +7,7 @@ import hand_calculations as by_hand
 import made_trial as made
 import numpy as np
 from check_tools import by_limit, check, limited, tried
+from held_cams import turned_by_friction
 from trial_variants import NAN
 from trial_variants import unknown as unknown_cam
 
@@ -64,9 +65,7 @@ def without_flight() -> Solution:
     base = flown()
     (cycle,) = base.cycles
     lost = tuple(
-        one._replace(
-            flight=one.flight._replace(speed=np.nan), force=np.nan, pressure=np.nan, slip=np.nan
-        )
+        one._replace(flight=one.flight._replace(speed=np.nan), force=np.nan, pressure=np.nan)
         for one in cycle.impacts
     )
     bare = made.changed_cycle(cycle)
@@ -209,6 +208,31 @@ def slip_temperature() -> float:
     flash = 1.11 * heat / (carried * np.sqrt(2.0 * cycle.contact.half_width))
     cold = machine.lubricant.temperature - 273.15
     return float(cold + 0.47 * 1.2 * flash.mean() + flash.max())
+
+
+def without_slip() -> Solution:
+    """A roller of which the spin is not known."""
+    base = flown()
+    (cycle,) = base.cycles
+    bare = made.changed_cycle(cycle)
+    contact = replace(cycle.rolling.contact, slip=NAN)
+    bare.results["rolling"] = replace(cycle.rolling, contact=contact)
+    return replace(base, cycles=(bare,))
+
+
+def crossover_slip() -> float:
+    """Greatest slip, m/s, of a roller that the friction of both walls turns, angle by angle."""
+    solution = made.in_groove()
+    (cycle,) = solution.cycles
+    machine, theta = cycle.machine, made.THETA
+    pace = machine.cam_speed * np.hypot(
+        HALF * np.sin(theta), made.BASE + HALF * (1.0 - np.cos(theta))
+    )
+    target = np.where(cycle.loads.axial_force < 0.0, -pace, pace)
+    limit = machine.roller.friction * cycle.loads.normal_force
+    mass = machine.roller.rotor_inertia / made.ROLLER**2
+    step = FULL_TURN / theta.size / machine.cam_speed
+    return float(np.abs(target - turned_by_friction(target, limit, mass, step)).max())
 
 
 def oiled(**values) -> Solution:
@@ -376,9 +400,9 @@ tried(
 by_limit(
     "crossover_slip",
     "crossover_slip",
-    without_flight,
-    2.0 * made.in_groove().machine.cam_speed * landing(outer=True)[2],
-    "twice the speed of the roller centre",
+    without_slip,
+    crossover_slip(),
+    "speed of the roller centre less that of the surface, which friction over its mass turns",
     base=flown,
 )
 tried(

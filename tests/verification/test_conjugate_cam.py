@@ -12,7 +12,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from held_cams import assert_as_closed_by_a_strong_spring, landing_of
+from held_cams import assert_as_closed_by_a_strong_spring, landing_of, turned_by_friction
 from scipy.integrate import cumulative_trapezoid
 
 from camwright.geometry.arrays import uniform_turn
@@ -232,7 +232,7 @@ def test_without_clearance_and_compliance_the_track_is_the_sign_of_the_force(nam
 
 
 def test_landings_of_an_arm_in_its_groove_by_an_integrator():
-    """Speed within 1e-3, slip of twice the pace of the centre, energy of a turn to 1e-6."""
+    """Speed within 1e-3, energy of a turn to 1e-6."""
     cycle, machine, _ = running("groove")
     path, speed, arm = cycle.contour.pitch, machine.cam_speed, cycle.contour.pitch.arm
     pivot = machine.pivot
@@ -260,12 +260,8 @@ def test_landings_of_an_arm_in_its_groove_by_an_integrator():
     first = [one for one in history.landings if one.crosses and not one.leaving]
     assert {one.wall for one in first} == {1.0, -1.0}
     for one in first:
-        theta, against = landing_of(one, lambda theta: required(theta) / machine.mass, gap, speed)
+        _, against = landing_of(one, lambda theta: required(theta) / machine.mass, gap, speed)
         assert one.speed == pytest.approx(against, rel=1e-3)
-        pace = path.points(theta + 1e-5) - path.points(theta - 1e-5)
-        (landed,) = (each for each in cycle.impacts if each.flight.take_off == one.take_off)
-        slip = 2.0 * speed * np.hypot(*pace) / 2e-5
-        assert landed.slip == pytest.approx(slip, rel=1e-3)
 
 
 def test_an_arm_is_pulled_to_its_path_by_the_outer_wall():
@@ -489,25 +485,32 @@ def test_landings_by_an_adaptive_integrator():
         assert flight.speed == pytest.approx(against, rel=1e-3)
 
 
-def test_a_roller_lands_with_the_spin_that_it_left_with():
-    """Slip: its radius times the change of the spin of rolling since it last carried."""
-    cycle, machine, track = running("stem")
-    path, disc = cycle.contour.pitch, track.contour
-    radii = {1.0: (path, 0.0, machine.roller.radius),
-             -1.0: (disc.pitch, np.pi, disc.roller_radius)}  # fmt: skip
-    crossed = [one for one in cycle.impacts if one.flight.crosses]
-    assert len(crossed) >= 2
-    for k, one in enumerate(crossed):
-        before = crossed[k - 1].flight
-        pitch, turn, radius = radii[one.flight.wall]
-        paces = []
-        # the disc was left at the flight before this one
-        for theta in (one.flight.landing, before.take_off):
-            step = 1e-5
-            chord = pitch.points(theta + turn + step) - pitch.points(theta + turn - step)
-            paces.append(np.hypot(*chord) / (2.0 * step) / radius)
-        slip = machine.cam_speed * radius * abs(paces[0] - paces[1])
-        assert one.slip == pytest.approx(slip, rel=1e-5, abs=1e-9)
+def test_rollers_slip_where_their_friction_is_too_small():
+    """crossover_slip: both spins by steps a twentieth as long, each under its own friction; within
+    3 %, as the force goes through zero in half a degree.
+
+    By the spin with which a roller left its disc alone it were 0.078 of 0.186 m/s: the friction
+    before the crossover no longer turns it as the disc does.
+    """
+    made = trial("stem")
+    cycle = max(made.cycles, key=lambda each: each.cam_speed)
+    machine, path = cycle.machine, cycle.contour.pitch
+    track, roller = machine.cam.second.track(path), machine.roller
+    theta, fine = cycle.theta, uniform_turn(20 * cycle.theta.size)
+    signed = cycle.loads.wall * cycle.loads.normal_force
+    signed = np.interp(fine, theta, signed, period=2.0 * np.pi)
+    step, greatest = 2.0 * np.pi / fine.size / cycle.cam_speed, []
+    for pitch, turn, radius, force in (
+        (path, 0.0, roller.radius, signed),
+        (track.contour.pitch, np.pi, track.contour.roller_radius, -signed),
+    ):
+        chord = pitch.points(fine + turn + 1e-5) - pitch.points(fine + turn - 1e-5)
+        pace = cycle.cam_speed * np.hypot(*chord) / 2e-5
+        limit = roller.friction * np.maximum(force, 0.0)
+        surface = turned_by_friction(pace, limit, roller.rotor_inertia / radius**2, step)
+        greatest.append(np.abs(pace - surface)[limit > 0.0].max())
+    check = next(each for each in made.checks if each.id == "crossover_slip")
+    assert check.demand == pytest.approx(max(greatest), rel=0.03)
 
 
 # --- sweeps, discs and the case ---------------------------------------------------------------
