@@ -38,7 +38,7 @@ from camwright.pipeline.case.scope_section import (
     ScopeName,
 )
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd
-from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.contact.cam_body import CamBody, CamConjugate
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.finite_length.axial_drop import (
     BodyCrown,
@@ -283,14 +283,17 @@ class Machine(Displayed):
 
     @property
     def arm_bar(self) -> ArmBar | None:
-        """Arm as a beam; None of a stem, and of an arm that is not described."""
-        output = 0.0 if self.output is None else self.output.reduced_mass
-        pair = self.cam.conjugate
-        bars = ArmBar.each(
+        """Arm as a beam, the first of two; None of a stem, and of an arm that is not described."""
+        return next(iter(self._arm_bars), None)
+
+    @property
+    def _arm_bars(self) -> tuple[ArmBar, ...]:
+        """Each arm as a beam; () where it is not described."""
+        output, pair = 0.0 if self.output is None else self.output.reduced_mass, self.cam.conjugate
+        return ArmBar.each(
             *(self.arm, self.follower, self.mass - output, self.spring.link),
             None if pair is None else pair.arm_length,
         )
-        return next(iter(bars), None)
 
     @property
     def tilting(self) -> FollowerTilt:
@@ -431,31 +434,61 @@ class Machine(Displayed):
         The stem counts to its far guide; an arm bends with its fork, on the bush of its pivot. The
         line contact and the cam, an arm that is not described and needles are taken as rigid.
         """
+        return self._compliances_to(None)
+
+    def _compliances_to(self, pair: CamConjugate | None) -> dict[str, float]:
+        """As `compliances`, of the second disc of a pair along the travel of its own roller, with
+        the second arm, or the stem on to that roller; None: of the first.
+        """
         parts, held = self.follower.elastic(self.contact_width, self.spring.preload)
-        reach, bar = self.overhang_at_max_lift + self.guides.spacing - held, self.arm_bar
+        reach, bars = self.overhang_at_max_lift + self.guides.spacing - held, self._arm_bars
+        beyond, spacing = (0.0, 0.0) if pair is None else (pair.distance or 0.0, pair.spacing)
         members = {
             **parts,
-            **({} if bar is None else {"fork": None, "arm": bar.compliance}),
-            "pivot": self._pivot_compliance,
-            "stem": stem_compliance_along(self.stem, reach) if self.arm is None else None,
-            "camshaft": None if self.camshaft is None else shaft_compliance(self.camshaft),
+            **({"fork": None, "arm": bars[0 if pair is None else 1].compliance} if bars else {}),
+            "pivot": self._pivot_compliance(sprung=pair is None),
+            "stem": stem_compliance_along(self.stem, reach + beyond) if self.arm is None else None,
+            "camshaft": None if self.camshaft is None else shaft_compliance(self.camshaft, spacing),
         }
         return {name: each for name, each in members.items() if each is not None}
 
-    @property
-    def _pivot_compliance(self) -> float | None:
-        """Compliance of the bush of the pivot, m/N, reduced to the end of the arm; None without a
-        bush.
+    def _pivot_compliance(self, *, sprung: bool) -> float | None:
+        """Compliance of the bush of the pivot, m/N, reduced to the end of an arm, on which the
+        spring acts or not; None without a bush.
         """
         if self.arm is None or self.pivot is None or self.pivot.bush is None:
             return None
-        bush, share = self.pivot.bush, self.arm.pivot_share(float(self.arm.held(self.spring.link)))
+        held = float(self.arm.held(self.spring.link)) if sprung else 0.0
+        bush, share = self.pivot.bush, self.arm.pivot_share(held)
         return share**2 / (bush.foundation_modulus * bush.length)
 
     @property
+    def track_stiffnesses(self) -> tuple[float, ...]:
+        """Stiffness from each disc to the follower mass along the travel of the first roller, N/m:
+        stated, else members in series.
+        """
+        pair = self.cam.conjugate
+        if self.stiffness is not None:
+            return (self.stiffness,) if pair is None else (self.stiffness, self.stiffness)
+        first = in_series(self.compliances.values())
+        if pair is None:
+            return (first,)
+        return first, in_series(self._compliances_to(pair).values()) / self._leverage**2
+
+    @property
+    def _leverage(self) -> float:
+        """Force along the travel of the second roller over that of the first; 1 of a stem."""
+        pair = self.cam.conjugate
+        if self.arm is None or pair is None or pair.arm_length is None:
+            return 1.0
+        return self.arm.length / pair.arm_length
+
+    @property
     def axial_stiffness(self) -> float:
-        """Stiffness from cam to follower mass, N/m: stated, else members in series."""
-        return in_series(self.compliances.values()) if self.stiffness is None else self.stiffness
+        """Stiffness from cam to follower mass, N/m: stated, else members in series; of two discs
+        that of the softer track.
+        """
+        return min(self.track_stiffnesses)
 
     @property
     def follower_frequency(self) -> float:
@@ -526,11 +559,15 @@ class Machine(Displayed):
 
         On a stem those of roller, pin and fork, of the second with the stem between the rollers,
         which goes on there with its section: stem and camshaft beyond bear the axial force alone.
-        On arms, and of a stated stiffness, those from cam to follower mass.
+        On arms, and of a stated stiffness, those from each disc to the follower mass.
         """
-        compliance, pair = 1.0 / self.axial_stiffness, self.cam.conjugate
-        if self.arm is not None or self.stiffness is not None or pair is None:
-            return Compliances(compliance, compliance)
+        pair = self.cam.conjugate
+        if self.stiffness is not None:
+            return Compliances(1.0 / self.stiffness, 1.0 / self.stiffness)
+        if self.arm is not None or pair is None:
+            first, *others = self.track_stiffnesses
+            second = others[0] if others else first
+            return Compliances(1.0 / first, 1.0 / (second * self._leverage**2))
         parts, _ = self.follower.elastic(self.contact_width, self.spring.preload)
         alone = sum(value for value in parts.values() if value is not None)
         if not alone > 0.0:

@@ -20,6 +20,7 @@ from camwright.pipeline.contact.conforming_line import concave_line
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.follower.crossover import INNER, OUTER, SAME_ANGLE, Landing, Walls
 from camwright.pipeline.follower.follower_forces import Carried, RequiredForce
+from camwright.pipeline.follower.shaft_strength import of_disc
 
 FINE = 14400
 """Angles of a turn at which the force of a flight is evaluated."""
@@ -233,7 +234,8 @@ def _struck(machine: Machine, contour: Contour, landings: Sequence[Landing]) -> 
     theta = np.array([one.landing for one in landings]) % FULL_TURN
     wall, speed = np.array([(one.wall, one.speed) for one in landings]).T
     pressed = np.maximum(np.array([one.force for one in landings]), 0.0)
-    axial = pressed + np.sqrt(pressed**2 + machine.axial_stiffness * machine.mass * speed**2)
+    stiffness = of_disc(machine.track_stiffnesses, wall < 0.0)
+    axial = pressed + np.sqrt(pressed**2 + stiffness * machine.mass * speed**2)
     second = machine.cam.second
     there = Carried.at(contour.pitch, machine.system, theta, wall)
     force = axial / (there.slide.lever * np.cos(there.pressure_angle))

@@ -85,11 +85,11 @@ def stem_compliance_along(stem: Stem, length: float) -> float:
     return float(length / (stem.elastic_modulus * area))
 
 
-def shaft_compliance(shaft: Camshaft) -> float | None:
-    """Bending and shear compliance of the camshaft at the cam, m/N; None without diameter or
-    material.
+def shaft_compliance(shaft: Camshaft, spacing: float = 0.0) -> float | None:
+    """Bending and shear compliance of the camshaft at the cam, or at a disc a spacing, m, from it,
+    m/N; None without diameter or material.
 
-    A plain bar on two hinged bearings, the cam between or beyond them.
+    A plain bar on two hinged bearings, the disc between or beyond them.
 
     References
     ----------
@@ -99,11 +99,11 @@ def shaft_compliance(shaft: Camshaft) -> float | None:
         return None
     card = shaft.material
     bar = Stem(shaft.diameter, card.E, card.nu, shear=True)
-    spacing, first = shaft.bearing_spacing, shaft.cam_position
-    second = spacing - first
+    span, first = shaft.bearing_spacing, shaft.cam_position + spacing
+    second = span - first
     if first >= 0.0 and second >= 0.0:
-        bending = (first * second) ** 2 / (3.0 * bar.bending_stiffness * spacing)
-        return bending + first * second / spacing * bar.shear_flexibility
+        bending = (first * second) ** 2 / (3.0 * bar.bending_stiffness * span)
+        return bending + first * second / span * bar.shear_flexibility
     over = -min(first, second)
-    bending = over**2 * (spacing + over) / (3.0 * bar.bending_stiffness)
-    return bending + over * (1.0 + over / spacing) * bar.shear_flexibility
+    bending = over**2 * (span + over) / (3.0 * bar.bending_stiffness)
+    return bending + over * (1.0 + over / span) * bar.shear_flexibility

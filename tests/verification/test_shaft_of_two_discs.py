@@ -125,3 +125,28 @@ def test_both_discs_twist_against_the_gear(gear, most):
     squares = eigh(whole, np.diag([inertias[each] for each in along]), eigvals_only=True)
     two = rotor.shaft * rotor.inertia / (rotor.gear * rotor.cam)
     assert 1.0 - 1e-9 <= np.sqrt(two / squares[1]) < most
+
+
+def test_each_roller_stands_on_its_own_arm_and_disc(measured):
+    """Arm of 85 mm for 90 and a camshaft overhung by 15 mm, whose bending is that of the elements
+    and whose shear is by the work of a unit load; along the travel of the roller of each.
+    """
+    machine = solved("preloaded_arm").machine
+    shaft, card = machine.camshaft, machine.camshaft.material
+    shaft = replace(shaft, bearing_spacing=0.06)
+    machine = replace(machine, camshaft=shaft)
+    over, area = 0.015, 0.25 * np.pi * shaft.diameter**2
+    kappa = 6.0 * (1.0 + card.nu) / (7.0 + 6.0 * card.nu)
+    shear = (over + 0.06 * (over / 0.06) ** 2) / (kappa * area * card.E / (2.0 * (1.0 + card.nu)))
+    yielding = flexibility(shaft, (0.035, 0.075))[1, 1] + shear
+    members = machine.compliances
+    alone = replace(machine.arm_bar, length=0.085, held=0.0).compliance
+    wanted = sum(members.values()) - members["camshaft"] - members["arm"] + yielding + alone
+    first, second = machine.roller_compliances
+    assert first == pytest.approx(sum(members.values()), rel=1e-12)
+    measured("compliance of a second roller", second, wanted, rtol=1e-9)
+    assert yielding > 1.3 * members["camshaft"]
+    assert machine.track_stiffnesses == pytest.approx(
+        (1.0 / first, (0.085 / 0.09) ** 2 / second), rel=1e-12
+    )
+    assert machine.axial_stiffness == min(machine.track_stiffnesses)
