@@ -13,9 +13,10 @@ import tempfile
 import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator
+from copy import deepcopy
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -48,6 +49,11 @@ NUMBERS = (
     "1.5.2", "0x10", "1_000", "1,5", "9" * 400, "1e5", "1e-5", "١٢", "true", '""', "[]", "{}", "1e",
     "2024-01-01", '"10 m"', '"1e300 mm"', '"-3 N"', '"5 furlong"', '"NaN mm"', '"1 mm 2"',
 )  # fmt: skip
+VALUES: tuple[object, ...] = (
+    {}, [], True, "", "x", 0, -1, 1e308, "1e300 mm", "1e-300 mm", "-3 mm", "0 mm", {"value": 1},
+    {"text": "x"}, [{}], [1, [2]],
+)  # fmt: skip
+"""Values of every type that TOML has, and of sizes whose squares and quotients are no numbers."""
 WORDS = (
     b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b"\r", b"\n\n\n", b";", b"\t", b",", b'"', b"'''", b'"""',
     b"[", b"]", b"{", b"}", b"[[", b"=", b"#", b"\\", b"../../etc/passwd", b"<script>", b"%s{0}",
@@ -103,7 +109,7 @@ def sources() -> list[Source]:
         if first.data_name:
             files[first.data_name] = first.data.encode()
             every.append(Source(first.data_name, files, _case_beside))
-    every += _alone(_cases(), read_whole)
+    every += _alone(cases(), read_whole)
     rows = "".join(f"{k},{50 + (k % 90) / 30}\n" for k in range(360))
     lift = first_case("first", "lift").text
     table = '[lift]\nfile = "lift.csv"\n'
@@ -117,7 +123,7 @@ def sources() -> list[Source]:
     return every
 
 
-def _cases() -> list[Path]:
+def cases() -> list[Path]:
     """Shipped cases without data files; in the folder of motions cams that pull, and a gravity."""
     return [
         each for name in (".", "motions") for each in sorted((ROOT / "cases" / name).glob("*.toml"))
@@ -156,6 +162,23 @@ def scaled(content: bytes, rng: random.Random) -> bytes:
 
 _NUMBER = re.compile(r"""(\w+ *= *(?:"|\[ *|\{ *value *= *)?)(\d+\.?\d*)(?![\d.])(.*)""")
 """Line of a key with a number: what stands before it, the number, the rest of the line."""
+
+
+def exchanged(tables: dict[str, Any], rng: random.Random) -> dict[str, Any]:
+    """Tables of a case with one of `VALUES` in the place of a table, a list or a value."""
+    new = deepcopy(tables)
+    held, key = rng.choice([*_places(new)])
+    held[key] = rng.choice(VALUES)
+    return new
+
+
+def _places(held: dict[str, Any] | list[Any]) -> Iterator[tuple[Any, str | int]]:
+    """Each place below a table or list: what holds it, and its key or index there."""
+    rows = held.items() if isinstance(held, dict) else enumerate(held)
+    for key, value in rows:
+        yield held, key
+        if isinstance(value, (dict, list)):
+            yield from _places(value)
 
 
 def _bytes_changed(content: bytes, rng: random.Random) -> bytes:
@@ -237,13 +260,13 @@ _MUTATIONS = (
 def tried(count: int, seed: int) -> Iterator[Outcome]:
     """Try mutated inputs, one after another."""
     every = sources()
-    cases = [each for each in every if each.read is read_whole]
+    whole = [each for each in every if each.read is read_whole]
     with tempfile.TemporaryDirectory() as name:
         for number in range(count):
             own = seed * 1_000_003 + number
             rng = random.Random(own)
             is_scaled = rng.random() < _SCALED_SHARE
-            source = rng.choice(cases if is_scaled else every)
+            source = rng.choice(whole if is_scaled else every)
             folder = Path(name)
             for other, content in source.files.items():
                 (folder / other).write_bytes(content)

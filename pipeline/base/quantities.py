@@ -490,7 +490,8 @@ def marks_of(part: type[Part]) -> Mapping[str, In | Count]:
 Length = Annotated[float, In("mm", above=0, at_most=10_000)]
 Angle = Annotated[float, In("deg")]
 Duration = Annotated[float, In("deg", above=0, at_most=720)]
-Mass = Annotated[float, In("g", above=0, at_most=1e6)]
+MASS = In("g", above=0, at_most=1e6)
+Mass = Annotated[float, MASS]
 Pressure = Annotated[float, In("MPa", above=0, at_most=1e6)]
 GasPressure = Annotated[float, In("kPa", above=0, at_most=1e5)]
 Temperature = Annotated[float, In("K", above=0, at_most=5000)]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from math import pi
-
 from camwright.geometry.arm_path import Arm
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
+from camwright.pipeline.base.quantities import MASS
+from camwright.pipeline.case.cards.part_table import read_value
 from camwright.pipeline.case.scope_section import OF_ARM, OF_STEM, is_stand_in
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 from camwright.pipeline.follower.arm import FollowerArm
@@ -74,13 +74,12 @@ def _mass(arm: Tables) -> float:
     """Mass at the end of the arm that has the stated moment of inertia about the pivot, kg: inertia
     over length squared.
     """
-    inertia = units.parse(arm["inertia"], "kg m^2", _INERTIA)
-    length = units.parse(arm.get("length"), "mm", "follower.arm.length")
-    if not inertia > 0.0:
-        raise InputError(_INERTIA, str(arm["inertia"]), "> 0 kg m^2")
-    if not length > 0.0:
-        raise InputError("follower.arm.length", str(arm["length"]), "> 0 mm")
-    return inertia / length**2
+    inertia, length = (read_value(FollowerArm, key, arm) for key in ("inertia", "length"))
+    mass = inertia / length / length
+    if not MASS.holds(mass):
+        limit = f"such that inertia over length squared, the mass at the end, is {MASS.limit}"
+        raise InputError(_INERTIA, str(arm["inertia"]), limit)
+    return mass
 
 
 def _prime_radius(arm: Tables, face: TomlValue | None) -> float:
@@ -97,12 +96,8 @@ def _prime_radius(arm: Tables, face: TomlValue | None) -> float:
     InputError
         If the start angle is not within 0 to 180 deg, or the face is beyond the cam axis.
     """
-    start = units.parse(arm["start_angle"], "deg", _START)
-    if not 0.0 < start < pi:
-        raise InputError(_START, str(arm["start_angle"]), "> 0 and < 180 deg")
-    distance, length = (
-        units.parse(arm.get(key), "mm", f"follower.arm.{key}")
-        for key in ("centre_distance", "length")
+    start, distance, length = (
+        read_value(FollowerArm, key, arm) for key in ("start_angle", "centre_distance", "length")
     )
     linkage = Arm(distance, length, 1.0)
     if not isinstance(face, dict) or "offset" not in face:

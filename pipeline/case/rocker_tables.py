@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
-from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.cards.part_table import read_part, read_value
 from camwright.pipeline.case.toml_text import Tables
+from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.rocker import Rocker
 
 _MASS, _FORCE = "mass", "force"
@@ -35,19 +36,16 @@ def with_rocker(tables: Tables) -> Tables:
     arm = follower.get("arm")
     if isinstance(arm, dict) and "length" not in arm:
         return tables  # refused when the arm is read
-    name = "follower.arm.length"
-    length = units.parse(arm["length"], "m", name) if isinstance(arm, dict) else None
+    length = read_value(FollowerArm, "length", arm) if isinstance(arm, dict) else None
     ratio = float(rocker.linkage(length).ratio(0.0))
     reduced = dict(follower)
     if _MASS in stated and "mass" in follower:
-        mass = units.parse(stated[_MASS], "kg", "rocker.mass")
-        if not mass > 0.0:
-            raise InputError("rocker.mass", str(stated[_MASS]), "> 0 kg")
-        total = units.parse(follower["mass"], "kg", "follower.mass") + mass * ratio**2
+        mass = read_value(Rocker, _MASS, stated, "output_mass")
+        total = units.parse(follower["mass"], "kg", "follower.mass") + mass * ratio * ratio
         reduced["mass"] = units.format(total, "g")
         table["output_mass"] = stated[_MASS]
     if _FORCE in stated:
-        force = units.parse(stated[_FORCE], "N", "rocker.force")
+        force = read_value(Rocker, _FORCE, stated, "output_force")
         if rocker.ratio is None or "external_force_file" in follower:
             limit = "left out without a constant ratio, or with follower.external_force_file"
             raise InputError("rocker.force", str(stated[_FORCE]), limit)

@@ -208,7 +208,7 @@ def with_stand_ins(tables: Tables) -> Tables:
     if "stem" in left_out and follower:
         whole.put("stem", "follower.stem_diameter", units.format(_STEM, "mm"))
         materials, own = whole.table("materials"), cam.get("material")
-        known = own if own in materials else next(iter(materials), None)
+        known = own if isinstance(own, str) and own in materials else next(iter(materials), None)
         whole.put("stem", "follower.stem_material", known)
         whole.put("stem", f"follower.{_OVERHANG}", _SHORT[0])
         if plate:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.engine.trigger_wheel import local_median
+from camwright.pipeline.engine.trigger_wheel import MISSING_MAX, local_median
 
 GAP = 1.5  # interval over local median: teeth are missing
 EVEN = (0.8, 1.25)  # of a single pitch; an additional tooth halves one
@@ -73,7 +73,7 @@ def tooth_pattern(times: Array) -> ToothPattern:
     if not gaps.size:
         return ToothPattern(None)
     gaps = _gaps(intervals, int(np.round(np.median(share[gaps]))) - 1)
-    missing = _missing(intervals, gaps, int(np.ceil(share.max())))
+    missing = _missing(intervals, gaps, min(int(np.ceil(share.max())), MISSING_MAX))
     between = np.diff(gaps)
     rows = _recurring(between)
     if rows:

@@ -20,7 +20,8 @@ REGULAR = (0.6, 1.4)  # time of a pitch over those beside it; an edge missed mak
 
 
 Teeth = Annotated[int, Count(4, 720)]
-MissingTeeth = Annotated[int, Count(0, 180)]
+MISSING_MAX = 180
+MissingTeeth = Annotated[int, Count(0, MISSING_MAX)]
 ToothShare = Annotated[float, In(above=0, below=1)]
 
 

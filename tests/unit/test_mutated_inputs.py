@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import sys
 import tomllib
 from pathlib import Path
@@ -10,10 +11,11 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from mutated_inputs import ROUND, Source, sources, tried
+from mutated_inputs import ROOT, ROUND, Source, cases, exchanged, sources, tried
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import case_of, enter
 from camwright.pipeline.studies.batch.study_file import Study
 from camwright.pipeline.studies.cam_inspection import read_measured
 from camwright.pipeline.torque.angle_trace import read_trace
@@ -27,6 +29,36 @@ def test_mutated_inputs_are_read_or_refused(seed: int) -> None:
     assert not [each for each in outcomes if each.failed]
     words = {each.what for each in outcomes}
     assert words == {"read", "refused"}  # neither are all too far from an input, nor all too near
+
+
+@pytest.mark.parametrize("path", cases(), ids=lambda path: path.stem)
+def test_a_value_of_any_type_is_read_or_refused(path: Path) -> None:
+    rng, tables = random.Random(path.stem), tomllib.loads(path.read_text(encoding="utf-8"))
+    words = set()
+    for _ in range(25):
+        try:
+            case_of(exchanged(tables, rng), path.parent)
+            words.add("read")
+        except CamError as error:
+            words.add("refused" if str(error).strip() else "")
+    assert "refused" in words <= {"read", "refused"}
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("cam.material", {}),
+        ("follower.arm.length", "1e300 mm"),
+        ("follower.arm.length", "1e-300 mm"),
+        ("follower.arm.inertia", "1e300 kg m^2"),
+        ("follower.arm.inertia", "0 kg m^2"),
+    ],
+)
+def test_values_from_which_others_follow_are_refused(key: str, value: object) -> None:
+    tables = tomllib.loads((ROOT / "cases/motions/packaging-arm.toml").read_text(encoding="utf-8"))
+    enter(tables, key, value)
+    with pytest.raises(CamError, match=f"{key}.* = |follower.arm.inertia = .* over length squared"):
+        case_of(tables, ROOT)
 
 
 @pytest.mark.parametrize("source", sources(), ids=lambda source: source.name)

@@ -149,7 +149,7 @@ def test_mass_and_force_of_the_output_are_those_of_the_follower(follower):
     ('length = "60 mm"', 'length = "9 mm"', "rocker lift of the output = "),
     ('lash = "0.15 mm"', 'lash = "-1 mm"', "rocker.lash = -1 mm"),
     ('angle = "-5 deg"', 'angle = "-80 deg"', "rocker.angle = -80 deg"),
-    ('lash = "0.15 mm"', 'mass = "0 g"', "rocker.mass = 0 g, must be > 0 kg"),
+    ('lash = "0.15 mm"', 'mass = "0 g"', "rocker.mass = 0 g, must be > 0 and <= 1e+06 g"),
     ('lash = "0.15 mm"', 'force = "5 N"', "rocker.force = 5 N, must be left out without"),
     ('lash = "0.15 mm"', 'side = "left"', "rocker.side = left"),
 ])  # fmt: skip

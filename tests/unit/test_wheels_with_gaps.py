@@ -29,7 +29,7 @@ from camwright.pipeline.engine.pitch_errors import PitchErrors
 from camwright.pipeline.engine.speed_file import edges_from_csv, speed_from_csv
 from camwright.pipeline.engine.speed_trace import Filter, speed_from_edges
 from camwright.pipeline.engine.tooth_pattern import ToothPattern, tooth_pattern
-from camwright.pipeline.engine.trigger_wheel import TriggerWheel
+from camwright.pipeline.engine.trigger_wheel import MISSING_MAX, TriggerWheel
 
 DATA = Path(__file__).parents[1] / "data" / "strangers"
 LOG, LEADS = DATA / "10-composite-log", DATA / "20-vr-reversed-leads"
@@ -225,6 +225,13 @@ def test_patterns_of_cranked_wheels(name):
     for swing in (0.02, 0.3, 0.6):
         times = edge_times(motion(cranking, 21.0, swing), name, 0.5, 5, 0.002, 3, both=False)
         assert tooth_pattern(times).words == name, swing
+
+
+def test_a_pause_of_a_record_is_a_gap_of_bounded_memory():
+    """A digit too many in one time: a gap of 1e9 pitches, tried up to the most a wheel can miss."""
+    times = edge_times(motion(cranking, 21.0, 0.02), "36-1", 0.5, 5, 0.0, both=False)
+    times[-1] = times[-2] + 1e9 * float(np.median(np.diff(times)))
+    assert 1 <= tooth_pattern(times).missing_teeth <= MISSING_MAX
 
 
 def test_a_wheel_that_repeats_within_a_turn_is_not_taken_for_one_of_several_gaps():

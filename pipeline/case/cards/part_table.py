@@ -5,9 +5,10 @@ from __future__ import annotations
 from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import In, Part, marks_of
 from camwright.pipeline.case.error_text import refusal_of
 from camwright.pipeline.case.section import PartType, part_of, section_of
-from camwright.pipeline.case.toml_text import TomlValue
+from camwright.pipeline.case.toml_text import Tables, TomlValue
 
 
 def read_part(part: type[PartType], table: TomlValue, field: str) -> PartType:
@@ -32,3 +33,29 @@ def read_part(part: type[PartType], table: TomlValue, field: str) -> PartType:
         return part_of(part, section)
     except InputError as error:
         raise InputError(f"{field}.{error.field}", error.value, error.limit) from None
+
+
+def read_value(part: type[Part], key: str, table: Tables, bounds: str = "") -> float:
+    """Number of one key in the table of a part, SI, within the bounds of the key; the rest of the
+    table is not read.
+
+    Parameters
+    ----------
+    part : type      class of the part
+    key : str        of a field, or of a value from which another follows
+    table : Tables   the part's own
+    bounds : str     key whose bounds hold, where not the same
+
+    Raises
+    ------
+    InputError
+        If the key is missing, or its value is no number of its unit within its bounds.
+    """
+    resolved = part.resolved.get(bounds or key)
+    mark = marks_of(part)[bounds or key] if resolved is None else resolved.quantity
+    if not isinstance(mark, In):
+        raise TypeError(f"{part.table}.{bounds or key} is no number with bounds")
+    try:
+        return mark.read(table.get(key))
+    except InputError as error:
+        raise InputError(f"{part.table}.{key}", error.value, error.limit) from None

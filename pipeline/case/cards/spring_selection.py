@@ -12,7 +12,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import inside
 from camwright.pipeline.base.source import reworded
-from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.cards.part_table import read_part, read_value
 from camwright.pipeline.case.cards.spring_catalogue import (
     CATALOGUE,
     SpringDemand,
@@ -23,6 +23,7 @@ from camwright.pipeline.case.cards.spring_catalogue import (
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import put_sources
+from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.rocker import Rocker
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import SHAPES, SpringShape
@@ -132,7 +133,7 @@ def _reduced(law: SpringShape, case: Tables) -> SpringShape:
     length = 1.0 if law.carried == "arm" else None
     if isinstance(arm, dict):
         try:
-            length = units.parse(arm.get("length"), "m", "")
+            length = read_value(FollowerArm, "length", arm)
         except InputError:
             length = 1.0
     table = None if rocker is None else read_part(Rocker, rocker, Rocker.table)
