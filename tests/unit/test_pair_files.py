@@ -76,6 +76,20 @@ def test_the_second_disc_of_a_stem_keeps_distance_and_clearance(workshops):
         assert radii[0][first] + radii[1][second] == pytest.approx(154.0 - 47.0 - 0.02, abs=1e-6)
 
 
+def test_the_second_disc_of_a_preloaded_stem_is_too_great_by_the_interference():
+    """As above, by the surfaces of which the files are made."""
+    surfaces = made_surfaces(*judged("preloaded_feeder"))
+    first, second = (1e3 * surfaces[end].polygon(3600) for end in ("", "_second"))
+    for angle in (0.0, 80.0, 170.0):
+        radii = []
+        for points, turn in ((first, 0.0), (second, 180.0)):
+            off = np.angle(
+                np.exp(1j * (np.arctan2(points[1], points[0]) - np.radians(angle + turn)))
+            )
+            radii.append(np.hypot(*points[:, np.abs(off).argmin()]))
+        assert sum(radii) == pytest.approx(154.0 - 47.0 + 0.013, abs=1e-6)
+
+
 @pytest.mark.parametrize(("name", "gap"), [("conjugate_arm", 0.02), ("preloaded_arm", -0.02)])
 def test_the_second_disc_of_an_arm_is_off_its_roller_by_the_clearance(name, gap):
     """Centre by both arms, 79 deg apart at the pivot; 22 mm roller, clearance 0.02 mm."""

@@ -29,7 +29,7 @@ from camwright.pipeline.solver import solve
 
 DATA = Path(__file__).parents[1] / "data"
 STEM, ARM, YOKE = "conjugate_feeder", "conjugate_arm", "yoke_pump"
-PRESSED = "preloaded_arm"
+PRESSED, PRESSED_STEM = "preloaded_arm", "preloaded_feeder"
 ALL = [STEM, ARM, YOKE]
 
 
@@ -195,30 +195,34 @@ def test_both_bodies_in_full_agree_with_the_cycle(name, side):
 
 # --- preload ----------------------------------------------------------------------------------
 @pytest.mark.slow
-def test_preloaded_discs_have_a_contact_each():
+@pytest.mark.parametrize(("name", "beside_hertz"), [(PRESSED, 1e-4), (PRESSED_STEM, 3e-4)])
+def test_preloaded_discs_have_a_contact_each(name, beside_hertz):
     """Forces that squeeze both rollers, and pressures of Hertz by the radii of both discs.
 
-    Finite elements differ by less than 1e-4 on either disc, and the map of the turn has at each
-    angle the greater pressure of both.
+    Finite elements differ on either disc by the square of half-width over radius, in proportion to
+    the load: 1e-4 at 600 N, which the stem exceeds. The map of the turn has at each angle the
+    greater pressure of both.
     """
-    solution = solved(PRESSED)
+    solution = solved(name)
     cycle = solution.cycles[0]
     loads, machine = cycle.loads, cycle.machine
     track = loads.second.track(cycle.contour.pitch)
     first, second = machine.disc_preload.at(track, loads.theta).forces(loads.axial_force)
     arm, other = machine.arm, machine.cam.conjugate
     alpha = cycle.contour.pitch.pressure_angle(loads.theta)
-    beta = track.contour.pitch.pressure_angle(loads.theta)
-    forces = first / np.cos(alpha), second * arm.length / other.arm_length / np.cos(beta)
+    beta = track.contour.pitch.pressure_angle(loads.theta + track.turn)
+    leverage = 1.0 if arm is None else arm.length / other.arm_length
+    forces = first / np.cos(alpha), second * leverage / np.cos(beta)
     assert (forces[0] > 0).all() and (forces[1] > 0).all()
     most = []
-    for wall, force, contour in zip((1, -1), forces, (cycle.contour, track.contour), strict=True):
+    discs = (cycle.contour, 0.0), (track.contour, track.turn)
+    for wall, force, (contour, turn) in zip((1, -1), forces, discs, strict=True):
         history = cycle.contact.where(loads.wall != wall, cycle.idle)
-        curvature = 1.0 / contour.roller_radius + contour.curvature(loads.theta)
+        curvature = 1.0 / contour.roller_radius + contour.curvature(loads.theta + turn)
         modulus = machine.contact_modulus / np.pi / machine.contact_width
         pressure = np.sqrt(force * modulus * curvature)
         assert history.p0_hertz == pytest.approx(pressure, rel=1e-9)
-        assert history.p0 == pytest.approx(pressure, rel=1e-4)
+        assert history.p0 == pytest.approx(pressure, rel=beside_hertz)
         most.append(pressure)
     # the torque of both contacts is that of the axial force alone: to 1e-4 of its greatest
     assert pressure_torque(cycle) == pytest.approx(
@@ -230,7 +234,7 @@ def test_preloaded_discs_have_a_contact_each():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [ARM, PRESSED, YOKE])
+@pytest.mark.parametrize("name", [ARM, PRESSED, PRESSED_STEM, YOKE])
 def test_a_run_is_recomputed_without_difference(name, tmp_path):
     """Both tracks in the tables of contour and cycle, and every file as its case gives it."""
     case = read_case(DATA / f"{name}.toml").with_positions(72)

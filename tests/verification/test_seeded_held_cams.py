@@ -25,8 +25,11 @@ KINDS = {
     "yoke": "tests/data/yoke_pump.toml",
     "weight": "tests/data/gravity_lift.toml",
 }
-ON_AN_ARM = "tests/data/groove_arm.toml"
-"""Of every second groove."""
+OTHERS = {
+    "groove": "tests/data/groove_arm.toml",
+    "preloaded pair": "tests/data/preloaded_feeder.toml",
+}
+"""Files of every second cam of a kind."""
 BEARINGS = {  # card: outer diameter, width and bore, mm
     "32x14": (32.0, 14.0, 12.0),
     "40x16": (40.0, 15.9, 17.0),
@@ -43,7 +46,7 @@ def drawn(k: int) -> dict[str, Any]:
     """Tables of one cam: its closure in turn, its motion, sizes, masses and clearances by lot."""
     draw = np.random.default_rng([SEED, k])
     kind = list(KINDS)[k % len(KINDS)]
-    file = ON_AN_ARM if k % (2 * len(KINDS)) == len(KINDS) else KINDS[kind]
+    file = OTHERS.get(kind, KINDS[kind]) if k // len(KINDS) % 2 else KINDS[kind]
     tables = tomllib.loads((ROOT / file).read_text(encoding="utf-8"))
     cam, follower, arm = tables["cam"], tables["follower"], "arm" in tables["follower"]
     yoke = kind == "yoke"

@@ -54,6 +54,8 @@ def test_sizes_of_two_discs_are_refused():
          "groove_clearance", "cam.groove.clearance"),
         (DATA / "preloaded_arm.toml", 'interference = "0.02', 'interference = "0.009',
          "preload_least", "cam.conjugate.interference"),
+        (DATA / "preloaded_feeder.toml", 'interference = "0.013', 'interference = "0.0075',
+         "preload_least", "cam.conjugate.interference"),
     ],
 )  # fmt: skip
 def test_a_remedy_names_the_key_and_holds(file, old, new, check, key):
