@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -43,18 +43,29 @@ class CurveLike(Protocol):
     def velocity(self, theta: Array) -> Array: ...
 
 
+class StepCut(NamedTuple):
+    """Step of a groove: inner and outer wall, and depth of its floor below the face, m."""
+
+    inner: Contour
+    outer: Contour
+    bottom: float
+
+
 @dataclass(frozen=True, eq=False)
 class GrooveCut:
-    """Groove in the face of a disc, around the contour, its inner wall.
+    """Groove in the face of a disc.
 
-    wall : Contour         outer wall
-    depth : float          from the face to the floor, m
+    steps : tuple          from the face down; the contour is the inner wall of one of them
     outer_radius : float   of the disc, m
     """
 
-    wall: Contour
-    depth: float
+    steps: tuple[StepCut, ...]
     outer_radius: float
+
+    @property
+    def walls(self) -> tuple[Contour, ...]:
+        """Inner and outer wall of each step."""
+        return tuple(wall for step in self.steps for wall in step[:2])
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +121,7 @@ def write_dxf(
     and the bore with its keyway as one closed polyline with arcs; a bore without keyway is a
     circle. ``counter_hole`` has the counter-hole, ``pitch`` the pitch curve, ``mark`` the line of
     cam angle zero and an arrow in the direction of turning, ``note`` the error and the `notes`.
-    Of a disc with a groove the layer ``cut`` has its circle, and ``groove`` both walls.
+    Of a disc with a groove the layer ``cut`` has its circle, and ``groove`` the walls.
 
     Returns
     -------
@@ -136,8 +147,8 @@ def write_dxf(
         _add_arcs(space, arcs.points, arcs.bulges)
     else:
         document.layers.add(GROOVE, color=len(LAYERS) + 1)
-        walls = arcs, arc_polyline(groove.wall, error)
-        for each in walls:
+        for wall in groove.walls:
+            each = arcs if wall is outline.contour else arc_polyline(wall, error)
             _add_arcs(space, each.points, each.bulges, GROOVE)
         radius = groove.outer_radius / _MILLIMETRE
         space.add_circle((0.0, 0.0), radius, dxfattribs={"layer": CUT})

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, positive, uniform_turn
-from camwright.geometry.cad_drawing import CurveLike, GrooveCut, Outline, clamped_spline
+from camwright.geometry.cad_drawing import CurveLike, GrooveCut, Outline, StepCut, clamped_spline
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import keyway_corners
 from camwright.geometry.errors import GeometryError, ResultError
@@ -197,18 +197,28 @@ def _require_wall(outline: Outline) -> None:
     contour = outline.contour
     if contour.self_intersections():
         raise GeometryError("contour = intersects itself, must bound one body")
-    points = contour.points(uniform_turn(contour.lift.search_count))
-    wall = float(wall_at(points, outline.bore_radius, outline.keyway).min())
-    if not wall > 0:
-        raise GeometryError(f"wall around the bore = {wall / MILLIMETRE:.4g} mm, must be > 0 mm")
+    for inner in _islands(outline):
+        points = inner.points(uniform_turn(contour.lift.search_count))
+        wall = float(wall_at(points, outline.bore_radius, outline.keyway).min())
+        if not wall > 0:
+            shown = f"{wall / MILLIMETRE:.4g} mm"
+            raise GeometryError(f"wall around the bore = {shown}, must be > 0 mm")
     if outline.groove is None:
         return
-    outer = outline.groove.wall
-    outer.require_no_undercut()
-    if outer.self_intersections():
-        raise GeometryError("outer wall of the groove = intersects itself, must be one curve")
-    if not (rim := outline.groove.outer_radius - float(outer.radius_max().value)) > 0:
-        raise GeometryError(f"rim around the groove = {rim / MILLIMETRE:.4g} mm, must be > 0 mm")
+    for outer in outline.groove.walls:
+        outer.require_no_undercut()
+        if outer.self_intersections():
+            raise GeometryError("wall of the groove = intersects itself, must be one curve")
+        if not (rim := outline.groove.outer_radius - float(outer.radius_max().value)) > 0:
+            shown = f"{rim / MILLIMETRE:.4g} mm"
+            raise GeometryError(f"rim around the groove = {shown}, must be > 0 mm")
+
+
+def _islands(outline: Outline) -> tuple[Contour, ...]:
+    """Contour, or the inner walls of the steps of a groove, around the bore."""
+    if outline.groove is None:
+        return (outline.contour,)
+    return tuple(step.inner for step in outline.groove.steps)
 
 
 # --- outline, mm
@@ -283,47 +293,101 @@ def _solid(file: Entities, loops: Sequence[Sequence[Side]], width: float, name: 
     and both end faces.
     """
     parts = [_walls(file, sides, 0.0, width) for sides in loops]
-    floor = [_turned(file, low) for _, low, _ in parts]
-    top = [_loop(file, [(edge, True) for edge in high]) for _, _, high in parts]
+    floor = [_turned(file, each.foot) for each in parts]
+    top = [_loop(file, [(edge, True) for edge in each.top]) for each in parts]
     ends = [_end(file, "bottom", floor, 0.0, _DOWN), _end(file, "top", top, width, _UP)]
-    return _shell(file, [*(face for faces, _, _ in parts for face in faces), *ends], name)
+    return _shell(file, [*(face for each in parts for face in each.faces), *ends], name)
 
 
 def _grooved(
     file: Entities, loops: Sequence[Sequence[Side]], cut: GrooveCut, width: float, name: str
 ) -> str:
-    """STEP reference of a disc with a groove in its upper face around the contour, mm.
+    """STEP reference of a disc with a groove of one or more steps in its upper face, mm.
 
-    loops: of the contour, inner wall of the groove, and of the holes
+    loops: of the contour and of the holes
     """
-    floor = width - cut.depth / MILLIMETRE
-    radius = cut.outer_radius / MILLIMETRE
-    outer = _spline("outer wall", _Clockwise(cut.wall), -_angle_zero(cut.wall))
-    inner, *holes = (
-        _walls(file, sides, floor if k == 0 else 0.0, width) for k, sides in enumerate(loops)
-    )
-    wall = _walls(file, [outer], floor, width)
+    radius, high, faces = cut.outer_radius / MILLIMETRE, width, list[str]()
+    holes = [_walls(file, sides, 0.0, width) for sides in loops[1:]]
     rim = _walls(
         file, [_Rim("rim", np.array([[radius, 0.0]] * 2), np.zeros(2), radius)], 0.0, width
     )
-    upward = [[(edge, True) for edge in high] for _, _, high in (rim, wall, inner, *holes)]
-    around, within, island, *bores = (_loop(file, edges) for edges in upward)
-    faces = [
-        *(face for faces, _, _ in (rim, wall, inner, *holes) for face in faces),
-        _end(file, "bottom", [_turned(file, low) for _, low, _ in (rim, *holes)], 0.0, _DOWN),
-        _end(file, "floor", [_turned(file, low) for _, low, _ in (wall, inner)], floor, _UP),
-        _end(file, "rim face", [around, within], width, _UP),
-        _end(file, "top", [island, *bores], width, _UP),
+    above: _StepWalls | None = None
+    for step in cut.steps:
+        low = width - step.bottom / MILLIMETRE
+        walls = _step_walls(file, step, low, high)
+        if above is None:
+            around, within = (_loop(file, [(edge, True) for edge in each.top])
+                              for each in (rim, walls.outer))  # fmt: skip
+            island, *bores = (_loop(file, [(edge, True) for edge in each.top])
+                              for each in (walls.inner, *holes))  # fmt: skip
+            faces += [
+                _end(file, "rim face", [around, within], width, _UP),
+                _end(file, "top", [island, *bores], width, _UP),
+            ]
+        else:
+            faces += _ledges(file, above, walls, high)
+        above, high = walls, low
+        faces += walls.faces
+    if above is None:
+        raise GeometryError("groove = without a step, must have one")
+    floor = [_turned(file, each.foot) for each in (above.outer, above.inner)]
+    below = [_turned(file, each.foot) for each in (rim, *holes)]
+    faces += [
+        *(face for each in (rim, *holes) for face in each.faces),
+        _end(file, "floor", floor, high, _UP),
+        _end(file, "bottom", below, 0.0, _DOWN),
     ]
     return _shell(file, faces, name)
 
 
-def _walls(
-    file: Entities, sides: Sequence[Side], low: float, high: float
-) -> tuple[list[str], list[str], list[str]]:
-    """STEP references of the wall faces of a loop of sides between two heights, mm, and of the
-    edges at its foot and its top.
+class _StepWalls(NamedTuple):
+    """Walls of a step of a groove, and their distances from the path of the roller, m."""
+
+    inner: _Walls
+    outer: _Walls
+    distances: tuple[float, float]
+
+    @property
+    def faces(self) -> list[str]:
+        return [*self.inner.faces, *self.outer.faces]
+
+
+def _step_walls(file: Entities, step: StepCut, low: float, high: float) -> _StepWalls:
+    """Walls of a step between two heights, mm."""
+    inner = _spline("inner wall", step.inner, _angle_zero(step.inner))
+    outer = _spline("outer wall", _Clockwise(step.outer), -_angle_zero(step.outer))
+    first, last = (each.require_roller().roller_radius for each in step[:2])
+    within, around = (_walls(file, [each], low, high) for each in (inner, outer))
+    return _StepWalls(within, around, (first, last))
+
+
+def _ledges(file: Entities, above: _StepWalls, below: _StepWalls, z: float) -> Iterator[str]:
+    """Annular faces between the walls of two steps at a height, mm: upward where the lower step is
+    the narrower one on this side, else under the upper wall.
     """
+    for name, upper, lower, (wide, narrow) in zip(
+        ("inner ledge", "outer ledge"), above[:2], below[:2],
+        zip(above.distances, below.distances, strict=True), strict=True,
+    ):  # fmt: skip
+        if wide == narrow:
+            raise GeometryError(f"{name} of the groove = 0 mm, must be a wall or a ledge")
+        loops = _turned(file, upper.foot), _loop(file, [(edge, True) for edge in lower.top])
+        up = wide > narrow
+        outermost = 0 if up == (name == "outer ledge") else 1
+        ordered = loops[outermost], loops[1 - outermost]
+        yield _end(file, name, ordered, z, _UP if up else _DOWN)
+
+
+class _Walls(NamedTuple):
+    """STEP references of the wall faces of a loop of sides, and of the edges at foot and top."""
+
+    faces: list[str]
+    foot: list[str]
+    top: list[str]
+
+
+def _walls(file: Entities, sides: Sequence[Side], low: float, high: float) -> _Walls:
+    """Wall faces of a loop of sides between two heights, mm, with the edges at both ends."""
     faces: list[str] = []
     below: list[str] = []
     above: list[str] = []
@@ -336,7 +400,7 @@ def _walls(
         faces.append(_face(file, side.name, [_loop(file, around)], surface, outward))
         below += foot
         above += top
-    return faces, below, above
+    return _Walls(faces, below, above)
 
 
 def _turned(file: Entities, edges: Sequence[str]) -> str:

@@ -165,7 +165,7 @@ def _groove(turn: SheetTurn) -> DrawnGroove | None:
     radius, depth = (turn.length("cam", "groove", key) for key in ("outer_radius", "depth"))
     if wall is None or radius is None or depth is None:
         return None
-    return DrawnGroove(wall, radius, depth)
+    return DrawnGroove(wall, radius, depth, turn.length("cam", "groove", "second", "radius"))
 
 
 def _arm(turn: SheetTurn) -> DrawnArm | None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import read_json, write_atomic
 from camwright.pipeline.base.fits import size_of
@@ -25,6 +26,7 @@ from camwright.reports.drawing.drawing_shapes import Drawing
 from camwright.reports.drawing.part_view import (
     DrawnCam,
     GrooveView,
+    StepView,
     Track,
     crown_words,
     scale_words,
@@ -406,8 +408,9 @@ def _part(material: ReportMaterial, record: Record, end: str) -> DrawnCam:
     width = depth = None
     if keyway is not None:
         width, depth = size_of(keyway["width"]), size_of(keyway["depth"])
+    points = np.array([contour[f"{end[1:] and 'second_'}contour_{axis}_mm"] for axis in "xy"])
     return DrawnCam(
-        np.array([contour[f"{end[1:] and 'second_'}contour_{axis}_mm"] for axis in "xy"]),
+        points,
         None if width is None or depth is None else (
             _MM * width.nominal, _MM * (depth.nominal - bore.nominal),
             float(np.radians(keyway["angle_deg"])),
@@ -417,31 +420,53 @@ def _part(material: ReportMaterial, record: Record, end: str) -> DrawnCam:
         None if keyway is None else keyway["root_radius_mm"],
         number(record["profile_tolerance_mm"]), str(record["datum"]),
         "" if roughness is None else number(roughness), _track(record["tracks"]["cam"]),
-        _groove(material, record.get("groove")),
+        _groove(material, points, record.get("groove")),
     )  # fmt: skip
 
 
-def _groove(material: ReportMaterial, record: Record | None) -> GrooveView | None:
+def _groove(material: ReportMaterial, contour: Array, record: Record | None) -> GrooveView | None:
     """Groove to draw, lengths in mm; None without one.
 
     Parameters
     ----------
+    contour : array (2, n)     wall on which the first roller runs
     record : mapping or None   groove in the record of the dimensions
     """
-    wall = material.turn.outer_wall
+    wall, table = material.turn.outer_wall, material.turn.contour
     if record is None or wall is None:
         return None
-    names = ("width_mm", "depth_mm", "corner_radius_mm", "outer_radius_mm")
-    return GrooveView(wall, *(float(record[name]) for name in names))
+    fillet, radius = (float(record[name]) for name in ("corner_radius_mm", "outer_radius_mm"))
+    half = 0.5 * record["width_mm"]
+    steps = [StepView(contour, wall, half, half, float(record["depth_mm"]))]
+    if "steps" in record:
+        path, normal = (
+            np.array([table[f"{name}_{axis}{unit}"] for axis in "xy"])
+            for name, unit in (("pitch", "_mm"), ("normal", ""))
+        )
+        steps = [
+            StepView(path - inner * normal, path + outer * normal, inner, outer, bottom)
+            for bottom, inner, outer in (
+                (float(step[f"{name}_mm"]) for name in ("bottom", "inner", "outer"))
+                for step in record["steps"]
+            )
+        ]
+    return GrooveView(tuple(steps), fillet, radius)
 
 
 def _groove_note(record: Record) -> str:
     """Note on the groove: fit of its roller, and the files of its walls."""
+    relieved, rollers = "", "roller"
+    if "steps" in record:
+        rollers = "rollers"
+        relieved = (
+            "the walls opposite to the rollers in contour_ and cutter_inner_relief.csv and "
+            "_outer_relief.csv; "
+        )
     return (
         f"Groove: the contour is its inner wall; outer wall in contour_outer.csv, inspection of "
         f"each in inspection.csv and inspection_outer.csv, paths of the cutter in cutter.csv and "
-        f"cutter_outer.csv; roller with {quantity(record['clearance_mm'], 'mm')} clearance, disc "
-        f"⌀{number(2.0 * record['outer_radius_mm'])}."
+        f"cutter_outer.csv; {relieved}{rollers} with {quantity(record['clearance_mm'], 'mm')} "
+        f"clearance, disc ⌀{number(2.0 * record['outer_radius_mm'])}."
     )
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,13 +16,38 @@ from camwright.reports.sheet_turn import SheetTurn
 _CHEEK = 0.35  # of the width of the roller, where the case states no cheek
 
 
+class SceneStep(NamedTuple):
+    """Step of a groove: depths of face and floor below the face of the disc, inner and outer wall
+    (2, n), and which of them carry; mm.
+    """
+
+    top: float
+    bottom: float
+    inner: Array
+    outer: Array
+    carries: tuple[bool, bool] = (True, True)
+
+    @property
+    def walls(self) -> tuple[Array, Array]:
+        """Inner and outer wall."""
+        return self.inner, self.outer
+
+
+class SceneRoller(NamedTuple):
+    """Second roller on the pin: radius, and its middle above that of the first; mm."""
+
+    radius: float
+    height: float
+
+
 @dataclass(frozen=True, eq=False)
 class SceneGroove:
-    """Places along the shaft in the scene, whose origin is the middle of the roller; mm.
+    """Places along the shaft in the scene, whose origin is the middle of the first roller; mm.
 
-    groove; inner, outer : walls (2, n) at equal cam angles; bore (2, n)
+    groove; inner, outer : walls (2, n) at equal cam angles, on which rollers run; bore (2, n)
     face : open face of the disc; width of the disc
     roller : width; cheek : middle and width of the cheek that holds the pin, before the face
+    steps : from the face down; second : roller on the pin of the first, if any
     """
 
     groove: DrawnGroove
@@ -31,34 +58,47 @@ class SceneGroove:
     width: float
     roller: float
     cheek: tuple[float, float]
+    steps: tuple[SceneStep, ...]
+    second: SceneRoller | None = None
 
     @property
     def middle(self) -> float:
         """Middle of the disc."""
         return self.face - 0.5 * self.width
 
-    @property
-    def floor(self) -> float:
-        """Floor of the groove."""
-        return self.face - self.groove.depth
+    def _wall(self, step: SceneStep, wall: Array) -> Solid:
+        height = self.face - 0.5 * (step.top + step.bottom)
+        return ring(wall, step.bottom - step.top).deeper(height)
 
     def walls(self) -> Solid:
-        """Both walls: the inner one, then the outer one."""
-        height = 0.5 * (self.face + self.floor)
-        both = (ring(wall, self.groove.depth).deeper(height) for wall in (self.inner, self.outer))
-        return joined(tuple(both))
+        """Both walls on which rollers run: the inner one, then the outer one."""
+        every = [(step.carries[k], self._wall(step, step.walls[k])) for k in (0, 1)
+                 for step in self.steps]  # fmt: skip
+        return joined(tuple(wall for carries, wall in every if carries))
 
     def disc(self) -> Solid:
-        """Faces, floor of the groove and edge of the disc."""
+        """Faces, floor of the groove with its ledges and other walls, and edge of the disc."""
         edge = self.groove.radius * self.outer / np.hypot(*self.outer)
         back = self.groove.radius * self.bore / np.hypot(*self.bore)
+        first, last = self.steps[0], self.steps[-1]
+        ledges = [
+            tube(*pair, self.face - lower.top)
+            for upper, lower in pairwise(self.steps)
+            for pair in ((upper.outer, lower.outer), (lower.inner, upper.inner))
+        ]
+        relieved = [
+            self._wall(step, step.walls[k])
+            for step in self.steps for k in (0, 1) if not step.carries[k]
+        ]  # fmt: skip
         return joined(
             (
-                tube(edge, self.outer, self.face),
-                tube(self.outer, self.inner, self.floor),
-                tube(self.inner, self.bore, self.face),
+                tube(edge, first.outer, self.face),
+                tube(last.outer, last.inner, self.face - last.bottom),
+                tube(first.inner, self.bore, self.face),
                 tube(back, self.bore, self.face - self.width),
                 ring(edge, self.width).deeper(self.middle),
+                *ledges,
+                *relieved,
             )
         )
 
@@ -79,9 +119,13 @@ class SceneGroove:
         cheek_at, wide = self.cheek
         half, bridge = 0.5 * stem, 2.0 * radius
         plate = box((-half, -bridge, cheek_at - 0.5 * wide), (half, bridge, cheek_at + 0.5 * wide))
-        reach = 0.5 * (cheek_at + 0.5 * wide + 0.5 * self.roller)
-        axle = pin(radius, reach).deeper(reach - 0.5 * self.roller)
-        return joined((plate, axle, rod(stem, bridge, top).deeper(cheek_at)))
+        second, lowest, others = self.second, -0.5 * self.roller, list[Solid]()
+        if second is not None:
+            lowest = min(lowest, second.height - 0.5 * self.roller)
+            others.append(pin(second.radius, 0.5 * self.roller).deeper(second.height))
+        reach = 0.5 * (cheek_at + 0.5 * wide - lowest)
+        axle = pin(radius, reach).deeper(reach + lowest)
+        return joined((plate, axle, rod(stem, bridge, top).deeper(cheek_at), *others))
 
 
 def scene_groove(
@@ -101,8 +145,58 @@ def scene_groove(
     outer = np.stack([np.interp(stations, angle, each, period=360.0) for each in groove.wall])
     corner = turn.length("cam", "groove", "corner_radius") or 0.0
     roller = min(turn.length("roller", "width") or groove.depth, groove.depth - corner)
-    face = groove.depth - corner - 0.5 * roller
+    face, second = groove.depth - corner - 0.5 * roller, _second(turn)
+    steps: tuple[SceneStep, ...] = (SceneStep(0.0, groove.depth, inner, outer),)
+    if second is not None:
+        face -= max(-second.height, 0.0)
+        steps = _steps(turn, groove.depth, (inner, outer), second)
     wide = turn.length("roller", "fork", "cheek_width") or _CHEEK * roller
     span = turn.length("roller", "pin", "span")
     cheek_at = max(face, 0.5 * roller) + 0.6 * wide if span is None else span
-    return SceneGroove(groove, inner, outer, bore, face, width, roller, (cheek_at, wide))
+    return SceneGroove(
+        groove, inner, outer, bore, face, width, roller, (cheek_at, wide), steps, second
+    )
+
+
+def _second(turn: SheetTurn) -> SceneRoller | None:
+    """Second roller on the pin: deeper in the groove than the first unless it is larger; None
+    without one.
+    """
+    radius, spacing, first = (
+        turn.length(*path) for path in (
+            ("cam", "groove", "second", "radius"), ("cam", "groove", "second", "spacing"),
+            ("roller", "radius"))
+    )  # fmt: skip
+    if radius is None or spacing is None or first is None:
+        return None
+    return SceneRoller(radius, spacing if radius > first else -spacing)
+
+
+def _steps(
+    turn: SheetTurn, depth: float, walls: tuple[Array, Array], second: SceneRoller
+) -> tuple[SceneStep, ...]:
+    """Steps of a groove for two rollers, from the face down.
+
+    Parameters
+    ----------
+    depth : float            of the groove, mm
+    walls : pair of (2, n)   inner and outer, on which rollers run, at equal cam angles, mm
+    """
+    relief, middle = (
+        turn.length("cam", "groove", "second", key) or 0.0 for key in ("relief", "step_depth")
+    )
+    stations = np.linspace(0.0, 360.0, walls[0].shape[1], endpoint=False)
+    table, first = turn.contour, turn.length("roller", "radius") or 0.0
+    path, normal = (
+        np.stack([np.interp(stations, table["cam_angle_deg"], table[f"{name}_{axis}{unit}"],
+                            period=360.0) for axis in "xy"])
+        for name, unit in (("pitch", "_mm"), ("normal", ""))
+    )  # fmt: skip
+    of_first = walls[0], path + (first + relief) * normal
+    of_second = path - (second.radius + relief) * normal, walls[1]
+    both = [(of_first, (True, False)), (of_second, (False, True))]
+    upper, lower = both if second.height < 0.0 else both[::-1]
+    return (
+        SceneStep(0.0, middle, *upper[0], upper[1]),
+        SceneStep(middle, depth, *lower[0], lower[1]),
+    )

@@ -221,16 +221,24 @@ class CamGroove(Part):
             return lowest
         return np.minimum(lowest, lowest - second.beyond(radius))
 
+    def carrying(self, radius: float) -> tuple[float, float]:
+        """Distances, m, of the inner and the outer wall from the path of the rollers.
+
+        radius : of the roller on the inner wall, m
+        """
+        outer = radius if self.second is None else self.second.radius
+        return radius + 0.5 * self.clearance, outer + 0.5 * self.clearance
+
     def steps(self, radius: float) -> tuple[GrooveStep, ...]:
         """Steps of the groove from the face of the disc down, of one roller one.
 
         radius : of the roller, m, of two that on the inner wall
         """
-        half, second = 0.5 * self.clearance, self.second
+        (on_inner, on_outer), second = self.carrying(radius), self.second
         if second is None:
-            return (GrooveStep(0.0, self.depth, radius + half, radius + half),)
-        inner = radius + half, radius + second.relief
-        outer = second.radius + second.relief, second.radius + half
+            return (GrooveStep(0.0, self.depth, on_inner, on_outer),)
+        inner = on_inner, radius + second.relief
+        outer = second.radius + second.relief, on_outer
         upper, lower = (outer, inner) if second.radius > radius else (inner, outer)
         middle = second.step_depth
         return GrooveStep(0.0, middle, *upper), GrooveStep(middle, self.depth, *lower)

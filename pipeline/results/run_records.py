@@ -144,13 +144,14 @@ def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
     """
     theta, second = drawn_angles(case), case.cam.second
     columns = {CAM_ANGLE: theta, **_track_columns(contour, theta, "", "contour")}
-    if second is not None:
+    if second is not None and case.cam.groove is None:
         track = second.track(contour.pitch)
         name = "contour of the second disc" if second.own_disc else "contour at the second face"
         columns |= _track_columns(track.contour, theta + track.turn, "second_", name)
     if case.cam.groove is not None:  # the contour is its inner wall
         inner = contour.require_roller()
-        outer = groove_wall(inner, "outer", inner.roller_radius).points(theta)
+        radius = inner.roller_radius if second is None else second.radius
+        outer = groove_wall(inner, "outer", radius).points(theta)
         columns |= {
             Column(f"outer_{axis}", "mm", "Outer wall of the groove in the cam frame"): values
             for axis, values in zip("xy", outer, strict=True)

@@ -12,12 +12,12 @@ from types import MappingProxyType
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.cad_drawing import GrooveCut, Outline, write_dxf
+from camwright.geometry.cad_drawing import GrooveCut, Outline, StepCut, write_dxf
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import radius_at
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import CamError, InputError, ResultError
-from camwright.geometry.form_closure import Side, groove_wall
+from camwright.geometry.form_closure import WALLS, Side, groove_wall
 from camwright.geometry.second_track import OppositeFace, discs_of
 from camwright.meshes.step_solid import write_step
 from camwright.meshes.step_text import PartTitle, stamped
@@ -29,7 +29,8 @@ from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.workshop_section import WorkshopOrder
-from camwright.pipeline.cycle.cam_balance import drilled_hole, groove_of
+from camwright.pipeline.contact.cam_body import CamGroove
+from camwright.pipeline.cycle.cam_balance import drilled_hole
 from camwright.pipeline.cycle.cycle import LIFT, PRESSURE_ANGLE
 
 _INSPECTION = (
@@ -107,17 +108,30 @@ def made_surfaces(case: Case, contour: Contour) -> dict[str, Contour]:
     disc is smaller by the clearance of its roller, or larger by its interference.
     """
     cam = case.cam
-    if cam.groove is not None and cam.groove.second is not None:
-        raise InputError(cam.groove.second.table, "a table", "left out: its files are not done")
     if cam.groove is not None:
-        track, half = contour.require_roller(), groove_of(cam, contour).half_width
-        return {end: groove_wall(track, side, half) for end, side in _WALLS.items()}
+        track = contour.require_roller()
+        distances = zip(_WALLS.items(), cam.groove.carrying(track.roller_radius), strict=True)
+        return {end: groove_wall(track, side, away) for (end, side), away in distances}
     discs = discs_of(contour, cam.second)
     contours = {end: each.contour for end, each in zip(_DISCS, discs, strict=False)}
     if cam.conjugate is not None:
         second = contours[_SECOND].require_roller()
         contours[_SECOND] = replace(second, roller_radius=second.roller_radius + cam.conjugate.gap)
     return contours
+
+
+def relieved_walls(case: Case, contour: Contour) -> dict[str, Contour]:
+    """Walls of a groove of two steps that stand back from its rollers, by the ending of their
+    files; {} of other cams.
+    """
+    second, track = case.cam.on_pin, contour.require_roller() if contour.rolls else None
+    if second is None or track is None:
+        return {}
+    distances = second.radius + second.relief, track.roller_radius + second.relief
+    return {
+        f"_{side}_relief": groove_wall(track, side, away)
+        for side, away in zip(WALLS, distances, strict=True)
+    }
 
 
 def measured_surface(case: Case, contour: Contour, track: str | None) -> Contour:
@@ -157,9 +171,10 @@ def groove_record(case: Case, contour: Contour) -> dict[str, Json] | None:
     groove, walls = case.cam.groove, made_surfaces(case, contour)
     if groove is None:
         return None
-    outer = walls[_OUTER].polygon(_RADII_POINTS)
-    return {
-        "width_mm": in_unit(2.0 * case.roller.radius + groove.clearance, "mm"),
+    outer, radius = walls[_OUTER].polygon(_RADII_POINTS), case.roller.radius
+    steps = groove.steps(radius)
+    record: dict[str, Json] = {
+        "width_mm": in_unit(steps[0].width, "mm"),
         "clearance_mm": in_unit(groove.clearance, "mm"),
         "depth_mm": in_unit(groove.depth, "mm"),
         "corner_radius_mm": in_unit(groove.corner_radius, "mm"),
@@ -169,6 +184,12 @@ def groove_record(case: Case, contour: Contour) -> dict[str, Json] | None:
             for degrees in range(0, 360, RADII_STEP)
         },
     }
+    if groove.second is not None:
+        record["steps"] = [
+            {f"{name}_mm": in_unit(getattr(step, name), "mm")
+             for name in ("bottom", "inner", "outer")} for step in steps
+        ]  # fmt: skip
+    return record
 
 
 def dimensions_record(case: Case, contour: Contour, end: str = "") -> dict[str, Json]:
@@ -355,13 +376,7 @@ def notes_of(case: Case, end: str = "") -> Iterator[str]:
     )
     groove = case.cam.groove
     if groove is not None:
-        width = 2.0 * case.roller.radius + groove.clearance
-        yield (
-            f"groove {shown(width, 'mm', 7)} wide and {shown(groove.depth, 'mm')} deep, fillets"
-            f" {shown(groove.corner_radius, 'mm')} at its floor, roller"
-            f" {shown(2.0 * case.roller.radius, 'mm')} with {shown(groove.clearance, 'mm')}"
-            f" clearance; disc {shown(2.0 * groove.outer_radius, 'mm')} in diameter"
-        )
+        yield from _groove_notes(case, groove)
     arm, start = case.follower.arm, case.follower.arm_angle(np.zeros(()), case.cam.prime_radius)
     if arm is not None and start is not None:
         lengths = (
@@ -373,6 +388,29 @@ def notes_of(case: Case, end: str = "") -> Iterator[str]:
     yield from _follower_notes(case)
     yield ", ".join(filter(None, (f"material {stated.material}", size.hardness)))
     yield "cam angles grow counter-clockwise from the marked line; the cam turns clockwise"
+
+
+def _groove_notes(case: Case, groove: CamGroove) -> Iterator[str]:
+    """Notes on a groove, its steps, rollers and disc."""
+    second, steps = groove.second, groove.steps(case.roller.radius)
+    radii = [case.roller.radius] if second is None else [case.roller.radius, second.radius]
+    sizes = [
+        f"{shown(step.width, 'mm', 7)} wide and {shown(step.bottom, 'mm')} deep" for step in steps
+    ]
+    rollers = "roller" if second is None else "rollers"
+    yield (
+        f"groove {', below '.join(sizes)}, fillets"
+        f" {shown(groove.corner_radius, 'mm')} at its floor, {rollers}"
+        f" {' on the inner and '.join(shown(2.0 * each, 'mm') for each in radii)}"
+        f"{'' if second is None else ' on the outer wall'}"
+        f" with {shown(groove.clearance, 'mm')}"
+        f" clearance; disc {shown(2.0 * groove.outer_radius, 'mm')} in diameter"
+    )
+    if second is not None:
+        yield (
+            f"walls opposite to each roller {shown(second.relief, 'mm')} from it; middles of the"
+            f" rollers {shown(second.spacing, 'mm')} apart along the pin"
+        )
 
 
 def _hardness(material: Material) -> str:
@@ -393,8 +431,26 @@ def outline_of(case: Case, contour: Contour, end: str = "") -> Outline:
     """Contour, bore, keyway, counter-hole and groove of a disc of a case; end: of its files."""
     cam, surfaces, cut = case.cam, made_surfaces(case, contour), None
     if cam.groove is not None:
-        cut = GrooveCut(surfaces[_OUTER], cam.groove.depth, cam.groove.outer_radius)
+        cut = GrooveCut(_step_cuts(case, contour, surfaces), cam.groove.outer_radius)
     return Outline(surfaces[end], cam.bore_radius, cam.keyway, drilled_hole(cam, contour), cut)
+
+
+def _step_cuts(
+    case: Case, contour: Contour, surfaces: Mapping[str, Contour]
+) -> tuple[StepCut, ...]:
+    """Steps of a groove with their walls; of the surfaces the inner one where a roller runs."""
+    groove, track = case.cam.groove, contour.require_roller()
+    if groove is None:
+        return ()
+    inner = surfaces[""].require_roller()
+    return tuple(
+        StepCut(
+            inner if step.inner == inner.roller_radius else groove_wall(track, "inner", step.inner),
+            groove_wall(track, "outer", step.outer),
+            step.bottom,
+        )
+        for step in groove.steps(track.roller_radius)
+    )
 
 
 def part_title(case: Case, end: str = "") -> PartTitle:
@@ -439,6 +495,9 @@ def write_workshop(
             jobs |= _jobs_of_disc(case, contour, end)
     for end, surface in surfaces.items():
         jobs |= _jobs_of(surface, end, case.workshop_order)
+    for end, wall in relieved_walls(case, contour).items():
+        every = _jobs_of(wall, end, case.workshop_order)
+        jobs |= {name: job for name, job in every.items() if not name.startswith("inspection")}
     for word, part in (("cam", case.cam), (case.facing.word, case.facing)):
         if part.crown is not None:
             jobs[CROWN.format(word)] = partial(_write_crown, case, word)

@@ -77,12 +77,13 @@ class DrawnSector(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class DrawnGroove:
     """Groove in a disc around the contour, its inner wall: outer wall (2, n), radius of the disc,
-    depth; mm.
+    depth; `second`: radius of a roller on the outer wall alone, None without; mm.
     """
 
     wall: Array
     radius: float
     depth: float
+    second: float | None = None
 
 
 @dataclass(frozen=True)
@@ -650,6 +651,9 @@ def _follower(m: DrawnMechanism) -> list[Shape]:
             DrawnOutline((circle(m.roller), circle(m.pin)), Pen("ink", edge.width, "card")),
             DrawnOutline((circle(m.pin),), edge),
         ]
+        if m.groove is not None and m.groove.second is not None:
+            hidden = Pen("ink", 0.5 * edge.width, dash="dashed")
+            made.append(DrawnOutline((circle(m.groove.second),), hidden))
     elif m.face is not None:
         width, thick = m.face
         made += [
@@ -718,6 +722,8 @@ def _first_contact(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
         return np.stack([centre[0] - across, centre[1]])
     angle = motion.pressure_angle - travel
     inwards = motion.pushes * np.stack([np.sin(angle), np.cos(angle)])
+    if m.groove is not None and m.groove.second is not None:
+        return np.asarray(centre - np.where(motion.pushes < 0.0, m.groove.second, radius) * inwards)
     return np.asarray(centre - radius * inwards)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -104,19 +105,39 @@ class Track:
         return np.array([half + size * np.sin(turn), low - size * (1.0 - np.cos(turn))])
 
 
-@dataclass(frozen=True, eq=False)
-class GrooveView:
-    """Groove around the contour, its inner wall; mm.
-
-    wall : array (2, n)   outer wall
-    width, depth, fillet  of the groove; radius of the disc
+class StepView(NamedTuple):
+    """Step of a groove, mm: inner and outer wall (2, n), their distances from the path of the
+    roller, depth of its floor below the face.
     """
 
-    wall: Array
-    width: float
+    inner: Array
+    outer: Array
+    inside: float
+    outside: float
     depth: float
+
+    @property
+    def width(self) -> float:
+        """Across the path."""
+        return self.inside + self.outside
+
+
+@dataclass(frozen=True, eq=False)
+class GrooveView:
+    """Groove in the face of a disc, with the contour as an inner wall; mm.
+
+    steps          from the face down
+    fillet, radius of the floor; of the disc
+    """
+
+    steps: tuple[StepView, ...]
     fillet: float
     radius: float
+
+    @property
+    def width(self) -> float:
+        """At the face."""
+        return self.steps[0].width
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,7 +259,8 @@ def _front(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
     contour = scale * part.contour + centre
     yield DrawnOutline((contour,), edge)
     if part.groove is not None:
-        for each in (part.groove.wall, part.edge):
+        walls = [wall for step in part.groove.steps for wall in step[:2]]
+        for each in (*(wall for wall in walls if wall is not part.contour), part.edge):
             yield DrawnOutline((scale * each + centre,), edge)
     yield DrawnOutline((scale * part.hole + centre,), edge)
     if part.counter_hole is not None:
@@ -367,15 +389,21 @@ def _cut(
     scale, (left, bottom, right, top) = part.scale, box
     turn = 0.5 * np.pi if bottom > y else 1.5 * np.pi
     sign = 1.0 if bottom > y else -1.0
-    near, far = sorted(y + sign * scale * radius_at(wall, turn)
-                       for wall in (part.contour, groove.wall))  # fmt: skip
-    floor = right - scale * groove.depth
-    for piece in ((left, bottom, right, near), (left, near, floor, far),
-                  (left, far, right, top)):  # fmt: skip
-        yield _thin(*hatching(piece, 2.5))
-    x = np.array([left, right, right, floor, floor, right, right, left])
-    heights = np.array([bottom, bottom, near, near, far, far, top, top])
-    yield DrawnOutline((np.stack([x, heights]),), Pen("ink", _EDGE))
+    down: list[tuple[float, float]] = []
+    up: list[tuple[float, float]] = []
+    floor = right
+    for step in groove.steps:
+        near, far = (y + sign * scale * radius_at(wall, turn) for wall in (step.inner, step.outer))
+        face, floor = floor, right - scale * step.depth
+        down += (face, near), (floor, near)
+        up += (face, far), (floor, far)
+        for low, high in ((bottom, near), (far, top)) if sign > 0 else ((bottom, far), (near, top)):
+            yield _thin(*hatching((floor, low, face, high), 2.5))
+    yield _thin(*hatching((left, bottom, floor, top), 2.5))
+    inside, outside = (bottom, top) if sign > 0 else (top, bottom)
+    corners = [(left, inside), (right, inside), *down, *reversed(up), (right, outside),
+               (left, outside)]  # fmt: skip
+    yield DrawnOutline((np.array(corners).T,), Pen("ink", _EDGE))
 
 
 def _detail(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
@@ -454,8 +482,8 @@ def _track(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
 
 
 def _groove(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
-    """Section of the groove across its path, open upwards: width, depth and fillets; nothing
-    without a groove.
+    """Section of the groove across its path, open upwards: width and depth of each step, fillets;
+    nothing without a groove.
 
     Parameters
     ----------
@@ -464,41 +492,54 @@ def _groove(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
     groove, scale = part.groove, part.track_scale
     if groove is None:
         return
-    half, depth, fillet = (scale * each for each in
-                           (0.5 * groove.width, groove.depth, groove.fillet))  # fmt: skip
-    rim, below = 0.35 * half, y - depth - 0.5 * half
+    fillet, deepest = scale * groove.fillet, groove.steps[-1]
+    floor, half = y - scale * deepest.depth, 0.5 * scale * groove.width
+    rim, below = 0.35 * half, floor - 0.5 * half
+    outer = rim + scale * max(max(step.inside, step.outside) for step in groove.steps)
     turn = np.linspace(0.0, 0.5 * np.pi, _ARC)
-    corner = np.array([[x + half - fillet], [y - depth + fillet]]) + fillet * np.stack(
-        [np.sin(turn), -np.cos(turn)])  # fmt: skip
-    mirrored = corner[:, ::-1] * [[-1.0], [1.0]] + [[2.0 * x], [0.0]]
-    outer = half + rim
+    arc = fillet * np.stack([np.sin(turn), -np.cos(turn)]) + np.array([[-fillet], [fillet]])
+    corner = arc + np.array([[x + scale * deepest.outside], [floor]])
+    mirrored = arc[:, ::-1] * [[-1.0], [1.0]]
+    mirrored = mirrored + np.array([[x - scale * deepest.inside], [floor]])
+    down: list[tuple[float, float]] = []
+    up: list[tuple[float, float]] = []
+    face = y
+    for step in groove.steps:
+        ends = x - scale * step.inside, x + scale * step.outside
+        foot = y - scale * step.depth
+        for box in ((x - outer, foot, ends[0], face), (ends[1], foot, x + outer, face)):
+            yield _thin(*hatching(box, 2.5))
+        down += (ends[0], face), (ends[0], foot)
+        up += (ends[1], face), (ends[1], foot)
+        face = foot
+    yield _thin(*hatching((x - outer, below, x + outer, floor), 2.5))
     outline = np.hstack([
-        np.array([[x - outer, x - half], [y, y]]), mirrored, corner,
-        np.array([[x + half, x + outer, x + outer, x - outer], [y, y, below, below]]),
+        np.array([(x - outer, y), *down[:-1]]).T, mirrored, corner,
+        np.array([*reversed(up[:-1]), (x + outer, y), (x + outer, below), (x - outer, below)]).T,
     ])  # fmt: skip
-    floor = y - depth
-    for box in ((x - outer, below, x + outer, floor), (x - outer, floor, x - half, y),
-                (x + half, floor, x + outer, y)):  # fmt: skip
-        yield _thin(*hatching(box, 2.5))
     yield DrawnOutline((outline,), Pen("ink", _EDGE))
     yield _thin(segment((x, below - 2.0), (x, y + 3.0)), dash="dashdot")
-    yield from _dimension((x - half, x + half), y, y + 8.0, f"{groove.width:.7g}", above=True)
-    beside = x - outer - 7.0
-    yield _thin(segment((x - outer, y), (beside - 2.0, y)),
-                segment((x - half, y - depth), (beside - 2.0, y - depth)))  # fmt: skip
-    middle = y - 0.5 * depth
-    yield from _arrow((beside, middle), (beside, y))
-    yield from _arrow((beside, middle), (beside, y - depth))
-    words = f"{groove.depth:.6g}"
-    yield Text(words, (beside - 2.0, middle - 1.2), _TEXT, align="end")
-    foot = (x + outer + 5.0, below - 7.0)
+    for k, step in enumerate(groove.steps):
+        ends = x - scale * step.inside, x + scale * step.outside
+        beside, foot = x - outer - 7.0 - 9.0 * k, y - scale * step.depth
+        line = y + 8.0 + 7.0 * k
+        yield from _dimension(ends, y if k == 0 else foot, line, f"{step.width:.7g}", above=True)
+        yield _thin(segment((x - outer, y), (beside - 2.0, y)),
+                    segment((ends[0], foot), (beside - 2.0, foot)))  # fmt: skip
+        middle = 0.5 * (y + foot)
+        yield from _arrow((beside, middle), (beside, y))
+        yield from _arrow((beside, middle), (beside, foot))
+        words = f"{step.depth:.6g}"
+        yield Text(words, (beside - 2.0, middle - 1.2), _TEXT, align="end")
+    note = (x + outer + 5.0, below - 7.0)
     touch = corner[:, _ARC // 2]
-    yield from _arrow(foot, (float(touch[0]), float(touch[1])))
-    yield _thin(segment((x - outer, foot[1]), foot))
+    yield from _arrow(note, (float(touch[0]), float(touch[1])))
+    yield _thin(segment((x - outer, note[1]), note))
     words = f"fillets R {groove.fillet:.4g}" if groove.fillet else "corners sharp"
-    yield Text(words, (x - outer, foot[1] + 1.2), _TEXT)
+    yield Text(words, (x - outer, note[1] + 1.2), _TEXT)
     title = f"D ({scale_words(scale)})"
-    yield Text(title, (x - outer - 12.0, y + 15.0), _TEXT, bold=True)
+    raised = 8.0 + 7.0 * len(groove.steps)
+    yield Text(title, (x - outer - 12.0, y + raised), _TEXT, bold=True)
 
 
 def _dimension(

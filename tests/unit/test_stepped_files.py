@@ -1,0 +1,121 @@
+"""Files of a groove of two steps: walls, paths of the cutter, solid, drawing file, dimensions."""
+
+import json
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.meshes.gmsh_mesher import session
+from camwright.meshes.step_solid import write_step
+from camwright.meshes.step_text import PartTitle
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.results.workshop_files import measured_surface, outline_of, write_workshop
+
+FILE = Path(__file__).parents[1] / "data" / "stepped_groove.toml"
+ENDS = {"": -23.51, "_outer": 21.01, "_inner_relief": -21.5, "_outer_relief": 24.0}  # mm
+
+
+@cache
+def stepped():
+    case = read_case(FILE)
+    return case, case.contour(given_lift(case))
+
+
+@pytest.fixture(scope="module")
+def workshop(tmp_path_factory):
+    folder, left_out = tmp_path_factory.mktemp("stepped"), []
+    write_workshop(folder, *stepped(), left_out.append)
+    assert left_out == []
+    return folder
+
+
+def rows(path):
+    return np.genfromtxt(path, delimiter=",", names=True)
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_walls_and_paths_of_the_cutter(workshop, end):
+    """Each wall at its distance from the path of the rollers; a tool of 21 mm runs within it."""
+    _, contour = stepped()
+    points, side = rows(workshop / f"contour{end}.csv"), np.sign(ENDS[end])
+    theta = np.radians(points["cam_angle_deg"])
+    path, normal = 1e3 * contour.pitch.points(theta), contour.pitch.normal(theta)
+    wall = np.stack([points["x_mm"], points["y_mm"]])
+    assert wall == pytest.approx(path + ENDS[end] * normal, abs=1e-6)
+    tool = rows(workshop / f"cutter{end}.csv")
+    centre = np.stack([tool["x_mm"], tool["y_mm"]])
+    aside = ENDS[end] - 21.0 * side
+    assert centre == pytest.approx(path + aside * normal, abs=1e-6)
+    assert (workshop / f"inspection{end}.csv").exists() == (end in ("", "_outer"))
+
+
+def volume_of(path):
+    with session() as gmsh:
+        gmsh.model.occ.importShapes(str(path))
+        gmsh.model.occ.synchronize()
+        ((_, solid),) = gmsh.model.getEntities(3)
+        return 1e-9 * gmsh.model.occ.getMass(3, solid)
+
+
+def closed_form(case, contour):
+    """Disc less bore, keyway and both steps, m3; a strip by its width and that of the path."""
+    cam, path, theta = case.cam, contour.pitch, uniform_turn(7200)
+    speed, curvature = path.speed_and_curvature(theta)
+    length, turned = speed.mean() * 2.0 * np.pi, (speed * curvature).mean() * 2.0 * np.pi
+    volume = np.pi * (cam.groove.outer_radius**2 - cam.bore_radius**2) * cam.width
+    for step in cam.groove.steps(case.roller.radius):
+        width, bent = step.inner + step.outer, step.outer**2 - step.inner**2
+        volume -= (step.bottom - step.top) * (width * length + 0.5 * bent * turned)
+    half, bore = 0.5 * cam.keyway.width, cam.bore_radius
+    at = np.sqrt(bore**2 - half**2)  # the keyway less the segment of the bore in it
+    segment = bore**2 * np.arcsin(half / bore) - half * at
+    return volume - (2.0 * half * (bore + cam.keyway.depth - at) - segment) * cam.width
+
+
+def test_the_solid_has_the_volume_of_the_disc_less_both_steps(workshop):
+    volume = volume_of(workshop / "cam.step")
+    assert volume == pytest.approx(closed_form(*stepped()), rel=1e-5)
+
+
+@pytest.mark.parametrize("radius", [0.0235, 0.0255])
+def test_a_step_under_the_upper_one_and_a_larger_second_roller(tmp_path, radius):
+    """Equal rollers, whose lower step reaches under the upper one; the second at the face."""
+    case, contour = stepped()
+    second = replace(case.cam.groove.second, radius=radius)
+    cam = replace(case.cam, groove=replace(case.cam.groove, second=second))
+    other = case.model_copy(update={"cam": cam})
+    path = tmp_path / "cam.step"
+    write_step(path, outline_of(other, contour), cam.width, PartTitle("cam"))
+    assert volume_of(path) == pytest.approx(closed_form(other, contour), rel=1e-5)
+
+
+def test_all_walls_are_in_the_drawing_file(workshop):
+    space = ezdxf.readfile(workshop / "contour.dxf").modelspace()
+    lines = [each for each in space.query("LWPOLYLINE") if each.dxf.layer == "groove"]
+    assert len(lines) == 4
+    words = " ".join(each.dxf.text for each in space.query("TEXT"))
+    assert "groove 47.51 mm wide and 18 mm deep, below 42.51 mm wide and 36 mm deep" in words
+    assert "rollers 47 mm on the inner and 42 mm on the outer wall" in words
+    assert "walls opposite to each roller 0.5 mm from it" in words
+
+
+def test_dimensions_of_both_steps(workshop):
+    groove = json.loads((workshop / "dimensions.json").read_text(encoding="utf-8"))["groove"]
+    assert (groove["width_mm"], groove["depth_mm"]) == pytest.approx((47.51, 36.0))
+    steps = [[step[f"{name}_mm"] for name in ("bottom", "inner", "outer")]
+             for step in groove["steps"]]  # fmt: skip
+    assert steps == [pytest.approx([18, 23.51, 24]), pytest.approx([36, 21.5, 21.01])]
+
+
+@pytest.mark.parametrize(("track", "away"), [("inner", -23.51e-3), ("outer", 21.01e-3)])
+def test_the_measured_walls_are_those_on_which_a_roller_runs(track, away):
+    case, contour = stepped()
+    wall, theta = measured_surface(case, contour, track), uniform_turn(36)
+    nominal = contour.pitch.points(theta) + away * contour.pitch.normal(theta)
+    assert wall.points(theta) == pytest.approx(nominal, abs=1e-12)
