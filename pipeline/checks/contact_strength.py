@@ -605,8 +605,7 @@ def contact_pressure_at_life(solution: Solution) -> Demand:
 def of_elements(solution: Solution, worst: Extreme) -> dict[str, float]:
     """Ratio of finite elements to half-spaces in the greatest stated pressure."""
     length = cycle_of(solution.cycles, worst).length
-    correction = None if length is None else length.correction
-    return {"r": 1.0 if correction is None else correction.signed}
+    return {"r": 1.0 if length is None else length.corrected_by}
 
 
 def signed_sentence(solution: Solution, worst: Extreme) -> str:

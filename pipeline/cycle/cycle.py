@@ -51,7 +51,12 @@ from camwright.pipeline.cycle.pivot_history import PivotHistory, pin_slopes, piv
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.camshaft_loads import ShaftLoads
-from camwright.pipeline.follower.follower_forces import Loads, axial_of_surge, follower_loads
+from camwright.pipeline.follower.follower_forces import (
+    Carried,
+    Loads,
+    axial_of_surge,
+    follower_loads,
+)
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions, guide_reactions
 from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_under, slopes_of
@@ -287,6 +292,24 @@ class Cycle(Tabled):
         """Signed contact pressure (n,), Pa, ends and tilt included; NaN without the ends."""
         factor = np.full(self.theta.size, np.nan) if self.length is None else self.length.factor
         return factor * self.contact.p0
+
+    @KeptResult
+    def on_other_track(self) -> Cycle | None:
+        """The cycle seen from the track that bears less, of preloaded discs; None of others.
+
+        Its contact and normal force are those of that track, the rest is of both.
+        """
+        if self.idle is None:
+            return None
+        loads, machine = self.loads, self.machine
+        there = Carried.at(self.contour.pitch, machine.system, self.theta, -loads.wall)
+        seen = replace(
+            loads, axial_force=-loads.axial_force, normal_force=loads.idle_force,
+            idle_force=loads.normal_force, pressure_angle=there.pressure_angle, turned=there.turned,
+        )  # fmt: skip
+        other = replace(self, turn=replace(self.turn, loads=seen), contact=self.idle, idle=None)
+        other.results.update({"shaft": self.shaft, "pin_slope": self.pin_slope})
+        return other
 
     @KeptResult
     def surface(self) -> ContactHistory:

@@ -132,6 +132,11 @@ class LengthHistory:
         return np.where(self.at_corner, CORNER_ERROR, BOUNDED_ERROR)
 
     @property
+    def corrected_by(self) -> float:
+        """Ratio of finite elements to half-spaces in the greatest signed pressure; 1 without."""
+        return 1.0 if self.correction is None else self.correction.signed
+
+    @property
     def centre_error(self) -> float:
         """Relative error bar of the pressure in the middle of a crowned line over plane strain."""
         if not self.is_crowned:

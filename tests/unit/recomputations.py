@@ -47,6 +47,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "second_track_gap",
     ),
     (_PAIR, "test_the_preload_is_judged_on_both_discs"): ("preload_least", "preload_pressure"),
+    (_PAIR, "test_the_ends_of_the_disc_that_bears_less_by_half_spaces"): ("other_edge_pressure",),
     (_GROOVE, "test_the_rim_is_a_cantilever_plate"): ("groove_wall",),
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",
