@@ -34,7 +34,7 @@ from camwright.pipeline.checks.solution_verification import RESIDUALS, synthesis
 from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.certificate_angles import begun
+from camwright.pipeline.cycle.certificate_angles import Position, begun
 from camwright.pipeline.preview import smoothing_record
 from camwright.pipeline.records.run_summary import StatedVerdict
 from camwright.pipeline.results import check_records, run_reader, signoff
@@ -391,7 +391,7 @@ def _drawn_angles(
     if not worst:
         return ()
     loaded = [
-        (number, int(k))
+        Position(number, int(k))
         for number, cycle in enumerate(trial.cycles)
         for k in np.flatnonzero(np.nan_to_num(cycle.contact.p0) > 0)
     ]
@@ -401,8 +401,8 @@ def _drawn_angles(
     with crew(jobs) as workers:
         points = begun(trial.cycles, chosen, workers, worst).points(progress.advance)
     return tuple(
-        _angle(run, trial, number, k, point)
-        for (number, k), point in zip(chosen, points, strict=True)
+        _angle(run, trial, at.case, at.index, point)
+        for at, point in zip(chosen, points, strict=True)
     )
 
 

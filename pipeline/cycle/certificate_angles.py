@@ -37,32 +37,61 @@ FINEST = 2
 _FINER_ABOVE = 0.005  # of cycle and certificate on two meshes: half of the limit
 
 
-def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int, int], ...]:
-    """Number of the load case and of the position of each angle to certify, at most `count`, the
-    most critical first.
+@dataclass(frozen=True)
+class Position:
+    """Contact to certify: numbers of load case and position, and whether it is that on the track of
+    preloaded discs that bears less there.
+    """
 
-    The greatest pressure on either track of a cam that pulls; extremes of pressure, load, curvature
+    case: int
+    index: int
+    idle: bool = False
+
+    def contact(self, cycles: Sequence[Cycle]) -> ContactHistory:
+        """Contact of the load case over the turn, on that track at this position."""
+        cycle = cycles[self.case]
+        return cycle.idle if self.idle and cycle.idle is not None else cycle.contact
+
+    def theta(self, cycles: Sequence[Cycle]) -> float:
+        """Cam angle, rad."""
+        return float(cycles[self.case].theta[self.index])
+
+    def pair(self, cycles: Sequence[Cycle]) -> ContactPair:
+        """Bodies in contact."""
+        pair = cycles[self.case].pair
+        return (pair.other_track if self.idle else pair).carrying(self.theta(cycles))
+
+
+def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[Position, ...]:
+    """Positions to certify, at most `count`, the most critical first.
+
+    The greatest pressure on either track of a cam that pulls, of preloaded discs also where the
+    other one bears more; extremes of pressure, load, curvature
     and its change over all load cases; then equal steps over the turn of the first. Of angles
     closer than four positions only one is certified.
     """
-    wanted: list[tuple[int, int]] = []
+    wanted: list[Position] = []
 
-    def take(case: int, index: int) -> None:
+    def take(case: int, index: int, *, idle: bool = False) -> None:
         """Add a position of a load case, unless it is unloaded or loaded within round-off, near one
         that is chosen, or beyond the count.
         """
-        contact = cycles[case].contact
+        at = Position(case, index, idle)
+        contact = at.contact(cycles)
         loaded = contact.p0[index] > 0 and not contact.below_round_off[index]
-        near = any(c == case and abs(i - index) < 4 for c, i in wanted)
+        near = any(
+            (each.case, each.idle) == (case, idle) and abs(each.index - index) < 4
+            for each in wanted
+        )
         if loaded and not near and len(wanted) < count:
-            wanted.append((case, index))
+            wanted.append(at)
 
     if cycles[0].loads.held:
         for wall in (1.0, -1.0):
-            on_track = [np.where(cycle.loads.wall == wall, np.nan_to_num(cycle.contact.p0), 0.0)
-                        for cycle in cycles]  # fmt: skip
+            on_track = [_on_track(cycle, wall) for cycle in cycles]
             case = first_greatest([pressure.max() for pressure in on_track])
-            take(case, first_greatest(on_track[case]))
+            index = first_greatest(on_track[case])
+            take(case, index, idle=bool(cycles[case].loads.wall[index] != wall))
     for extreme in _EXTREMES:
         for case, cycle in enumerate(cycles):
             take(case, first_greatest(extreme(cycle.contact)))
@@ -70,6 +99,14 @@ def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int
     for index in np.linspace(0, size, 4 * count, endpoint=False).astype(int):
         take(0, int(index))
     return tuple(wanted)
+
+
+def _on_track(cycle: Cycle, wall: float) -> Array:
+    """Contact pressure on a track over the turn (n,), Pa, 0 where it is not pressed or not known;
+    wall : 1 the first, -1 the other.
+    """
+    idle = 0.0 if cycle.idle is None else cycle.idle.p0
+    return np.nan_to_num(np.where(cycle.loads.wall == wall, cycle.contact.p0, idle))
 
 
 def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[LengthLoad, ...]:
@@ -161,15 +198,13 @@ _EXTREMES: tuple[Callable[[ContactHistory], Array], ...] = (
 )
 
 
-def finest_positions(
-    cycles: Sequence[Cycle], chosen: Sequence[tuple[int, int]]
-) -> tuple[tuple[int, int], ...]:
-    """The `FINEST` of the chosen (load case, position) with the greatest contact pressure, the
-    greatest first.
+def finest_positions(cycles: Sequence[Cycle], chosen: Sequence[Position]) -> tuple[Position, ...]:
+    """The `FINEST` of the chosen positions with the greatest contact pressure, the greatest
+    first.
     """
-    left, taken = list(chosen), list[tuple[int, int]]()
+    left, taken = list(chosen), list[Position]()
     while left and len(taken) < FINEST:
-        pressures = [cycles[case].contact.p0[k] for case, k in left]
+        pressures = [at.contact(cycles).p0[at.index] for at in left]
         taken.append(left.pop(first_greatest(pressures)))
     return tuple(taken)
 
@@ -180,7 +215,7 @@ class BegunCertificate:
 
     Parameters
     ----------
-    chosen : sequence   (load case, position) of each angle
+    chosen : sequence   position of each angle
     finest : sequence   those with the finest mesh; their orders hold for the others
     tasks : mapping     figures of a mesh by angle and edges per half-width
     finer : function    submits the finest mesh at another angle
@@ -188,10 +223,10 @@ class BegunCertificate:
     """
 
     cycles: Sequence[Cycle]
-    chosen: Sequence[tuple[int, int]]
-    finest: Sequence[tuple[int, int]]
-    tasks: Mapping[tuple[tuple[int, int], float], PendingCall]
-    finer: Callable[[tuple[int, int]], PendingCall]
+    chosen: Sequence[Position]
+    finest: Sequence[Position]
+    tasks: Mapping[tuple[Position, float], PendingCall]
+    finer: Callable[[Position], PendingCall]
     observed: tuple[CertificatePoint, ...] = ()
 
     def points(self, advance: Callable[[int, int], None]) -> tuple[CertificatePoint, ...]:
@@ -200,19 +235,18 @@ class BegunCertificate:
         Where two meshes leave more than `_FINER_ABOVE` to the cycle, with the finest mesh as well:
         the order of other angles does not hold for a coarse mesh that is off by chance.
         """
-        solved: dict[tuple[tuple[int, int], float], MeshFigures] = {}
+        solved: dict[tuple[Position, float], MeshFigures] = {}
         for key, task in self.tasks.items():
             solved[key] = task.result()
             advance(len(solved), len(self.tasks))
 
-        def point(at: tuple[int, int], worst: Sequence[CertificatePoint] = ()) -> CertificatePoint:
-            """Certificate point at (load case, position) from its solved meshes; `worst`: points on
-            three meshes, whose order holds for one on two.
+        def point(at: Position, worst: Sequence[CertificatePoint] = ()) -> CertificatePoint:
+            """Certificate point at a position from its solved meshes; `worst`: points on three
+            meshes, whose order holds for one on two.
             """
-            case, index = at
             meshes = [solved[at, edges] for edges in EDGES if (at, edges) in solved]
-            theta = float(self.cycles[case].theta[index])
-            return certificate_point(self.cycles[case].contact, index, theta, meshes, worst)
+            history, theta = at.contact(self.cycles), at.theta(self.cycles)
+            return certificate_point(history, at.index, theta, meshes, worst)
 
         worst = {at: point(at) for at in self.finest}
         observed = self.observed or tuple(worst.values())
@@ -229,38 +263,33 @@ class BegunCertificate:
 
 def begun(
     cycles: Sequence[Cycle],
-    chosen: Sequence[tuple[int, int]],
+    chosen: Sequence[Position],
     workers: Crew,
     observed: tuple[CertificatePoint, ...] = (),
     store: ContactStore = NOT_STORED,
 ) -> BegunCertificate:
-    """Certificate at chosen (load case, position), numbers both, its meshes submitted to worker
-    processes.
+    """Certificate at chosen positions, its meshes submitted to worker processes.
 
     The finest mesh is solved at `finest_positions` alone; nowhere with the points `observed` on
     three meshes, whose orders then hold, and where the two coarser ones leave too much to the
     cycle. Figures that the store has are not solved again.
     """
 
-    def submitted(at: tuple[int, int], edges: float, number: int) -> PendingCall:
-        """Pending figures of a mesh at (load case, position); number : of the piece in the
-        store.
-        """
-        cycle, index = cycles[at[0]], at[1]
-        theta = float(cycle.theta[index])
-        loaded = cycle.pair.carrying(theta)
-        force = float(cycle.contact.line_load[index]) * loaded.width
-        return workers.submit(_figures, store, number, loaded, theta, force, edges)
+    def submitted(at: Position, edges: float, number: int) -> PendingCall:
+        """Pending figures of a mesh at a position; number : of the piece in the store."""
+        loaded = at.pair(cycles)
+        force = float(at.contact(cycles).line_load[at.index]) * loaded.width
+        return workers.submit(_figures, store, number, loaded, at.theta(cycles), force, edges)
 
     finest = () if observed else finest_positions(cycles, chosen)
-    tasks: dict[tuple[tuple[int, int], float], PendingCall] = {}
+    tasks: dict[tuple[Position, float], PendingCall] = {}
     for edges in reversed(EDGES):  # the longest first
         for at in chosen:
             if edges == EDGES[-1] and at not in finest:
                 continue
             tasks[at, edges] = submitted(at, edges, len(tasks))
 
-    def finer(at: tuple[int, int]) -> PendingCall:
+    def finer(at: Position) -> PendingCall:
         return submitted(at, EDGES[-1], len(tasks) + chosen.index(at))
 
     return BegunCertificate(cycles, chosen, finest, tasks, finer, observed)

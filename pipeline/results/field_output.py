@@ -82,7 +82,7 @@ def write_fields(
     if shown is Shown.NONE:
         return
     certified = positions_to_certify(final.cycles, final.case.solver.certificate_positions)
-    positions = shown_positions(cycle, shown, [k for number, k in certified if number == chosen])
+    positions = shown_positions(cycle, shown, [at.index for at in certified if at.case == chosen])
     write_stress(folder / STRESS, TurnFields(cycle.pair, bodies, cycle), positions, advance)
     script = files("camwright.pipeline.results") / "templates" / VIEW
     write_atomic(folder / VIEW, script.read_bytes())

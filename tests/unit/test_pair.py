@@ -109,7 +109,7 @@ def test_an_angle_whose_coarse_mesh_is_off_has_the_finest_one_as_well(monkeypatc
     )  # fmt: skip
     monkeypatch.setattr(certificate_angles, "mesh_figures", figures)
     cycles = [SimpleNamespace(theta=theta, contact=contact, pair=round_cam())]
-    chosen = [(0, 0), (0, 3), (0, 1), (0, 2)]
+    chosen = [certificate_angles.Position(0, k) for k in (0, 3, 1, 2)]
     with crew(1) as workers:
         begun = certificate_angles.begun(cycles, chosen, workers)
         points = begun.points(lambda done, count: None)

@@ -4,8 +4,10 @@ Places of the second track by the geometry of stem, arm and yoke; contact agains
 bodies in full on fine meshes of their own.
 """
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.checks.torque_balance import pressure_torque
 from camwright.pipeline.contact.bore_stress import bore_stress
 from camwright.pipeline.contact.certificate import mesh_figures
+from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.certificate_angles import positions_to_certify
@@ -163,9 +166,41 @@ def test_either_track_is_certified_where_it_is_pressed_most(name):
     chosen = positions_to_certify(cycles, 4)
     for wall in (1.0, -1.0):
         most = max(np.where(c.loads.wall == wall, c.contact.p0, 0.0).max() for c in cycles)
-        there = [cycles[case].contact.p0[k] for case, k in chosen
-                 if cycles[case].loads.wall[k] == wall]  # fmt: skip
+        there = [cycles[at.case].contact.p0[at.index] for at in chosen
+                 if cycles[at.case].loads.wall[at.index] == wall]  # fmt: skip
         assert max(there) == most
+
+
+def test_a_preloaded_disc_that_never_bears_more_is_certified():
+    """Under a force that pushes all over the turn the second disc has its worst angle, too: its own
+    bodies under its own force, 1 % from the pressure of Hertz on a mesh of four elements.
+    """
+    cycle, pair = loaded(PRESSED)
+    pushed = np.abs(cycle.loads.axial_force) + 10.0
+    loads = cycle.loads
+    track = loads.second.track(cycle.contour.pitch)
+    first, second = cycle.machine.disc_preload.at(track, loads.theta).forces(pushed)
+    first = first / np.cos(cycle.contour.pitch.pressure_angle(loads.theta))
+    second = second * 90.0 / 85.0 / np.cos(track.contour.pitch.pressure_angle(loads.theta))
+    loads = replace(loads, axial_force=pushed, normal_force=first, idle_force=second)
+    pair = under_load(contact_pair(cycle.machine, cycle.contour), loads)
+    theta = loads.theta
+    turned = SimpleNamespace(
+        theta=theta, loads=loads, pair=pair,
+        contact=closed_form_history(pair, theta, first),
+        idle=closed_form_history(pair.other_track, theta, second),
+    )  # fmt: skip
+    chosen = positions_to_certify([turned], 4)
+    assert [at.idle for at in chosen[:2]] == [False, True]
+    worst = chosen[1]
+    assert turned.idle.p0[worst.index] == pytest.approx(turned.idle.p0.max(), rel=1e-8)
+    at = worst.theta([turned])
+    body = worst.pair([turned])
+    assert body.follower.radius == pytest.approx(0.022)
+    force = float(worst.contact([turned]).line_load[worst.index]) * body.width
+    assert force == pytest.approx(second[worst.index], rel=1e-12)
+    full = mesh_figures(body, at, force, 4.0)
+    assert full.p0 == pytest.approx(turned.idle.p0[worst.index], rel=1e-2)
 
 
 @pytest.mark.slow
