@@ -132,6 +132,12 @@ class LiftParts:
         value, theta = self.greatest(lambda s, s1, s2: -function(s, s1, s2))
         return Extremum(-value, theta)
 
+    def sunk(self, ratio: float = 1.0) -> LiftParts:
+        """Lift of a second roller, which goes down as the first goes up, times a ratio."""
+        top = self.greatest(lambda s, *_: s).value
+        parts = (replace(part, derivatives=partial(_sunk, part, top, ratio)) for part in self.parts)
+        return LiftParts(tuple(parts))
+
     @cached_property
     def stroke(self) -> float:
         """Maximum less minimum lift, m."""
@@ -153,6 +159,13 @@ def _minus_at(
 ) -> Array:
     inside = np.clip(x, 0.0, 1.0)
     return -_at(part, function, added, inside, part.derivatives(inside))
+
+
+def _sunk(part: LiftPart, top: float, ratio: float, x: Array) -> Array:
+    """Derivatives (3, ...) at places x (...) of `ratio` times `top` less the lift of a part, m."""
+    rows = -ratio * part.derivatives(x)
+    rows[0] += ratio * top
+    return rows
 
 
 def _half(segment: Segment, level: float, half: int, x: Array) -> Array:

@@ -37,9 +37,10 @@ def sizes(
     """Find base radius, offset, roller, face and spring that a case leaves open.
 
     CASE may leave out cam.prime_radius, cam.offset, roller.radius, follower.face.width, spring.rate
-    and spring.preload, and of an arm follower.arm.centre_distance; those left out are found, as
-    small as the limits allow, the others kept. The exit code is that of the checks that they
-    decide, in the preview.
+    and spring.preload, of an arm follower.arm.centre_distance and of a pair of discs
+    cam.conjugate.distance or arm_angle, and roller_radius; those left out are found, as small as
+    the limits allow, the others kept. The exit code is that of the checks that they decide, in the
+    preview.
 
     Example: camwright design sizes feed.toml --free cam.prime_radius --out feed_sized.toml
     """

@@ -55,6 +55,10 @@ class RollerSizeRecord(SizeLengths):
     """Least convex radius of the pitch curve."""
     concave_pitch_radius_min_mm: float | None
     """Least concave radius of the pitch curve; null: it is convex."""
+    second_prime_radius_mm: NotRequired[float]
+    """Prime radius of the second disc of a conjugate pair; absent without one."""
+    second_roller_radius_mm: NotRequired[float]
+    """Radius of its roller."""
 
 
 @form()

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from camwright.geometry.arm_path import Arm
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import write_atomic
@@ -29,11 +30,16 @@ from camwright.pipeline.case.toml_text import Tables, TomlValue
 PRIME, OFFSET = "cam.prime_radius", "cam.offset"
 ROLLER, FACE = "roller.radius", "follower.face.width"
 DISTANCE = "follower.arm.centre_distance"
+APART, ARMS_ANGLE = "cam.conjugate.distance", "cam.conjugate.arm_angle"
+SECOND_ROLLER = "cam.conjugate.roller_radius"
+PLACES = APART, ARMS_ANGLE
+"""Keys of the place of the second roller of a pair of discs, on a stem or an arm."""
 RATE, PRELOAD = "spring.rate", "spring.preload"
 
 _PROVISIONAL: Mapping[str, str] = {
     PRIME: "9000 mm", OFFSET: "0 mm", ROLLER: "4000 mm", FACE: "9900 mm",
-    RATE: "1 kN/m", PRELOAD: "1 N", DISTANCE: "9000 mm",
+    RATE: "1 kN/m", PRELOAD: "1 N", DISTANCE: "9000 mm", APART: "9900 mm", ARMS_ANGLE: "179 deg",
+    SECOND_ROLLER: "1 mm",
 }  # fmt: skip
 """Values that contradict no others, until the sizes are known; of a roller without a hub, and of a
 follower on a stem."""
@@ -64,6 +70,11 @@ class OpenCase:
     gaps: tuple[str, ...]
     text: str
     folder: Path | None = None
+
+    @property
+    def grows(self) -> bool:
+        """Whether the size of a disc is open: its prime radius, or the place of a second roller."""
+        return bool({PRIME, *PLACES} & {*self.gaps})
 
     def with_sources(self, values: Mapping[str, float], sources: Mapping[str, str]) -> str:
         """Text of the complete case: the file's text, the values as tables ``[[added]]``.
@@ -154,12 +165,17 @@ def parse_open_case(
     tables = resolved(stated, folder)
     flat = _entry(tables, "follower.kind") == "flat"
     other = ROLLER if flat or _entry(tables, "follower.face.depth") is not None else FACE
-    absent = {other, OFFSET if isinstance(_entry(tables, "follower.arm"), dict) else DISTANCE}
+    swings = isinstance(_entry(tables, "follower.arm"), dict)
+    absent = {other, *((OFFSET, APART) if swings else (DISTANCE, ARMS_ANGLE))}
+    if _entry(tables, "cam.closure") != "conjugate":
+        absent |= {*PLACES, SECOND_ROLLER}
     gaps = tuple(key for key in GAPS if key not in absent and _entry(tables, key) is None)
-    provisional = {**_PROVISIONAL, **_of_arm(tables), **_of_groove(tables)}
-    if gaps and _entry(tables, "cam.closure") == "conjugate":
-        limit = '"spring", "gravity", "groove" or "yoke" for sizes: those of two discs'
-        raise InputError("cam.closure", "conjugate", limit + " are not sought")
+    provisional = {
+        **_PROVISIONAL,
+        **_of_arm(tables),
+        **_of_groove(tables),
+        **_between_rollers(tables),
+    }
     for key in gaps:
         enter(tables, key, _least_roller(tables) if key == ROLLER else provisional[key])
     case = completed(validated(tables), folder)
@@ -214,6 +230,22 @@ def _of_groove(tables: Tables) -> Mapping[str, str]:
     size = units.parse(_least_roller(tables) if roller is None else roller, "mm", ROLLER)
     within = units.parse(outer, "mm", "cam.groove.outer_radius") - _WITHIN_GROOVE * size
     return {PRIME: units.format(within, "mm")}
+
+
+def _between_rollers(tables: Tables) -> Mapping[str, str]:
+    """Prime radius half way between both rollers of a pair of discs whose place is stated: at half
+    of their distance, or of the angle between their arms; {} otherwise.
+    """
+    keys = (*PLACES, DISTANCE, "follower.arm.length")
+    apart, angle, distance, length = (_entry(tables, key) for key in keys)
+    if isinstance(apart, str):
+        return {PRIME: units.format(0.5 * units.parse(apart, "mm", APART), "mm")}
+    if not (isinstance(angle, str) and isinstance(distance, str) and isinstance(length, str)):
+        return {}
+    centre, long = (units.parse(each, "mm", DISTANCE) for each in (distance, length))
+    arm = Arm(centre, long, 1.0)
+    half = 0.5 * units.parse(angle, "deg", ARMS_ANGLE)
+    return {PRIME: units.format(float(arm.radius(half)), "mm")}
 
 
 def _least_roller(tables: Tables) -> str:

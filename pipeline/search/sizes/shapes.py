@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from camwright.geometry.arm_path import Arm
 from camwright.geometry.arm_size import ArmCam, ArmFaceCam
 from camwright.geometry.arrays import Array
 from camwright.geometry.cam_size import (
@@ -26,7 +27,7 @@ from camwright.geometry.lift_parts import LiftParts
 from camwright.pipeline.base.crossing import first_passing
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import value_of
+from camwright.pipeline.case.case_values import unit_at, value_of
 from camwright.pipeline.case.lift_section import LiftEccentric, LiftSegments, motion_of
 from camwright.pipeline.case.limits import (
     CURVATURE_RATIO,
@@ -37,13 +38,18 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.cam_shape import least_concave_radius
+from camwright.pipeline.contact.cam_body import CamConjugate
 from camwright.pipeline.records.size_document import FaceSizeRecord, RollerSizeRecord, SizeLengths
 from camwright.pipeline.search.sizes.open_case import (
+    APART,
+    ARMS_ANGLE,
     DISTANCE,
     FACE,
     OFFSET,
+    PLACES,
     PRIME,
     ROLLER,
+    SECOND_ROLLER,
     OpenCase,
 )
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -52,6 +58,8 @@ DIGITS = 6
 """Decimal digits of a sized length in m: a micrometre."""
 _ROLLER_HALVINGS = 10
 """Of the range of a roller; a thousandth of the tool radius is left."""
+_DRAWN_DEGREES = 1e4
+"""Parts of a degree in an angle between arms on a drawing."""
 _RADII_THAT_TIE = 1e-9
 """Relative difference of two radii up to which they are equal."""
 
@@ -65,7 +73,8 @@ class Shape(NamedTuple):
     """Prime or base radius, offset, roller radius or face width, m; governing limit in words.
 
     Under a flat face the prime radius is the base radius; of an arm the centre distance is in place
-    of the offset.
+    of the offset. second_place: of the second roller of a pair of discs, distance of the rollers on
+    a stem, m, or angle between the arms, rad.
     """
 
     prime_radius: float
@@ -74,11 +83,95 @@ class Shape(NamedTuple):
     face_width: float
     governs: str
     offset_governs: str = BALANCE
+    second_place: float = 0.0
+    second_roller: float = 0.0
 
     @property
     def base_radius(self) -> float:
         """Radius of the base circle, m."""
         return self.prime_radius - self.roller_radius
+
+
+@dataclass(frozen=True, eq=False)
+class SecondDiscShape:
+    """Second disc of a conjugate pair, whose size follows from that of the first and the place of
+    its roller.
+
+    Parameters
+    ----------
+    case : Case           with the arms of the rollers, or their stem
+    pair : CamConjugate   of the case
+    gaps : tuple          open keys
+    """
+
+    case: Case
+    pair: CamConjugate
+    gaps: tuple[str, ...]
+
+    @property
+    def placed(self) -> bool:
+        """Whether the case states the place of its roller."""
+        return not {*PLACES} & {*self.gaps}
+
+    @property
+    def rolls_as_first(self) -> bool:
+        """Whether its roller is open, and then like the first."""
+        return SECOND_ROLLER in self.gaps
+
+    @property
+    def _stated(self) -> float:
+        """Place of the roller in the case: distance, m, or angle, rad."""
+        apart = self.pair.arm_angle if self.pair.distance is None else self.pair.distance
+        return float("nan") if apart is None else apart
+
+    def roller(self, shape: Shape) -> float:
+        """Radius of its roller, m."""
+        return shape.roller_radius if self.rolls_as_first else self.pair.roller_radius
+
+    def cam(self, lift: LiftParts) -> RollerCam:
+        """Cam of its roller, by the lift of the first."""
+        arm, length = self.case.follower.arm, self.pair.arm_length
+        if arm is None or length is None:
+            return GivenLiftCam(lift.sunk())
+        return ArmCam(lift.sunk(length / arm.length), length, -arm.sense)
+
+    def aside(self, shape: Shape) -> float:
+        """Offset of its roller, m; of an arm the centre distance."""
+        return shape.offset if self.case.follower.arm is not None else -shape.offset
+
+    def _first(self, shape: Shape, lift: LiftParts) -> float:
+        """Part of the place by the first roller at maximum lift: height, m, or arm angle, rad."""
+        arm, top = self.case.follower.arm, lift.greatest(lambda s, *_: s).value
+        if arm is None:
+            return float(np.sqrt(shape.prime_radius**2 - shape.offset**2)) + top
+        linkage = Arm(shape.offset, arm.length, arm.sense)
+        return float(linkage.angle(shape.prime_radius)) + top / arm.length
+
+    def _linkage(self, shape: Shape) -> Arm | None:
+        """Arm of its roller; None of a stem."""
+        arm, length = self.case.follower.arm, self.pair.arm_length
+        if arm is None or length is None:
+            return None
+        return Arm(shape.offset, length, -arm.sense)
+
+    def place(self, shape: Shape, lift: LiftParts, prime: float) -> float:
+        """Place of its roller, m or rad, with a prime radius, m, rounded up to that of a drawing;
+        that of the case where it is stated.
+        """
+        if self.placed:
+            return self._stated
+        arm, first = self._linkage(shape), self._first(shape, lift)
+        if arm is None:
+            return rounded_up(first + float(np.sqrt(prime**2 - shape.offset**2)))
+        degrees = np.degrees(first + float(arm.angle(prime)))
+        return float(np.radians(np.ceil(_DRAWN_DEGREES * degrees) / _DRAWN_DEGREES))
+
+    def prime_radius(self, shape: Shape, lift: LiftParts) -> float:
+        """Its prime radius, m, with the place of its roller; NaN where that is beyond the axis."""
+        left, arm = shape.second_place - self._first(shape, lift), self._linkage(shape)
+        if not left > 0.0:
+            return np.nan
+        return float(np.hypot(left, shape.offset) if arm is None else arm.radius(left))
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +185,14 @@ class RollerShapes:
     gaps : tuple           open keys
     cam : RollerCam
     least_radius : float   least convex radius of the contour, m, >= 0
+    second : SecondDiscShape    of a pair of discs; None without one
     """
 
     case: Case
     gaps: tuple[str, ...]
     cam: RollerCam
     least_radius: float = 0.0
+    second: SecondDiscShape | None = None
 
     @property
     def _aside(self) -> str:
@@ -153,7 +248,8 @@ class RollerShapes:
         """
         if PRIME not in self.gaps:
             prime, roller = self.case.cam.prime_radius, self._least_roller
-            return self._faced(Shape(prime, self._offset(prime, roller), roller, 0.0, "given"))
+            stated = Shape(prime, self._offset(prime, roller), roller, 0.0, "given")
+            return self._paired(self._faced(stated))
         roller = self._roller_of_tool()
         limits = self.limits(roller)
         offset = rounded(self._smallest(limits).offset)
@@ -168,7 +264,35 @@ class RollerShapes:
         if wall > prime:
             prime, governs = wall, "wall around the bore"
             offset, by_offset = self._offset(prime, roller), BALANCE
-        return self._faced(Shape(prime, offset, roller, 0.0, governs, by_offset))
+        return self._paired(self._faced(Shape(prime, offset, roller, 0.0, governs, by_offset)))
+
+    def _paired(self, shape: Shape, prime: float = 0.0) -> Shape:
+        """Shape with the second disc of a pair: of a prime radius, m, but not smaller than its
+        limits allow.
+
+        Raises
+        ------
+        InputError
+            If a stated place of its roller leaves it a smaller one.
+        """
+        if self.second is None:
+            return shape
+        lift, roller = self.parts(shape), self.second.roller(shape)
+        cam, aside = self.second.cam(lift), self.second.aside(shape)
+        least = cam.least_prime_radius(self.limits(roller), aside)
+        least = max(least, least_base_circle(self.case) + roller)
+        apart = self.second.place(shape, lift, max(least, prime))
+        paired = shape._replace(second_place=apart, second_roller=roller)
+        left = self.second.prime_radius(paired, lift)
+        if not left >= least * (1.0 - _RADII_THAT_TIE):
+            key = APART if self.case.follower.arm is None else ARMS_ANGLE
+            least_words = f"farther: the second disc needs a prime radius of {shown(least, 'mm')}"
+            raise InputError(key, shown(apart, unit_at(key)), least_words)
+        return paired
+
+    def _second_prime(self, shape: Shape) -> float:
+        """Prime radius of the second disc of a pair, m; 0 without one."""
+        return 0.0 if self.second is None else self.second.prime_radius(shape, self.parts(shape))
 
     def _faced(self, shape: Shape) -> Shape:
         """Shape with the narrowest curved face, whose contact lies r sin(alpha) from its middle;
@@ -217,14 +341,22 @@ class RollerShapes:
         return rounded(self.cam.best_offset(prime, self.limits(roller)))
 
     def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:
-        """Shape with a larger prime radius, m, and its best offset."""
+        """Shape with a larger prime radius, m, and its best offset; the second disc of a pair in
+        proportion, alone where the prime radius is stated.
+        """
+        share = prime / shape.prime_radius
+        if PRIME not in self.gaps:
+            return self._paired(shape, share * self._second_prime(shape))
         offset = self._offset(prime, shape.roller_radius)
         larger = Shape(prime, offset, shape.roller_radius, shape.face_width, governs, BALANCE)
-        return self._faced(larger)
+        return self._paired(self._faced(larger), share * self._second_prime(shape))
 
     def with_radius(self, shape: Shape, prime: float) -> Shape:
-        """A shape with another prime radius, m, and the narrowest face for it where it is open."""
-        return self._faced(shape._replace(prime_radius=prime))
+        """A shape with another prime radius, m, and the narrowest face for it where it is open; the
+        second disc of a pair larger by the profile tolerance.
+        """
+        larger = self._faced(shape._replace(prime_radius=prime))
+        return self._paired(larger, self._second_prime(shape) + allowance(self.case))
 
     def parts(self, shape: Shape) -> LiftParts:
         """Lift of a shape."""
@@ -240,6 +372,15 @@ class RollerShapes:
             f" {shown(pitch.back.value, 'deg')} on the return; convex pitch radius"
             f" {shown(pitch.convex_radius.value, 'mm')}"
         )
+        if self.second is not None:
+            other = self.second.cam(self.parts(shape))
+            prime = self._second_prime(shape)
+            pair = other.extremes(prime, self.second.aside(shape))
+            words += (
+                f"; second disc: prime radius {shown(prime, 'mm', 6)}, pressure angle"
+                f" {shown(pair.pressure_angle.value, 'deg')}, convex pitch radius"
+                f" {shown(pair.convex_radius.value, 'mm')}"
+            )
         if ROLLER not in self.gaps:
             return words
         low, high = self.roller_range(shape)
@@ -262,12 +403,24 @@ class RollerShapes:
         }
         if swings:
             record["centre_distance_mm"] = in_unit(shape.offset, "mm")
+        if self.second is not None:
+            record["second_prime_radius_mm"] = in_unit(self._second_prime(shape), "mm")
+            record["second_roller_radius_mm"] = in_unit(shape.second_roller, "mm")
         return record
 
     def roller_range(self, shape: Shape) -> tuple[float, float]:
         """Least and greatest roller radius of a shape by bearing, curvature, tool and wall, m."""
-        small = shape.prime_radius - allowance(self.case)
-        pitch = self.cam.extremes(small, shape.offset)
+        least, most = self._range_on(self.cam, shape.prime_radius, shape.offset)
+        if self.second is None or not self.second.rolls_as_first:
+            return least, most
+        other = self.second.cam(self.parts(shape))
+        on = self._range_on(other, self._second_prime(shape), self.second.aside(shape))
+        return max(least, on[0]), min(most, on[1])
+
+    def _range_on(self, cam: RollerCam, prime: float, aside: float) -> tuple[float, float]:
+        """Least and greatest roller radius on a disc of a prime radius, m; see `roller_range`."""
+        small = prime - allowance(self.case)
+        pitch = cam.extremes(small, aside)
         convex = pitch.convex_radius.value
         most = min(convex / self._convex_share, convex - self.least_radius)
         most = min(most, small - least_base_circle(self.case))
@@ -289,13 +442,20 @@ class RollerShapes:
             raise InputError(ROLLER, shown(least, "mm"), limit)
         ring = self.case.roller.bearing.ring
         if ring is not None:
-            return shape._replace(roller_radius=least)
+            return self._rolling(shape, least)
 
         def pressed(radius: float) -> float:
             return float(np.max(force / (radius * (1.0 - radius * curvature))))
 
         radius = rounded(least_argument(pressed, least, most))
-        return shape._replace(roller_radius=float(np.clip(radius, least, most)))
+        return self._rolling(shape, float(np.clip(radius, least, most)))
+
+    def _rolling(self, shape: Shape, radius: float) -> Shape:
+        """A shape with another roller, m; on both discs where both are open."""
+        rolling = shape._replace(roller_radius=radius)
+        if self.second is None:
+            return rolling
+        return rolling._replace(second_roller=self.second.roller(rolling))
 
 
 @dataclass(frozen=True, eq=False)
@@ -417,12 +577,13 @@ def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
     if not 0.0 <= least_radius < np.inf:
         raise InputError("least radius", least_radius, ">= 0 m")
     case, section, gaps = opened.case, opened.case.lift, opened.gaps
-    arm = case.follower.arm
+    arm, pair = case.follower.arm, case.cam.conjugate
+    second = None if pair is None else SecondDiscShape(case, pair, gaps)
     if isinstance(section, LiftEccentric) and case.follower.kind != "flat":
         if arm is not None:
             limit = "segments, points or a file for the sizes of an arm"
             raise InputError("lift.kind", "eccentric", limit)
-        return RollerShapes(case, gaps, EccentricCam(section.eccentricity), least_radius)
+        return RollerShapes(case, gaps, EccentricCam(section.eccentricity), least_radius, second)
     if isinstance(section, LiftSegments):
         parts = LiftParts.of_motion(motion_of(section))
     else:
@@ -434,8 +595,8 @@ def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
         if plane is not None:
             of_face = ArmFaceCam(parts, arm.length, arm.sense, plane)
             return FaceShapes(case, gaps, of_face, least_radius)
-        return RollerShapes(case, gaps, ArmCam(parts, arm.length, arm.sense), least_radius)
-    return RollerShapes(case, gaps, GivenLiftCam(parts), least_radius)
+        return RollerShapes(case, gaps, ArmCam(parts, arm.length, arm.sense), least_radius, second)
+    return RollerShapes(case, gaps, GivenLiftCam(parts), least_radius, second)
 
 
 def aside_of(case: Case) -> str:
@@ -471,5 +632,8 @@ def values_of(shape: Shape, gaps: tuple[str, ...]) -> Mapping[str, float]:
         DISTANCE: shape.offset,
         ROLLER: shape.roller_radius,
         FACE: shape.face_width,
+        APART: shape.second_place,
+        ARMS_ANGLE: shape.second_place,
+        SECOND_ROLLER: shape.second_roller,
     }
     return {key: value for key, value in values.items() if key in gaps}

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.figures import DrawnAxes, Figure, plotted
@@ -62,16 +63,19 @@ from camwright.pipeline.checks.spring_strength import (
 )
 from camwright.pipeline.checks.tolerance_corners import governed, outcomes, spring_corners
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.search.change import Change
 from camwright.pipeline.search.judge import NOT_RAISED, Depth, Judge, Judgement, failing
 from camwright.pipeline.search.sizes.open_case import (
     DISTANCE,
     FACE,
     OFFSET,
+    PLACES,
     PRELOAD,
     PRIME,
     RATE,
     ROLLER,
+    SECOND_ROLLER,
     OpenCase,
     read_open_case,
 )
@@ -116,6 +120,7 @@ _SHAPE = (
 _SPRING = (*_HELD, *_WOUND, spring_travel, spring_rate)
 JUDGED: Mapping[str, tuple[Declaration, ...]] = {
     PRIME: _SHAPE, OFFSET: _SHAPE, DISTANCE: _SHAPE, ROLLER: _SHAPE, FACE: (face_width,),
+    **dict.fromkeys((*PLACES, SECOND_ROLLER), _SHAPE),
     RATE: _SPRING, PRELOAD: _SPRING,
 }  # fmt: skip
 """Checks that an open key decides."""
@@ -203,7 +208,7 @@ class Sizing(Displayed):
     def no_size(self) -> bool:
         """Whether checks fail that depend on the size, at every size tried."""
         small = any(each.status == "fail" and each.declaration in _GROWTH for each in self.checks)
-        return small and PRIME in self.opened.gaps
+        return small and self.opened.grows
 
     @property
     def greatest_tried(self) -> float:
@@ -224,7 +229,9 @@ def size(
     ----------
     path : str or Path     case file without any of `cam.prime_radius`, `cam.offset`,
                            `roller.radius`, `follower.face.width`,
-                           `follower.arm.centre_distance`, `spring.rate`, `spring.preload`
+                           `follower.arm.centre_distance`, `spring.rate`, `spring.preload` and, of
+                           a pair of discs, `cam.conjugate.distance`, `cam.conjugate.arm_angle`,
+                           `cam.conjugate.roller_radius`
     free : collection      those of these keys whose values in the file are not kept
     least_radius : float   least convex radius of the contour, m
     """
@@ -287,7 +294,7 @@ class _SizeSearch:
         for _ in range(_TRIES):
             # the preview adds tolerances, surge, elastic stem and guides to the screening
             screened = self._screened(best.shape, best.spring)
-            small = failing(best.checks, _GROWTH) if PRIME in self.opened.gaps else ()
+            small = failing(best.checks, _GROWTH) if self.opened.grows else ()
             if self._spring_is_open and (loose := failing(best.checks, _HELD)):
                 firm = self._firm(exact, best.spring, _titles(loose), raised)
                 if firm is None:
@@ -400,6 +407,8 @@ class _SizeSearch:
             FACE: "sized: travel of the contact and its half-width",
             RATE: f"sized: {spring.rate_by}",
             PRELOAD: f"sized: {spring.preload_by}",
+            **dict.fromkeys(PLACES, "sized: smallest second disc, as the first one grows"),
+            SECOND_ROLLER: "sized: as the first roller",
         }
         return {key: words[key] for key in self.opened.gaps}
 
@@ -425,8 +434,10 @@ class _SizeSearch:
         spring : ChosenSpring   with which it is screened
         """
         gaps = self.opened.gaps
-        if PRIME in gaps:
-            prime = rounded_up(shape.prime_radius + allowance(self.opened.case))
+        if self.opened.grows:
+            prime = shape.prime_radius
+            if PRIME in gaps:
+                prime = rounded_up(prime + allowance(self.opened.case))
             shape = self.shapes.with_radius(shape, prime)
         if FACE in gaps:
             shape = shape._replace(face_width=rounded_up(shape.face_width))
@@ -440,13 +451,8 @@ class _SizeSearch:
             shape = shape._replace(face_width=rounded_up(max(2.0 * widest, shape.face_width)))
             screened = self._screened(shape, spring)
         if ROLLER in gaps and isinstance(self.shapes, RollerShapes):
-            force = np.stack([each.loads.normal_force for each in screened.solved.cycles])
-            curvature = np.stack(
-                [
-                    each.loads.wall * each.contour.pitch.curvature(each.theta)
-                    for each in screened.solved.cycles
-                ]
-            )
+            pressed = [_pressed(each, gaps) for each in screened.solved.cycles]
+            force, curvature = (np.stack(each) for each in zip(*pressed, strict=True))
             shape = self.shapes.best_roller(shape, force, curvature)
             screened = self._screened(shape, spring)
         return shape, screened
@@ -469,7 +475,7 @@ class _SizeSearch:
         self.progress.stage("contact")
         least, screened = self._fitted(shape, spring)
         small = screened.failing(_GROWTH, raised)
-        if PRIME not in self.opened.gaps or not small:
+        if not self.opened.grows or not small:
             return least
 
         def passing(prime: float) -> Shape | None:
@@ -512,6 +518,20 @@ class _SizeSearch:
         judged = governed(nominal, (*judgement.tried, *worst))
         beyond = {one.id: one for one in judged if one.status == "fail" and not one.not_proven}
         return tuple(beyond.get(each.id, each) for each in judgement.every)
+
+
+def _pressed(cycle: Cycle, gaps: Collection[str]) -> tuple[Array, Array]:
+    """Normal force, N, and curvature of the pitch curve, 1/m, (n,) each, on the track that carries;
+    without force where its roller is not open.
+    """
+    loads, pitch = cycle.loads, cycle.contour.pitch
+    curvature = pitch.curvature(cycle.theta)
+    if loads.second is None:
+        return loads.normal_force, loads.wall * curvature
+    track, first = loads.second.track(pitch), loads.wall > 0.0
+    other = track.contour.pitch.curvature(cycle.theta + track.turn)
+    counts = first | (SECOND_ROLLER in gaps)
+    return np.where(counts, loads.normal_force, 0.0), np.where(first, curvature, other)
 
 
 def _bracketed(low: float, high: float) -> bool:
