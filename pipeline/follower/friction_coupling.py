@@ -144,11 +144,10 @@ def guided_strokes(
         follower_loads(s.pitch, replace(s.system, rubbing=None), s.cam_speed, s.theta)
         for s in strokes
     ]
-    for each in points:
-        require_fit(stem, guides, each.overhang, knots)
     required = np.concatenate([each.frictionless_force for each in points])
     pressed = strokes[0].system.pivot is None and strokes[0].system.preload is not None
     way = (_BothTracks if pressed else _OneTrack).of(strokes, points, required)
+    require_fit(stem, guides, way.overhang + way.reach, knots)
     sizes = [s.theta.size for s in strokes]
     friction_a = np.repeat([s.system.friction_a for s in strokes], sizes)
     friction_b = np.repeat([s.system.friction_b for s in strokes], sizes)
@@ -222,12 +221,15 @@ class _OnGuides(NamedTuple):
 class _Way(Protocol):
     """Load of the cam on the stem at fixed positions, one motion after another.
 
-    overhang (n,): of the roller, m; sense (n,): 1, or -1 where the sides of the guides are changed
+    overhang (n,): of the roller, m; reach (n,): by which another one is farther from the guides, m;
+    sense (n,): 1, or -1 where the sides of the guides are changed
     over; bracket: least and greatest value of the unknown of `balanced`, and one to start from.
     """
 
     @property
     def overhang(self) -> Array: ...
+    @property
+    def reach(self) -> Array: ...
     @property
     def sense(self) -> Array: ...
     @property
@@ -277,6 +279,10 @@ class _OneTrack:
             lock=np.concatenate([np.broadcast_to(each.lock, each.theta.shape) for each in points]),
             on_points=np.concatenate([each.axial_force for each in points]) * wall,
         )
+
+    @property
+    def reach(self) -> Array:
+        return np.zeros_like(self.overhang)
 
     @property
     def bracket(self) -> tuple[Array, Array, Array]:

@@ -14,15 +14,23 @@ import pytest
 from test_conjugate_cam import uneven as uneven_pair
 
 from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.disc_preload import Compliances, DiscPreload
-from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
+from camwright.pipeline.follower.follower_forces import (
+    axial_of_surge,
+    follower_loads,
+    torque_on_cam,
+    turn_integral,
+)
 from camwright.pipeline.follower.friction_coupling import guided_loads
 from camwright.pipeline.follower.guide_reactions import guide_reactions
 from camwright.pipeline.hand_check.hand_sheet import SheetRun
+from camwright.pipeline.preview import preview_case
 from camwright.pipeline.run import run_case
 
 FILE = Path(__file__).parents[1] / "data" / "preloaded_feeder.toml"
@@ -218,6 +226,48 @@ def test_a_follower_that_locks_has_bounded_forces():
     assert np.isfinite(loads.normal_force).all() and turn.residual.max() < 1e-10
     most = (np.abs(loads.required_force) + 4.0 * loads.idle_force.max()) / 0.01
     assert (np.abs(loads.axial_force) < most).all()
+
+
+# --- turns at other speeds --------------------------------------------------------------------
+def test_torque_and_sweep_have_the_forces_of_both_discs():
+    """At the speed of a load case those of the loads, the friction of the guides as solved."""
+    machine, contour, _ = pressed("uneven")
+    theta, speed = uniform_turn(720), machine.cam_speed
+    turn = guided_loads(contour.pitch, machine.system, machine.stem, machine.guides, speed, theta)
+    loads = turn.loads
+    system = replace(machine.system, rubbing=loads.rubbing)
+    on_cam = torque_on_cam(contour.pitch, system, theta)(np.full(720, speed), np.zeros(720))
+    wanted = loads.inertia_force * loads.lift_slope - loads.cam_torque
+    assert on_cam == pytest.approx(wanted, abs=1e-9 * np.abs(wanted).max())
+    sweep = speed_sweep(machine, contour, loads.rubbing, [machine.crank_speed])
+    for swept, solved in (
+        (sweep.contact_force_max, loads.normal_force.max()),
+        (sweep.contact_force_min, loads.normal_force.min()),
+        (sweep.torque_max, loads.cam_torque.max()),
+        (sweep.torque_min, loads.cam_torque.min()),
+    ):
+        assert swept[-1] == pytest.approx(solved, rel=1e-9)
+
+
+def test_a_surge_is_a_change_of_the_spring():
+    """With the rubbing loads of the turn, as of other followers."""
+    machine, contour, _ = pressed("uneven")
+    theta, surge, path = uniform_turn(90), 40.0, contour.pitch
+    rubbing = follower_loads(path, machine.system, 20.0, theta).rubbing
+    system = replace(machine.system, rubbing=rubbing)
+    harder = replace(system, spring=replace(system.spring, preload=system.spring.preload + surge))
+    loads, more = (follower_loads(path, each, 20.0, theta) for each in (system, harder))
+    change = axial_of_surge(path, machine.system, loads, np.full(90, surge))
+    assert change == pytest.approx(more.axial_force - loads.axial_force, abs=1e-8)
+    assert np.ptp(change) > 0.5  # friction on the rise and on the return
+
+
+def test_the_stem_reaches_its_guide_from_the_second_roller():
+    text = FILE.read_text(encoding="utf-8").replace(
+        'stem_length = "400 mm"', 'stem_length = "350 mm"'
+    )
+    with pytest.raises(InputError, match=r"follower\.stem_length = 350 mm, must be >= 369 mm"):
+        preview_case(parse_case(text), corners=False)
 
 
 @pytest.mark.slow
