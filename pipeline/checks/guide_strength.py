@@ -514,7 +514,7 @@ def _guide_edge_pressure(side: Place) -> Declaration:
         " cam is; modulus at 20 degC, an upper bound; yield strength at the temperature of the"
         " bush",
         lift_can_help=True,
-        tier=Tier.PREVIEW,
+        tier=Tier.SCREENING if side == "pivot" else Tier.PREVIEW,
         error="pivot" if side == "pivot" else "guide_edges",
         part=seat.part,
         kept_as=f"line load of {seat.words} at the yield strength",

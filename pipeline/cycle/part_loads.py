@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,6 +12,7 @@ from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
 from camwright.geometry.second_track import relative_radius
+from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.elasticity.radial_compliance import Bush, SolidBar
@@ -234,13 +235,34 @@ class PivotPush(NamedTuple):
         bush, card = machine.pivot.bush, machine.pivot.pin_material
         if bush is None or card is None:
             return None
+        pair, force = machine.cam.conjugate, np.maximum(loads.normal_force, 0.0)
+        forces = [
+            np.where(on, force, loads.idle_force) for on in (loads.wall > 0.0, loads.wall < 0.0)
+        ]
+        beside = beside_middle(
+            machine.arm.plane_offset,
+            None if pair is None else pair.spacing,
+            [force] if pair is None else forces,
+        )
         normal = loads.pressure_angle - loads.turned
+        return cls.under(bush, card, loads.pivot_load, normal, moment + beside)
+
+    @classmethod
+    def under(
+        cls, bush: Guide, card: Material, load: Array, normal: Array, couple: Array
+    ) -> PivotPush:
+        """Load of a pin of a material.
+
+        Parameters
+        ----------
+        load : array (2, n)     of the pivot, along the travel of the follower and across it, N
+        normal : array (n,)     angle of the contact normal from the travel, rad
+        couple : array (n,)     in the plane of the contact normal, N m
+        """
         cos, sin = np.cos(normal), np.sin(normal)
-        along, across = loads.pivot_load
-        couple = moment + _beside(machine.arm.plane_offset, machine, loads)
+        along, across = load
         pressed, aside = along * cos + across * sin, across * cos - along * sin
-        pin = SolidBar(card.E, card.nu)
-        return cls(bush, pin, np.abs(pressed), couple, aside / bush.length)
+        return cls(bush, SolidBar(card.E, card.nu), np.abs(pressed), couple, aside / bush.length)
 
     @property
     def size(self) -> Array:
@@ -264,17 +286,15 @@ class PivotPush(NamedTuple):
         return np.asarray(np.where(lines < 0.0, -1.0, 1.0) * np.hypot(lines, self.beside))
 
 
-def _beside(offset: float, machine: Machine, loads: Loads) -> Array:
+def beside_middle(offset: float, spacing: float | None, forces: Sequence[Array]) -> Array:
     """Moment (n,), N m, of contacts beside the middle of an arm at an offset, m, from its roller;
     of two discs the second is their spacing less the offset from it, and the sum is of their sizes.
+
+    forces : sequence of arrays (n,)   normal force on each disc, N
     """
-    force, pair = np.maximum(loads.normal_force, 0.0), machine.cam.conjugate
-    if pair is None:
-        return offset * force
-    first, second = (
-        np.where(carries, force, loads.idle_force) for carries in (loads.wall > 0.0, loads.wall < 0)
-    )
-    return np.asarray(offset * first + abs(pair.spacing - offset) * second)
+    if spacing is None:
+        return offset * forces[0]
+    return np.asarray(offset * forces[0] + abs(spacing - offset) * forces[1])
 
 
 def spring_surge(machine: Machine, lift: Array) -> Array | None:

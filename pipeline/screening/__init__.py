@@ -8,6 +8,7 @@ In the order of the calculation:
 | `design_lengths`    | pressure along the line of contact of many designs  | K, -                 |
 | `screened_cam`      | loads and contact of many designs in a load case    | F_n, N; p0, Pa       |
 | `design_arrays`     | lift, contour and load cases of many designs        | s, m                 |
+| `screened_pivot`    | edge pressure in the bush of the pivot of an arm    | p, Pa                |
 | `screened_checks`   | the checks that screening judges                    |                      |
 | `design_screening`  | columns of the screening: demands, status, `screen` | as in the record     |
 | `response_surface`  | polynomials through values of many designs          |                      |

@@ -472,6 +472,11 @@ class ScreenedCam(CarriedCam):
         return np.max(greatest, axis=0)
 
     @property
+    def forces(self) -> Sequence[Array]:
+        """Normal force (m, n) on each roller of its own, N."""
+        return [force for _, force, _ in self._rollers]
+
+    @cached_property
     def _rollers(self) -> Sequence[tuple[Motion, Array, NDArray[np.bool_]]]:
         """Motion, normal force, N, and where it carries, of each roller of a cam that pulls."""
         every = np.ones(self.normal.shape, dtype=bool)

@@ -35,6 +35,7 @@ from camwright.pipeline.checks import (
     flat_face_sliding,
     form_closure,
     gas_spring,
+    guide_strength,
     roller_bearing,
     torque_balance,
 )
@@ -51,6 +52,7 @@ from camwright.pipeline.cycle.machine_envelope import counterweight_body
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import Counterweight
 from camwright.pipeline.follower.spring import spring_energy
+from camwright.pipeline.screening import screened_pivot
 from camwright.pipeline.screening.design_arrays import Designs, Judged, Screened, never
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 from camwright.pipeline.screening.screened_cam import ScreenedCam
@@ -509,6 +511,7 @@ _ARRAYS: Mapping[str, tuple[Callable[[Designs], Judged | None], float]] = {
     ),
     CROSSOVER_SLIP.id: (_crossover_slip, 1e-4),
     form_closure.landing_pressure.id: (_landing_pressure, 1e-4),
+    guide_strength.pivot_edge_pressure.id: (screened_pivot.edge_pressure, 0.1),
     form_closure.preload_least.id: (_preload_least, 1e-3),
     form_closure.preload_pressure.id: (_preload_pressure, 1e-3),
     form_closure.yoke_breadth.id: (_yoke_breadth, 1e-3),
@@ -531,6 +534,8 @@ def _screened(declared: Declaration) -> Screened | None:
     """Screening of a check; None where there is none."""
     if declared.id in _ARRAYS:
         is_bound = _pulled if declared.id in _WITHOUT_REVERSALS else never
+        if declared.id == guide_strength.pivot_edge_pressure.id:
+            is_bound = has_many_shapes
         return Screened(declared.id, *_ARRAYS[declared.id], is_bound=is_bound)
     if declared.id in arm_strength.JUDGED:
         judged = _arm_fatigue(arm_strength.JUDGED[declared.id])

@@ -87,14 +87,15 @@ segment = [
 
 """
 _LANDS = {"landing_speed", "landing_pressure", "crossover_slip"}
+_PIVOT = {"pivot_pressure", "pivot_edge_pressure"}
 OF_FORM = {
     "groove": _LANDS | {"outer_undercut", "groove_wall", "groove_clearance", "groove_radius"},
-    "groove_arm": _LANDS | {"outer_undercut", "groove_wall", "groove_radius", "pivot_pressure"},
+    "groove_arm": _LANDS | {"outer_undercut", "groove_wall", "groove_radius"} | _PIVOT,
     "steps": _LANDS | {"outer_undercut", "groove_wall", "groove_clearance", "fork_gap"},
     "gravity": {"contact_force_margin", "jump"},
     "stem": _LANDS | {"second_disc_gap", "cam_radius"},
-    "arm": _LANDS | {"second_disc_gap", "pivot_pressure"},
-    "pressed": {"preload_least", "preload_pressure", "second_disc_gap", "pivot_pressure"},
+    "arm": _LANDS | {"second_disc_gap"} | _PIVOT,
+    "pressed": {"preload_least", "preload_pressure", "second_disc_gap"} | _PIVOT,
     "pressed_stem": {"preload_least", "preload_pressure", "second_disc_gap", "jam_index"},
     "yoke": {"landing_speed", "landing_pressure", "yoke_breadth"},
 }  # fmt: skip
