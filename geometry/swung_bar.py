@@ -54,6 +54,17 @@ class SwungBar(NamedTuple):
         """
         return _from_contour(contour, lift or contour.lift, self.arm, self.low, self._at)
 
+    def from_bar(self, other: SwungBar, between: Value) -> Value:
+        """Distance of a piece of another arm on the same pivot, which swings with this one (...),
+        m, where not both begin at the pivot; between : angle of both arms, rad.
+        """
+        ends = [
+            one._at(between, each * np.ones_like(between), 0.0 * between)
+            for one, bar in ((self, other), (other, self))
+            for each in (bar.inner, bar.outer)
+        ]
+        return reduce(np.minimum, ends)
+
     def _at(self, angle: Value, towards: Value, aside: Value) -> Value:
         """Distance, m, of a point from the piece of the centre line at an arm angle, rad; towards,
         aside : coordinates of the point from the pivot, m, to the cam axis and square to it.

@@ -100,6 +100,24 @@ def _swung(
         yield name, PartGap(away, (body.half, 0.0), body.beyond(ends))
 
 
+def _between_arms(
+    bodies: Mapping[str, SwungBody], others: Mapping[str, SwungBody], pair: CamConjugate
+) -> Iterator[tuple[str, PartGap]]:
+    """Gaps of the bodies of one arm to those of the other, which swings with it, with their names;
+    none of hubs and arms, which join at the pivot.
+    """
+    for name, body in bodies.items():
+        for which, other in others.items():
+            first, second = body.bar, other.bar
+            if not (isinstance(first, SwungBar) and isinstance(second, SwungBar)):
+                continue
+            if np.all(np.maximum(first.inner, second.inner) > 0.0):
+                apart = first.from_bar(second, pair.arm_angle or 0.0)
+                axial = pair.spacing - sum(body.beside) - sum(other.beside)
+                gap = PartGap(apart - body.half - other.half, (body.half, other.half), axial)
+                yield f"{name} to second {which}", gap
+
+
 def _parts(tip: Value, numbers: Numbers) -> dict[str, PartOnShaft]:
     """Parts about the camshaft, and the pinion, from the middle of the second disc."""
     spacing = numbers["cam.conjugate.spacing"]
@@ -138,6 +156,7 @@ def _of_pair(
         yield f"{name} to second disc", gap
     for name, gap in _swung(others, first, second.lift, ends):
         yield f"second {name} to first disc", gap
+    yield from _between_arms(bodies, others, pair)
     for name, body in others.items():
         for part, disc in parts.items():
             if name != word or part == "camshaft":
@@ -190,15 +209,16 @@ def gaps_of(solution: Solution) -> dict[str, PartGap]:
     title="Gap between the second track, its follower and the parts beside them",
     formula="max(d - h - r, a) >= g; of the nearest pair: d: least distance over the turn of roller"
     " centre or centre line of an arm from the axis of the camshaft or the contour of the other"
-    " disc, or of a disc from the machine shaft, h: radius of roller or cheeks, half of the depth"
-    " of the arm, r: radius of the shaft, the disc or none, a: gap of the two along the camshaft,"
-    " that in the plane where they have none, g: limits.assembly_gap",
+    " disc, or of a disc from the machine shaft, or of the centre lines of both arms, h: radius of"
+    " roller or cheeks, half of the depth of the arm, r: radius of the shaft, the disc or none, or"
+    " as h of the other arm, a: gap of the two along the camshaft, that in the plane where they"
+    " have none, g: limits.assembly_gap",
     symbols=dict.fromkeys("dhra", f"{STATED} [mm]"),
     reason="A second disc, roller, arm or face within camshaft, bearing, gear or the other disc"
     " cannot be assembled.",
     method="second disc and follower beside bearings and gear along the camshaft; rollers, with"
     " their forks, and arms from the other disc over the turn, from 720 angles and points, or along"
-    " the camshaft; second roller and faces from the camshaft",
+    " the camshaft; rollers and forks from the other arm; second roller and faces from the shaft",
     lift_can_help=True,
     moved_by_tolerance=False,
     closed_by="form",

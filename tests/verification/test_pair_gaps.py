@@ -1,5 +1,6 @@
 """Gaps of a second disc and its follower against distances by elementary geometry."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -8,7 +9,13 @@ import pytest
 
 from camwright.geometry.arrays import rotation, uniform_turn
 from camwright.pipeline.case.case_file import read_case, with_values
-from camwright.pipeline.checks.pair_assembly import beside_contour, gaps_of
+from camwright.pipeline.checks.pair_assembly import (
+    _between_arms,
+    _second_arm,
+    beside_contour,
+    gaps_of,
+)
+from camwright.pipeline.cycle.arm_bodies import swung_bodies
 from camwright.pipeline.preview import preview_case
 
 DATA = Path(__file__).parents[1] / "data"
@@ -79,6 +86,57 @@ def test_each_arm_clears_the_disc_of_the_other_by_the_geometry_of_both():
     by_name = gaps("conjugate_arm")
     for name, gap in least.items():
         assert by_name[name][0] == pytest.approx(gap, abs=2e-3)
+
+
+@pytest.mark.parametrize("angle", [30.0, 79.0, 170.0])
+def test_each_roller_clears_the_other_arm(angle):
+    """Points along both arms, 0.01 mm apart, at the angle between them; rollers of 23.5 and 22 mm
+    with cheeks 22 mm high, arms 24 mm deep to 26 mm before the centres, hub 36 mm, discs 40 mm
+    apart. The centres of both rollers are as far apart at every angle of the turn.
+    """
+    solution = judged("conjugate_arm").solution
+    pair = replace(solution.machine.cam.conjugate, arm_angle=np.radians(angle))
+    track = solution.machine.cam.conjugate.roller.track(solution.contour.pitch)
+    bodies = swung_bodies(solution.numbers)
+    others = _second_arm(solution, track, pair, bodies)
+    pieces = {"arm": (0.0, 64.0, 12.0), "roller": (90.0, 90.0, 23.5), "fork": (64.0, 90.0, 11.0),
+              "hub": (0.0, 0.0, 18.0)}  # fmt: skip
+    line = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    by_name = dict(_between_arms(bodies, others, pair))
+    assert len(by_name) == 12  # of 16 those of hubs and arms join
+    for name, gap in by_name.items():
+        first, second = name.split(" to second ")
+        low, high, half = pieces[first]
+        start, end, other = pieces[second]
+        start, end = (at - 5.0 if at > 0.0 else 0.0 for at in (start, end))
+        other = 22.0 if second == "roller" else other
+        along = np.linspace(low, high, int(100 * (high - low)) + 1)
+        points = np.linspace(start, end, int(100 * (end - start)) + 1)[:, None] * line
+        least = np.hypot(points[:, :1] - along, points[:, 1:]).min()
+        assert 1e3 * gap.plane == pytest.approx(least - half - other, abs=1e-3), name
+    axial = {name: 1e3 * float(gap.axial) for name, gap in by_name.items()}
+    assert axial["arm to second roller"] == axial["roller to second arm"]
+    theta = uniform_turn(24)
+    pivot = 100.0 * np.stack([np.cos(theta), np.sin(theta)])
+    ends = [1e3 * each.points(theta) - pivot for each in (solution.contour.pitch,
+                                                           track.contour.pitch)]  # fmt: skip
+    apart = np.hypot(*(ends[0] - ends[1]))
+    if angle == 79.0:
+        gap = 1e3 * float(by_name["roller to second roller"].plane) + 45.5
+        np.testing.assert_allclose(apart, gap, rtol=1e-9)
+
+
+def test_rollers_whose_planes_overlap_strike_the_other_arm():
+    """Discs 22 mm apart with arms 15 deg apart: the second roller is within the first arm."""
+    near = with_values(read_case(DATA / "conjugate_arm.toml"), {
+        "cam.conjugate.spacing": "21 mm", "follower.arm.width": "32 mm"})  # fmt: skip
+    solution = preview_case(near, corners=False).solution
+    pairs = gaps_of(solution)
+    assert (
+        float(pairs["arm to second roller"].axial)
+        < 0.0
+        < float(pairs["arm to second roller"].plane)
+    )
 
 
 def test_the_check_names_what_is_within_the_bearing():
