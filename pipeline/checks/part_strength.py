@@ -757,8 +757,8 @@ def torque_reversals(solution: Solution) -> Demand:
     method="exact first moment of the area of the contour less bore, keyway and counter-hole",
     moved_by_tolerance=False,
     formula="e w <= limits.unbalance; e = U/m, U: unbalance of cam and counterweight, or"
-    " camshaft.counterweight.residual, m: camshaft.rotor_mass, or the mass of the cam alone, w:"
-    " greatest cam speed of all load cases",
+    " camshaft.counterweight.residual, of two discs the sum at both bearings, m:"
+    " camshaft.rotor_mass, or the mass of the cam alone, w: greatest cam speed of all load cases",
     symbols={
         "U": f"{STATED} [g mm]",
         "e": "[um]",
@@ -786,7 +786,7 @@ def cam_unbalance(solution: Solution) -> Demand:
     rotor = manufactured.mass if shaft is None else max(manufactured.mass, shaft.rotor_mass or 0.0)
     angle = f"{np.degrees(manufactured.angle) % 360:.1f} deg"
     rotor_parts = "cam alone" if rotor == manufactured.mass else "cam, shaft and gear"
-    unbalance = rotor_unbalance(manufactured, shaft)
+    unbalance = rotor_unbalance(solution.machine.cam, solution.contour, shaft)
     # a cam that pulls has no counter-hole
     hole = "" if solution.machine.cam.pulls else _hole(balanced)
     return Demand(

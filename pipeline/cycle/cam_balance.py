@@ -175,14 +175,29 @@ def _seen(vector: Array, theta: Array) -> Array:
     return np.stack([x * cos + y * sin, x * sin - y * cos])
 
 
-def rotor_unbalance(made: Unbalance, shaft: Camshaft | None) -> float:
-    """Unbalance of cam and counterweight together, kg m: magnitude of their vector sum."""
-    weight = None if shaft is None else shaft.counterweight
-    total = made.product * np.exp(1j * made.angle)
+def rotor_unbalance(cam: CamBody, contour: Contour, shaft: Camshaft | None) -> float:
+    """Unbalance of cam and counterweight together, kg m: magnitude of their vector sum; of two
+    discs the sum of those at both bearings, with their couple.
+
+    References
+    ----------
+    ISO 21940-11, tolerance planes at the bearings; one resultant between them has the same sum.
+    """
+    weight, cam_alone = None if shaft is None else shaft.counterweight, _as_made(cam, contour)
+    total = cam_alone.product * np.exp(1j * cam_alone.angle)
+    against = 0.0j
     if weight is not None:
-        product, direction = weight.set_against(made)
-        total += product * np.exp(1j * direction)
-    return float(abs(total))
+        product, direction = weight.set_against(cam_alone)
+        against = product * np.exp(1j * direction)
+        total += against
+    if shaft is None or cam.spacing is None:
+        return float(abs(total))
+    first, second = (each.product * np.exp(1j * each.angle) for each in _each_disc(cam, contour))
+    moment = first * shaft.cam_position + second * (shaft.cam_position + cam.spacing)
+    if weight is not None:
+        moment += against * weight.position
+    at_second = moment / shaft.bearing_spacing
+    return float(abs(total - at_second) + abs(at_second))
 
 
 @lru_cache(maxsize=8)

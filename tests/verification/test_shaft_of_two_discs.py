@@ -7,10 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from test_conjugate_cam import uneven
 
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.checks.camshaft_strength import _rotor
+from camwright.pipeline.cycle.cam_balance import camshaft_loads, rotor_unbalance, undrilled
 from camwright.pipeline.cycle.cycle import turn_of_line
 from camwright.pipeline.follower.shaft_strength import slopes_of
 from camwright.pipeline.preview import preview_case
@@ -150,3 +152,21 @@ def test_each_roller_stands_on_its_own_arm_and_disc(measured):
         (1.0 / first, (0.085 / 0.09) ** 2 / second), rel=1e-12
     )
     assert machine.axial_stiffness == min(machine.track_stiffnesses)
+
+
+def test_the_unbalance_of_two_discs_is_that_at_both_bearings():
+    """Of two discs of one uneven stroke, the second overhung, from the forces of the bearings that
+    grow by the square of the speed.
+    """
+    solution = preview_case(parse_case(uneven()), corners=False).solution
+    cycle, machine = solution.cycles[0], solution.machine
+    shaft = replace(machine.camshaft, bearing_spacing=0.05)
+    args = cycle.loads, shaft, machine.cam, cycle.contour
+    fast, slow = (camshaft_loads(*args, speed) for speed in (100.0, 0.0))
+    ends = [np.hypot(*(getattr(fast, name) - getattr(slow, name))) / 100.0**2
+            for name in ("bearing_1", "bearing_2")]  # fmt: skip
+    assert np.ptp(ends[0]) < 1e-9 * ends[0].max()
+    unbalance = rotor_unbalance(machine.cam, cycle.contour, shaft)
+    assert unbalance == pytest.approx(ends[0].max() + ends[1].max(), rel=1e-9)
+    static = undrilled(machine.cam, cycle.contour).product
+    assert unbalance > 1.05 * static
