@@ -577,7 +577,9 @@ class Cycle(Tabled):
             Column("side_force", "N", "Contact force across the stem"): loads.tangential_force,
             Column("guide_friction_A", "N", "Friction force of guide A"): loads.friction_force_a,
             Column("guide_friction_B", "N", "Friction force of guide B"): loads.friction_force_b,
-            Column("jam_index", "", "Guide friction over axial force"): loads.jam_index,
+            Column(
+                "jam_index", "", "Guide friction over axial force, of preloaded discs that of both"
+            ): loads.jam_index,
             Column(
                 "jam_index_statics", "", "Jam index with point supports as guides"
             ): loads.jam_index_statics,
@@ -605,7 +607,10 @@ class Cycle(Tabled):
             Column("stem_slope_A", "deg", "Slope of the stem in guide A"): guides.slope_a,
             Column("stem_slope_B", "deg", "Slope of the stem in guide B"): guides.slope_b,
             Column(
-                "stem_end_deflection", "um", "Transverse deflection of the stem at the contact"
+                "stem_end_deflection",
+                "um",
+                "Transverse deflection of the stem at the contact, of preloaded discs at the sum of"
+                " both side loads",
             ): guides.roller_deflection,
         }
         if loads.applied_force.any():

@@ -942,8 +942,8 @@ def driving(jams: tuple[Array, Array], direction: Array) -> Array:
 
 def in_guides(pitch: FollowerPath, system: FollowerSystem, theta: Array) -> PressedGuides | None:
     """Guides of a stem whose rollers are preloaded at cam angles (n,); None of other followers."""
-    squeeze = system.squeezed(pitch, theta)
-    if squeeze is None or system.pivot is not None:
+    squeeze, track = system.squeezed(pitch, theta), system.second_track(pitch)
+    if squeeze is None or track is None or not track.reach:
         return None
     one = np.ones(theta.shape)
     first, second = (jam_index(pitch, system, theta, wall) for wall in (one, -one))

@@ -23,6 +23,7 @@ from camwright.pipeline.follower.follower_forces import (
     Rubbing,
     SideLoads,
     follower_loads,
+    in_guides,
     share_left,
     sides_of,
 )
@@ -145,7 +146,8 @@ def guided_strokes(
         for s in strokes
     ]
     required = np.concatenate([each.frictionless_force for each in points])
-    pressed = strokes[0].system.pivot is None and strokes[0].system.preload is not None
+    first = strokes[0]
+    pressed = in_guides(first.pitch, first.system, first.theta) is not None
     way = (_BothTracks if pressed else _OneTrack).of(strokes, points, required)
     require_fit(stem, guides, way.overhang + way.reach, knots)
     sizes = [s.theta.size for s in strokes]

@@ -158,7 +158,7 @@ class ScreenedCam(CarriedCam):
         """
         block, second = self.block, self.block.second
         squeeze = block.squeeze if self.pulls else None
-        if squeeze is None or second is None or self.pivot is not None:
+        if squeeze is None or second is None or not np.any(second.reach):
             return None
         first, other = block.both_tracks(block.motion)
         sides, reach = (first.side, other.side), np.asarray(second.reach)
