@@ -464,16 +464,36 @@ class Machine(Displayed):
 
     @property
     def track_stiffnesses(self) -> tuple[float, ...]:
-        """Stiffness from each disc to the follower mass along the travel of the first roller, N/m:
-        stated, else members in series.
+        """Stiffness from each disc, or wall with a roller of its own, to the follower mass along
+        the travel of the first roller, N/m: stated, else members in series.
         """
-        pair = self.cam.conjugate
+        pair, farther = self.cam.conjugate, self._on_second_of_pin
         if self.stiffness is not None:
-            return (self.stiffness,) if pair is None else (self.stiffness, self.stiffness)
+            one = pair is None and farther is None
+            return (self.stiffness,) if one else (self.stiffness, self.stiffness)
         first = in_series(self.compliances.values())
+        if farther is not None:
+            return first, in_series(farther.compliances.values())
         if pair is None:
             return (first,)
         return first, in_series(self._compliances_to(pair).values()) / self._leverage**2
+
+    @property
+    def _on_second_of_pin(self) -> Machine | None:
+        """Machine with the first roller at the place of a second on its pin; None without one."""
+        second = self.cam.on_pin
+        if second is None:
+            return None
+        roller = self.roller
+        pin = roller.pin
+        if pin is not None:
+            pin = replace(pin, span=pin.span + float(second.beyond(roller.radius)))
+        groove = replace(self.cam.groove, second=None) if self.cam.groove else None
+        return replace(
+            self,
+            follower=replace(roller, pin=pin),
+            cam=replace(self.cam, groove=groove),
+        )
 
     @property
     def _leverage(self) -> float:

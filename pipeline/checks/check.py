@@ -307,7 +307,7 @@ class Measured(NamedTuple):
         return measure(cam) / limit if self.worst == "greatest" else 1.0 + limit - measure(cam)
 
 
-ClosedBy = Literal["", "force", "form", "plate", "groove", "conjugate", "yoke"]
+ClosedBy = Literal["", "force", "form", "plate", "groove", "rollers", "conjugate", "yoke"]
 HELD = ("form", *TWO_TRACKS)
 """Of them those of a cam that pulls its follower."""
 
@@ -342,7 +342,7 @@ class Declaration:
     closed_by : str            what keeps the follower on the cam: "force", of a spring or weight,
                                or "form", of a second track;
                                "plate": any cam of plates; "groove", "conjugate", "yoke": that
-                               closure;
+                               closure; "rollers": two rollers in a groove;
                                "": any
     part : str                 part of the scope that it judges; "": cam or follower
     if_limited : bool          it is made only where the case sets its limit

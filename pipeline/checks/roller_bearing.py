@@ -87,6 +87,9 @@ _CUBE_MEAN = {
     "n": "mean(|roller_speed|)/(2 pi) [1/s]",
 }
 """Dynamic rating, cube mean of the force and mean speed of a roller in the symbols of a formula."""
+_ALONE = {"?": "cam.groove.second.radius None"}
+"""Symbols of a formula that holds for one roller on all tracks."""
+_SECOND, _SECOND_STATIC = "cam.groove.second.C", "cam.groove.second.C0"
 
 
 def _with_card(demand: Demand, solution: Solution) -> Demand:
@@ -109,7 +112,21 @@ def _cube(numbers: Numbers) -> Value:
 
 def _damage(cam: LoadedCam) -> Array:
     """N^3 |n|, N^3 rad/s; of the demand, L10 = (C/P_m)^3 10^6/n, s: P_m^3 n is the mean."""
-    return wear(not_negative(cam.surged), cam.spin)
+    return _on_first(cam, wear(not_negative(cam.surged), cam.spin))
+
+
+def _on_first(cam: LoadedCam, damage: Array) -> Array:
+    """Damage (...) of the first roller: of two in a groove that on the inner wall."""
+    case = cam.numbers.case
+    if case is None or case.cam.on_pin is None:
+        return damage
+    return np.where(cam.wall > 0.0, damage, 0.0 * damage)
+
+
+def _second_damage(cam: LoadedCam) -> Array:
+    """`_damage` of the second roller of a groove."""
+    damage = wear(not_negative(cam.surged), cam.spin)
+    return np.where(cam.wall < 0.0, damage, 0.0 * damage)
 
 
 def _with_damage(demand: Demand, solution: Solution) -> Demand:
@@ -160,6 +177,7 @@ def _damage_rate(cam: LoadedCam, kappa: Array) -> Array:
     force = np.where(np.real(surged) < _LEAST_FORCE, _LEAST_FORCE, surged)
     rating, clean = numbers[_RATING], numbers["roller.bearing.cleanliness_load"]
     used = bearing_life.life_used(force, rating, clean, kappa) * magnitude(cam.spin)
+    used = _on_first(cam, used)
     return np.where(np.real(cam.spin_mean) < STANDSTILL, 0.0, used)
 
 
@@ -369,7 +387,7 @@ roller_life = check(
     formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force over the"
     " revolutions of the roller, n: its mean speed, L: limits.roller_life. Over the load cases"
     f" {BY_DUTY}.",
-    symbols=_CUBE_MEAN,
+    symbols=_CUBE_MEAN | _ALONE,
     reason="the bearing has to last; a clean bearing that lasts longer is not credited",
     load_cases=LASTING,
     values=(
@@ -393,6 +411,73 @@ roller_life = check(
 )(_damage)
 
 
+second_roller_life = check(
+    ROLLER_LIFE,
+    id="second_roller_life",
+    title="L10 rating life of the bearing of the second roller",
+    method="as of roller_life, by the forces of the outer wall alone",
+    lift_can_help=True,
+    tier=Tier.SCREENING,
+    needs="roller",
+    closed_by="rollers",
+    part="roller_bearing",
+    formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force on the"
+    " outer wall, 0 elsewhere, over the revolutions of the roller that carries, n: its mean speed,"
+    f" L: limits.roller_life. Over the load cases {BY_DUTY}.",
+    symbols={
+        "C": _SECOND,
+        "P_m": _CUBE_MEAN["P_m"]
+        .replace("normal_force", "0.5 (1 - wall) (normal_force", 1)
+        .replace("cos(pressure_angle)))^3", "cos(pressure_angle))))^3"),
+        "n": _CUBE_MEAN["n"],
+    },
+    reason="each roller of a groove has its own wall and its own forces",
+    load_cases=LASTING,
+    values=(*given.LOADS, *given.SURGE, _SECOND),
+    levers=(levers.one(_SECOND), *levers.LOAD),
+    page="Roller",
+).measured(
+    "life",
+    value=lambda worst, numbers: rating_over(
+        numbers[_SECOND] ** BALL_LIFE_EXPONENT * MILLION_TURNS, worst, np.inf
+    ),
+    needed=(_SECOND,),
+    remark=_with_card,
+    deviation=0.03,
+    bounded="surge",
+)(_second_damage)
+
+
+@check(
+    ROLLER_STATIC_SAFETY,
+    id="second_roller_static",
+    title="Static safety factor of the bearing of the second roller",
+    method="static rating over the greatest normal force on the outer wall",
+    lift_can_help=True,
+    tier=Tier.SCREENING,
+    needs="roller",
+    closed_by="rollers",
+    part="roller_bearing",
+    formula="C0/N >= S; C0: static rating, N: greatest normal force on the outer wall over all load"
+    " cases and angles, S: limits.roller_static_safety",
+    symbols={"N": "normal_force", "C0": _SECOND_STATIC},
+    reason="beyond it the balls dent the raceways",
+    values=(*given.LOADS, _SECOND_STATIC),
+    levers=(levers.one(_SECOND_STATIC), *levers.LOAD),
+    page="Roller",
+).measured(
+    "angles",
+    value=lambda worst, numbers: rating_over(numbers[_SECOND_STATIC], worst, np.nan),
+    needed=(_SECOND_STATIC,),
+    remark=_with_card,
+    deviation=0.005,
+)
+def second_roller_static(cam: LoadedCam) -> Array:
+    """Normal force on the second roller of a groove, N."""
+    force = not_negative(cam.normal)
+    return np.where(cam.wall < 0.0, force, 0.0 * force)
+
+
 roller_modified_life = check(
     ROLLER_LIFE,
     id="roller_modified_life",
@@ -411,6 +496,7 @@ roller_modified_life = check(
     f" limit, L: limits.roller_life. Over the load cases {BY_DUTY}.",
     symbols={
         **_CUBE_MEAN,
+        **_ALONE,
         "R": f"limits.{ROLLER_RELIABILITY.id}",
         "a1": "[-]",
         "a_ISO": STATED,

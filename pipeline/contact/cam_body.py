@@ -154,6 +154,7 @@ class GrooveRoller(Part):
     """
 
     table: ClassVar[str] = "cam.groove.second"
+    defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(("C", "C0"), "that of the first roller")
     source: TableSource = NO_SOURCE
 
     radius: Annotated[Length, Known("bearing catalogue", "21 mm")]
@@ -164,6 +165,14 @@ class GrooveRoller(Part):
     """depth of the upper step of the groove, below the face of the disc"""
     relief: Annotated[float, In("mm", above=0, at_most=100), Known("drawing", "0.5 mm")]
     """gap between each roller and the wall opposite to that on which it runs"""
+    C: Annotated[
+        float | None, In("kN", above=0, at_most=1e5), Known("bearing catalogue", "14 kN")
+    ] = None
+    """dynamic rating of the bearing of the second roller"""
+    C0: Annotated[
+        float | None, In("kN", above=0, at_most=1e5), Known("bearing catalogue", "7.8 kN")
+    ] = None
+    """static rating of the bearing of the second roller"""
 
     @property
     def roller(self) -> CoaxialRoller:
@@ -421,6 +430,8 @@ class CamBody(Part):
     def closed_by(self) -> tuple[str, ...]:
         """Kinds of closure to which it belongs, see `Declaration.closed_by`."""
         force = "form" if self.pulls else "force"
+        if self.on_pin is not None:
+            return self.closure, force, "rollers"
         return (self.closure, force) if self.groove is not None else (self.closure, force, "plate")
 
     @property

@@ -318,10 +318,15 @@ def _rotor_inertia(numbers: Numbers) -> Value | None:
     return ring_inertia(radius, roller.hub_radius, width, density)
 
 
-def _outer_radius(numbers: Numbers) -> Value | None:
-    """Radius of the roller on the outer wall of a groove, m: of the second, or of the only one."""
-    second = None if numbers.case is None else value_of(numbers.case, "cam.groove.second.radius")
-    return numbers.get("roller.radius") if second is None else second
+def _on_outer_wall(name: str, first: str, numbers: Numbers) -> Value | None:
+    """Number of the roller on the outer wall of a groove: of the second as stated, else of the
+    first.
+
+    name : of its key; first : dotted key of the first roller
+    """
+    key = f"cam.groove.second.{name}"
+    second = None if numbers.case is None else value_of(numbers.case, key)
+    return numbers.get(first) if second is None else second
 
 
 def base_radius(numbers: Numbers) -> Value:
@@ -448,7 +453,9 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "follower.size": _size,
     "cam.waviness": _waviness,
     "roller.rotor_inertia": _rotor_inertia,
-    "cam.groove.second.radius": _outer_radius,
+    "cam.groove.second.radius": partial(_on_outer_wall, "radius", "roller.radius"),
+    "cam.groove.second.C": partial(_on_outer_wall, "C", "roller.bearing.C"),
+    "cam.groove.second.C0": partial(_on_outer_wall, "C0", "roller.bearing.C0"),
     "spring.link.body": _link_body,
     "roller.bearing.pitch_diameter": _ball_circle,
     "roller.bearing.cleanliness_load": _cleanliness_load,

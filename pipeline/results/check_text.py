@@ -57,6 +57,7 @@ _CLOSED = {
     "force": "; not with a second track",
     "plate": "; not in a groove",
     "groove": "; in a groove only",
+    "rollers": "; of two rollers in a groove only",
     "conjugate": "; of a conjugate pair only",
     "yoke": "; in a yoke only",
 }

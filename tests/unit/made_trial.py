@@ -140,6 +140,17 @@ def groove_case() -> Case:
 
 
 @cache
+def stepped_case() -> Case:
+    """The groove with a step of its own for a second roller on the same pin."""
+    tables = groove_case().tables()
+    second = {"radius": "7 mm", "spacing": "10.2 mm", "step_depth": "10.5 mm", "relief": "0.5 mm",
+              "C": "3 kN", "C0": "1.5 kN"}  # fmt: skip
+    tables["cam"] |= {"width": "30 mm"}
+    tables["cam"]["groove"] |= {"depth": "21 mm", "second": second}
+    return case_of(tables)
+
+
+@cache
 def pair_case() -> Case:
     """The same case with a second disc and an opposite roller in place of the spring."""
     tables = tomllib.loads(CASE_FILE.read_text())
@@ -521,6 +532,15 @@ def in_groove() -> Solution:
     """A preview of the groove with the harmonic lift, in the load case of the file."""
     solved = solving.solution(
         groove_case(), contour(), Tier.PREVIEW, torques={}, positions=POSITIONS
+    )
+    return replace(solved, machines=solved.machines[:1], cycles=solved.cycles[:1])
+
+
+@cache
+def in_steps() -> Solution:
+    """A preview of the groove of two steps likewise."""
+    solved = solving.solution(
+        stepped_case(), contour(), Tier.PREVIEW, torques={}, positions=POSITIONS
     )
     return replace(solved, machines=solved.machines[:1], cycles=solved.cycles[:1])
 

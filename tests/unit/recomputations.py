@@ -7,6 +7,7 @@ names the check. Rows of missing data have no demand; `test_part_data` tries the
 _ASSEMBLY = "unit/test_assembly.py"
 _CONTACT = "verification/test_contact_audit.py"
 _GROOVE = "verification/test_groove_cam.py"
+_STEPS = "verification/test_stepped_groove.py"
 _WORN = "verification/test_held_tolerances.py"
 _YOKE = "verification/test_yoke_cam.py"
 _PAIR = "verification/test_conjugate_cam.py"
@@ -49,6 +50,9 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_PAIR, "test_the_preload_is_judged_on_both_discs"): ("preload_least", "preload_pressure"),
     (_PAIR, "test_the_ends_of_the_disc_that_bears_less_by_half_spaces"): ("other_edge_pressure",),
     (_GROOVE, "test_the_rim_is_a_cantilever_plate"): ("groove_wall",),
+    (_STEPS, "test_the_bearing_of_each_roller_by_its_own_forces"): (
+        "second_roller_static", "second_roller_life",
+    ),
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",
     ),

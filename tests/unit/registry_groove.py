@@ -309,6 +309,39 @@ def unknown() -> Solution:
     return replace(made.in_groove(), contour=unknown_cam().contour)
 
 
+def stepped(**values) -> Solution:
+    """The groove of two steps with other loads."""
+    base = made.in_steps()
+    (cycle,) = base.cycles
+    loads = replace(cycle.loads, **values)
+    return replace(base, cycles=(made.changed_cycle(cycle, loads=loads),))
+
+
+def unrated(name: str) -> Solution:
+    """The groove of two steps without a rating of either roller."""
+    base = made.in_steps()
+    groove, roller = base.case.cam.groove, base.case.roller
+    cam = replace(
+        base.case.cam, groove=replace(groove, second=replace(groove.second, **{name: None}))
+    )
+    other = replace(roller, bearing=replace(roller.bearing, **{name: None}))
+    return made.changed_solution(base, case=made.changed(base.case, cam=cam, roller_given=other))
+
+
+def on_outer_wall() -> tuple[float, float]:
+    """Static safety factor of the second roller, 1.5 kN, and life, h, of its 3 kN by Miner's rule
+    over the equal steps of a turn in which the outer wall carries.
+    """
+    solution = made.in_steps()
+    (cycle,) = solution.cycles
+    pulled = cycle.loads.axial_force < 0.0
+    force = cycle.loads.normal_force[pulled]
+    pace = np.hypot(*solution.contour.pitch.velocity(cycle.theta[pulled]))
+    turned = solution.machine.cam_speed * (pace / 0.007 + 1.0)
+    rate = np.sum((force / 3e3) ** 3 * turned) / cycle.theta.size / (FULL_TURN * 1e6)
+    return 1.5e3 / float(force.max()), 1.0 / float(rate) / 3600.0
+
+
 # --- the checks -------------------------------------------------------------------------------
 by_limit(
     "outer_undercut",
@@ -317,6 +350,25 @@ by_limit(
     1.0 + made.ROLLER / float(by_hand.PITCH_RADIUS.max()),
     "1 + r kappa at the least curvature of the path",
     base=made.in_groove,
+)
+SECOND_SAFETY, SECOND_LIFE = on_outer_wall()
+by_limit(
+    "second_roller_static",
+    "roller_static_safety",
+    lambda: stepped(normal_force=NAN),
+    SECOND_SAFETY,
+    "C0 over the greatest force on the outer wall",
+    base=made.in_steps,
+    missing=lambda: unrated("C0"),
+)
+by_limit(
+    "second_roller_life",
+    "roller_life",
+    lambda: stepped(normal_force=NAN),
+    SECOND_LIFE,
+    "damage of the positions at which the outer wall carries, ISO 281",
+    base=made.in_steps,
+    missing=lambda: unrated("C"),
 )
 by_limit(
     "outer_second_contact",

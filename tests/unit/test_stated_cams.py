@@ -123,6 +123,20 @@ def in_groove(numbers: Numbers) -> dict[str, Any]:
     return {"normal": loads.normal_force, "wall": loads.wall, "motion": path}
 
 
+def in_steps(numbers: Numbers) -> dict[str, Any]:
+    """Solved forces on both rollers of a groove of two steps, the second of 7 mm on the outer
+    wall.
+    """
+    (cycle,) = made.in_steps().cycles
+    loads, jet = cycle.loads, made.contour().lift.jet(cycle.theta, 2)
+    radius = np.where(loads.wall < 0.0, -0.007, numbers["roller.radius"])
+    path = RollerMotion(jet, made.BASE, 0.0, radius)
+    return {
+        "jet": jet, "normal": loads.normal_force, "surged": loads.normal_force,
+        "wall": loads.wall, "motion": path, "speed": cycle.cam_speed,
+    }  # fmt: skip
+
+
 OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
     "arm_yield": on_arm,
     "rocker_yield": on_arm,
@@ -140,6 +154,8 @@ OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
     ),
     "concave_radius": hollow,
     "groove_wall": in_groove,
+    "second_roller_life": in_steps,
+    "second_roller_static": in_steps,
     "guide_temperature_A": warm,
     "guide_temperature_B": warm,
     "spring_stress": surging,

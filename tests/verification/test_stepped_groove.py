@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from held_cams import FORCES, assert_as_closed_by_a_strong_spring
 
-from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.second_track import CoaxialRoller
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
@@ -19,6 +19,7 @@ from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
 from camwright.pipeline.cycle.crossover_history import flights
 from camwright.pipeline.follower.follower_forces import follower_loads
+from camwright.pipeline.follower.follower_stiffness import pin_compliance
 from camwright.pipeline.preview import preview_case
 
 FILE = Path(__file__).parents[1] / "data" / "stepped_groove.toml"
@@ -180,6 +181,39 @@ def test_the_pin_under_the_force_of_each_roller_at_its_place():
     groove = replace(machine.cam.groove, second=second)
     assert groove.middle(0.0235, 0.0175, second) == pytest.approx(0.036 - 0.0004 - 0.00875)
     assert [each.outer for each in groove.steps(0.0235)] == pytest.approx([0.02601, 0.024])
+
+
+def test_the_bearing_of_each_roller_by_its_own_forces():
+    """second_roller_static, second_roller_life, roller_life: damage of each wall, ISO 281."""
+    lives, most = [], 0.0
+    for cycle in trial().cycles:
+        pace = np.hypot(*cycle.contour.pitch.velocity(cycle.theta))
+        pulled, force = cycle.loads.axial_force < 0.0, cycle.loads.normal_force
+        spins = (pace / 0.0235 - 1.0, ~pulled), (pace / 0.021 + 1.0, pulled)
+        rating = cycle.machine.roller.bearing.C
+        damage = [
+            np.mean((force / rating) ** 3 * cycle.cam_speed * np.abs(spin) * carries)
+            for spin, carries in spins
+        ]
+        lives.append([FULL_TURN * 1e6 / each for each in damage])
+        most = max(most, force[pulled].max())
+    first, second = np.min(lives, axis=0)
+    assert demand("roller_life").demand == pytest.approx(first, rel=1e-6)
+    assert demand("second_roller_life").demand == pytest.approx(second, rel=1e-6)
+    static = cycle.machine.roller.bearing.C0 / most
+    assert demand("second_roller_static").demand == pytest.approx(static, rel=1e-2)
+
+
+def test_the_second_roller_stands_on_its_own_pin():
+    """Its blow is stopped on a pin longer by the spacing: a cantilever, span cubed."""
+    _, machine = running()
+    first, second = machine.track_stiffnesses
+    pin = machine.roller.pin
+    longer = replace(pin, span=pin.span + 0.018)
+    here, beyond = (pin_compliance(each, machine.roller.width) for each in (pin, longer))
+    added = beyond - here
+    assert 1.0 / second - 1.0 / first == pytest.approx(added, rel=1e-9)
+    assert machine.axial_stiffness == second < first
 
 
 # --- the body ---------------------------------------------------------------------------------
