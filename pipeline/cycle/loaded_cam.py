@@ -620,10 +620,14 @@ class LoadedCam:
         """Torque that the seat of a disc bears, N m: that of the cam, or that of the preloaded disc
         that bears more, which the other gives back.
         """
-        case = self.numbers.case
-        if case is None or not self.pulls or case.cam.clearance > 0.0:
-            return self.torque
-        return np.asarray(self.wall * self.normal / self.motion.gain * self.slope)
+        return np.asarray(of_disc(self.disc_torques, self.wall < 0.0))
+
+    @property
+    def disc_torques(self) -> tuple[Array, ...]:
+        """Torque that each disc bears of its own contact, N m."""
+        if self.numbers.case is None or self.numbers.case.cam.spacing is None:
+            return (self.torque,)
+        return tuple(np.asarray(each.axial * each.motion.jet.slope) for each in self.on_bodies)
 
     @property
     def friction_work(self) -> Array:
@@ -635,10 +639,15 @@ class LoadedCam:
 
     @cached_property
     def reverses(self) -> NDArray[np.bool_]:
-        """Whether the cam torque changes sign over the turn, or is not known, (...) or (m, 1)."""
-        torque = np.real(self.torque)
-        signs = (torque >= -NO_TORQUE).all(axis=-1), (torque <= NO_TORQUE).all(axis=-1)
-        one_way = np.asarray(np.logical_or(*signs))
+        """Whether the torque on a disc changes sign over the turn, or is not known, (...) or
+        (m, 1).
+        """
+        ways = list[NDArray[np.bool_]]()
+        for each in self.disc_torques:
+            torque = np.real(each)
+            signs = (torque >= -NO_TORQUE).all(axis=-1), (torque <= NO_TORQUE).all(axis=-1)
+            ways.append(np.asarray(np.logical_or(*signs)))
+        one_way = np.all(ways, axis=0)
         return ~one_way[..., None] if one_way.ndim else ~one_way
 
     @cached_property

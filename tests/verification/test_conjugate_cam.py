@@ -685,6 +685,28 @@ def test_each_disc_loads_the_camshaft_at_its_own_place(name):
 
 
 @pytest.mark.parametrize("name", ["stem", "arm", "pressed"])
+def test_each_key_feels_the_torque_of_its_own_disc(name):
+    """Torques by the points of the contours; a preload turns each disc to and fro under a torque on
+    the cam that has one sign.
+    """
+    cycle, _, track = running(name)
+    cam, loads = cam_of(trial(name).solution, cycle), cycle.loads
+    torques = []
+    for disc, turn, wall in ((cycle.contour, 0.0, 1.0), (track.contour, track.turn, -1.0)):
+        force = np.where(wall * loads.wall > 0.0, loads.normal_force, loads.idle_force)
+        centre, contact = disc.pitch.points(loads.theta + turn), disc.points(loads.theta + turn)
+        pushed = (centre - contact) / disc.require_roller().roller_radius
+        torques.append(force * (contact[0] * pushed[1] - contact[1] * pushed[0]))
+    greatest = np.abs(torques).max()
+    np.testing.assert_allclose(np.abs(cam.disc_torques), np.abs(torques), atol=1e-7 * greatest)
+    np.testing.assert_allclose(sum(cam.disc_torques), loads.cam_torque, atol=1e-7 * greatest)
+    wanted = any(each.min() < -1e-6 < 1e-6 < each.max() for each in torques)
+    assert bool(cam.reverses) == wanted
+    steady = replace(cam, loads=replace(loads, cam_torque=np.abs(loads.cam_torque) + 1.0))
+    assert bool(steady.reverses) == wanted
+
+
+@pytest.mark.parametrize("name", ["stem", "arm", "pressed"])
 def test_the_seat_of_a_disc_bears_the_torque_of_its_own_contact(name):
     """Seven times that of the cam with a preload; that of the cam without one.
 
