@@ -417,7 +417,7 @@ def preload_pressure(solution: Solution) -> Demand | None:
             there = Carried.at(cycle.contour.pitch, machine.system, loads.theta, walls)
             normal = force / (there.slide.lever * np.cos(there.pressure_angle))
             radius = relative_radius(cycle.contour, loads.second, loads.theta, walls)
-            load = normal / machine.contact_width
+            load = np.where(radius > 0.0, normal / machine.contact_width, np.nan)  # not undercut
             square = peak_pressure_square(load, 1.0 / radius, machine.contact_modulus)
             every.append(np.sqrt(square) * _over_hertz(cycle, wall))
         return np.maximum(*every)

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_conjugate_cam import uneven as uneven_pair
+from test_synthesis_of_held_cams import text_of
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
@@ -277,3 +278,17 @@ def test_the_sheet_of_a_run_has_the_force_of_both_discs(tmp_path):
     run = SheetRun(tmp_path / "run")
     for name in ("jam_index", "jam_index_friction_max", "preload_least", "preload_pressure"):
         assert run.sheet(name).agrees, name
+
+
+def test_a_synthesis_of_a_preloaded_stem_is_refused():
+    words = "must be a filter .* for discs, with a clearance"
+    with pytest.raises(InputError, match=rf"smoothing\.kind = constrained, {words}"):
+        parse_case(text_of("preloaded_feeder", 8.0, 60.0))
+
+
+def test_the_pressure_of_an_undercut_disc_is_not_known():
+    text = uneven_pair().replace('clearance = "0.02 mm"', 'interference = "0.02 mm"')
+    text = text.replace('roller_radius = "20 mm"', 'roller_radius = "70 mm"')
+    checks = {each.id: each for each in preview_case(parse_case(text), corners=False).checks}
+    assert checks["undercut"].status == "fail"
+    assert checks["preload_pressure"].status == "not_evaluated"
