@@ -58,6 +58,12 @@ class SecondFollower(ABC):
         highest : float or array  maximum lift of the first, m
         """
 
+    def along(self, first: Motion, highest: Value) -> SecondMotion:
+        """As `motion`, at any cam angles; under a yoke of a cam of constant breadth whose minimum
+        lift is zero.
+        """
+        return self.motion(first, highest)
+
     def track(self, first: FollowerPath) -> SecondTrack:
         """`of`, computed once for a path."""
         return _kept(self, first)
@@ -202,6 +208,16 @@ class OppositeFace(SecondFollower):
         if count % 2:
             raise InputError("positions", count, "even: a yoke has faces half a turn apart")
         jet = first.jet.at(lambda values: np.roll(values, count // 2, axis=-1))
+        return self._under(first, jet, highest)
+
+    def along(self, first: Motion, highest: Value) -> SecondMotion:
+        if not isinstance(first, FaceMotion):
+            raise InputError("cam.yoke", "a table", "left out without a flat face on a stem")
+        return self._under(first, _sunk(first.jet, highest, 1.0), highest)
+
+    @staticmethod
+    def _under(first: FaceMotion, jet: Jet, highest: Value) -> SecondMotion:
+        """Motion of the second face from its lift at the cam angles of the first."""
         base = np.asarray(first.base_height)
         motion = FaceMotion(jet, base, -np.asarray(first.offset), first.friction)
         turned = np.full(jet.lift.shape, _HALF_TURN)

@@ -300,8 +300,8 @@ def _stores(case: Case, stated_as: str) -> None:
     ------
     InputError
         If the spring is missing, or the lift is that of a constrained synthesis that is not done:
-        of a pair or a yoke, or of a spring that pulls; or that of a spring which pulls by a force
-        that is not linear in the lift.
+        of two rollers in a groove, of preloaded discs, or of a spring that pulls; or that of a
+        spring which pulls by a force that is not linear in the lift.
     """
     if case.spring.absent:
         limit = f"given with {stated_as} and without [lift]: it stores the work of the torque"
@@ -311,12 +311,11 @@ def _stores(case: Case, stated_as: str) -> None:
         limit = "> 0 without [lift]: the lift of a spring that pulls needs a force linear in it"
         raise InputError(key, text_of(case, key), limit)
     if case.smoothing.kind == "constrained" and (
-        case.cam.yoke is not None
-        or (case.cam.groove is not None and case.cam.second is not None)
+        (case.cam.groove is not None and case.cam.second is not None)
         or not (case.cam.clearance > 0.0 and case.spring.preload > 0.0)
     ):
-        limit = f"a filter with {stated_as}: it is done for a groove of one roller and for discs, "
-        limit += "with a clearance and a"
+        limit = f"a filter with {stated_as}: it is done for a groove of one roller, for discs and"
+        limit += " for a yoke, with a clearance and a"
         limit += " spring.preload > 0 N"
         raise InputError("smoothing.kind", "constrained", limit)
 

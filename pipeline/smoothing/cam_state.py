@@ -56,10 +56,13 @@ def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
 
     Parameters
     ----------
-    energy : arrays (...)         E, E', E'', E''', above that at zero lift, J/rad^k
+    energy : arrays (...)         E, E', E'', E''', above that at zero lift, J/rad^k; of a yoke the
+                                  lift itself, m/rad^k
     variables : DesignVariables   k, P and shape of the spring
     """
     level, first, second, third = energy
+    if variables.of_lift:
+        return Jet(lift=level, slope=first, lift_d2=second, jerk=third)
     if variables.shape is not None:
         return _shaped_jet(energy, variables, variables.shape)
     force = np.sqrt(variables.closing**2 + 2.0 * variables.rate * level)
@@ -118,7 +121,7 @@ def _second_of(cam: LoadedCam, first: Motion, highest: Value) -> SecondMotion | 
     """Motion of a second roller or face by that of the first; None without one."""
     case = cam.numbers.case
     fixed = None if case is None else case.cam.second
-    return None if fixed is None else fixed.motion(first, highest)
+    return None if fixed is None else fixed.along(first, highest)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -63,10 +63,14 @@ class Norm:
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """Trust-region cone |slopes @ x| <= bound; slopes (m, w) of the first unknowns."""
+    """Trust-region cone |slopes @ x| <= bound; slopes (m, w) of the first unknowns.
+
+    still (e, w): rows of them that no step changes; None: none.
+    """
 
     slopes: Array
     bound: float
+    still: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,6 +174,12 @@ class Cones:
         side = np.concatenate([[ceiling], level])
         self._cones.append((_Block(rows, columns, values, side), side.size))
 
+    def zero(self, slopes: Array) -> None:
+        """slopes (m, w) @ x[:w] = 0."""
+        rows, columns = np.nonzero(slopes)
+        side = np.zeros(len(slopes))
+        self._cones.append((_Block(rows, columns, slopes[rows, columns], side), 0))
+
     def square_at_most(
         self, matrix: scipy.sparse.csr_array, room: scipy.sparse.csr_array, level: float
     ) -> None:
@@ -197,7 +207,9 @@ class Cones:
         linear = sum(block.side.size for block in self._linear)
         cones = [clarabel.NonnegativeConeT(linear)]
         for block, height in self._cones:
-            cones += [clarabel.SecondOrderConeT(height)] * (block.side.size // height)
+            count = block.side.size
+            square = [clarabel.SecondOrderConeT(height)] * (count // height) if height else None
+            cones += [clarabel.ZeroConeT(count)] if square is None else square
         starts = np.cumsum([0, *(block.side.size for block in blocks)])
         rows = [block.rows + start for block, start in zip(blocks, starts, strict=False)]
         columns, values = (
@@ -324,6 +336,8 @@ def _solved(
     if reach is not None:
         rows_of = reach.slopes.shape[0]
         program.norm_at_most(reach.slopes, np.zeros(rows_of), None, reach.bound)
+        if reach.still is not None:
+            program.zero(reach.still)
     for k, norm in enumerate(norms):
         program.norm_at_most(norm.slopes, norm.level, bounded + k)
     result = program.solved()

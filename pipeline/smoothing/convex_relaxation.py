@@ -60,7 +60,7 @@ def convex_start(problem: Problem) -> Core | None:
     Returns
     -------
     Core or None   None if the problem is not convex (r0 < P/k, an offset, a spring that is not
-                   linear) or not solved
+                   linear, a yoke) or not solved
 
     References
     ----------
@@ -68,7 +68,7 @@ def convex_start(problem: Problem) -> Core | None:
     Demeulenaere et al., ASME J. Mech. Des. 131 (2009) 101004: splines by convex programs.
     """
     variables, ratings = problem.variables, problem.ratings
-    if variables.shape is not None or ratings.offset != 0.0:
+    if variables.shape is not None or variables.of_lift or ratings.offset != 0.0:
         return None
     if variables.prime_radius * variables.rate < variables.closing:
         return None

@@ -233,6 +233,31 @@ def fitted_energy(cam_torque: ArrayLike, count: int, lobes: int = 1) -> Array:
     return readonly(coefficients - lowest(coefficients))
 
 
+def spline_of(values: Array, count: int) -> Array:
+    """Coefficients (count,) of the splines through values (n,) at n equal angles of a lobe, by
+    least squares.
+    """
+    level = basis_matrix(uniform_turn(values.size), count)
+    return readonly(scipy.sparse.linalg.spsolve((level.T @ level).tocsc(), level.T @ values))
+
+
+def of_constant_breadth(coefficients: Array) -> Array:
+    """Coefficients (count,), m, of a lift whose sum with that half a turn later is constant, the
+    nearest to those of another lift, with a minimum of zero; an even number, odd lobes.
+    """
+    odd = 0.5 * (coefficients - np.roll(coefficients, coefficients.size // 2))
+    return readonly(odd - lowest(odd))
+
+
+def breadth_changes(count: int) -> Array:
+    """Rows (count/2 - 1, count) that are zero of the coefficients of a lift of constant breadth:
+    its sum with that half a turn later is that of opposite coefficients, each the same.
+    """
+    half = count // 2
+    opposite = np.tile(np.eye(half), 2)
+    return np.asarray(opposite[1:] - opposite[:1])
+
+
 def lowest(coefficients: Array) -> float:
     """Minimum of the stored energy over the turn, J, on a grid finer than the knots, refined by
     Newton's method between its angles.

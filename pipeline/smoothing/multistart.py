@@ -7,12 +7,15 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.pipeline.records.trial_contents import ResolutionRecord, StartsRecord
 from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
-from camwright.pipeline.smoothing.energy_spline import basis_matrix
+from camwright.pipeline.smoothing.energy_spline import (
+    basis_matrix,
+    of_constant_breadth,
+    spline_of,
+)
 from camwright.pipeline.smoothing.linear_model import State
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import Design, Problem, coarsened
@@ -180,7 +183,7 @@ def resolved(problem: Problem, first: Design) -> tuple[list[Design], Resolution]
         before, count = designs[-1], designs[-1].coefficients.size
         # As often as the change must be halved, which a refinement does at best.
         halvings = max(1, round(np.log2(abs(change) / problem.convergence)))
-        finer = min(round(_REFINEMENT**halvings * count), most)
+        finer = problem.splines(min(round(_REFINEMENT**halvings * count), most))
         designs.append(continued(replace(problem, coefficients=finer), before))
         after = designs[-1]
         least = max(after.ripple, NEGLIGIBLE)  # below, ripples are equal
@@ -226,7 +229,8 @@ def _random(problem: Problem, size: float, random: np.random.Generator) -> Probl
     variables = problem.variables
     for name, (least, greatest) in problem.freed.items():
         variables = variables.with_value(name, float(random.uniform(least, greatest)))
-    return replace(problem, seed=readonly(energy), variables=variables)
+    seed = of_constant_breadth(energy) if variables.of_lift else readonly(energy)
+    return replace(problem, seed=seed, variables=variables)
 
 
 def refined(coefficients: Array, count: int) -> Array:
@@ -238,7 +242,5 @@ def refined(coefficients: Array, count: int) -> Array:
     coefficients : array   on the present splines, J
     count : int            new number of splines
     """
-    theta = uniform_turn(8 * count)
-    level = basis_matrix(theta, count)
-    energy = basis_matrix(theta, coefficients.size) @ coefficients
-    return readonly(scipy.sparse.linalg.spsolve((level.T @ level).tocsc(), level.T @ energy))
+    energy = basis_matrix(uniform_turn(8 * count), coefficients.size) @ coefficients
+    return spline_of(energy, count)

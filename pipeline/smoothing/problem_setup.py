@@ -77,6 +77,12 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
     }
     # A force of the machine over the cam angle differs from lobe to lobe.
     lobes = 1 if any(each.external.varies for each in states) else case.period.cycles
+    # The second face follows from a minimum lift of zero; half a turn is half of the splines.
+    yoked = case.cam.yoke is not None
+    even = 2 if yoked else 1
+    if yoked and lobes % 2 == 0:
+        limit = "odd: the two faces of a yoke touch the cam half a turn apart"
+        raise InputError("torque cycles in a cam turn", lobes, limit)
     freed = {
         short: getattr(smoothing, f"{name}_range")
         for name, short in names.items()
@@ -91,11 +97,12 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
             case.cam.prime_radius,
             dead_load=dead,
             shape=case.spring.shape,
+            of_lift=yoked,
         ),
         gear_ratio=case.mechanism.gear_ratio,
         freed=freed,
-        energy=(0.0, np.inf if "initial_energy" in smoothing.free else 0.0),
-        coefficients=per_lobe(smoothing.coefficients or COEFFICIENTS, lobes),
+        energy=(0.0, np.inf if "initial_energy" in smoothing.free and not yoked else 0.0),
+        coefficients=per_lobe(smoothing.coefficients or COEFFICIENTS, lobes) // even * even,
         lobes=lobes,
         convergence=smoothing.ripple_convergence if smoothing.coefficients is None else None,
         points=_points(case),

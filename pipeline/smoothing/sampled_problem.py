@@ -26,8 +26,11 @@ from camwright.pipeline.smoothing.constraints import (
 from camwright.pipeline.smoothing.energy_spline import (
     Grid,
     basis_matrix,
+    breadth_changes,
     exact_start,
+    of_constant_breadth,
     reversals,
+    spline_of,
 )
 from camwright.pipeline.smoothing.gradients import (
     FREED,
@@ -125,7 +128,9 @@ class Search:
         self._last: tuple[Array, Grid] | None = None  # coefficients and their peak
         self._stacks: dict[float, Scenario] = {}
         self._engines: dict[float, Array] = {}
-        self.exact = self._exact()
+        of_lift, count = problem.variables.of_lift, problem.coefficients
+        self.still = breadth_changes(count) if of_lift else None
+        self.exact = self._drawn(self._exact())
         self.start = self.exact if problem.seed is None else problem.seed
         self.scale = max(float(np.abs(self.exact).max()), 1e-9)
         exact = lift_jet(self.turn.energy(self.exact), problem.variables)
@@ -139,6 +144,17 @@ class Search:
     def size(self) -> int:
         """Number of unknowns: coefficients and free variables."""
         return self.problem.coefficients + len(self.problem.freed)
+
+    def _drawn(self, energy: Array) -> Array:
+        """Coefficients of the unknowns from those of an energy, J: the same, or of the lift of
+        constant breadth nearest to its own, m.
+        """
+        variables, count = self.problem.variables, self.problem.coefficients
+        if not variables.of_lift:
+            return energy
+        lobe = self.problem.grid(uniform_turn(8 * count) / self.problem.lobes)
+        lift = lift_jet(lobe.energy(energy), replace(variables, of_lift=False)).lift
+        return of_constant_breadth(spline_of(lift, count))
 
     def _exact(self) -> Array:
         """Coefficients of the energy, J, that balances the torque of the scenario of greatest

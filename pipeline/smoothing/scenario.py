@@ -23,7 +23,8 @@ class DesignVariables:
 
     The phase is the angle by which the cam leads the spline of its energy on the shaft. dead_load:
     weight and mean external force, N, towards the cam, which store work with the spring; shape: of
-    the force of the spring over the lift, None: linear; both given.
+    the force of the spring over the lift, None: linear; both given. of_lift: whether the splines
+    are those of the lift, m, in place of the energy: of a yoke, whose breadth is constant.
     """
 
     rate: float
@@ -32,6 +33,7 @@ class DesignVariables:
     phase: float = 0.0
     dead_load: float = 0.0
     shape: SpringShape | None = None
+    of_lift: bool = False
 
     def with_value(self, name: str, value: float) -> DesignVariables:
         """With another value of a variable."""

@@ -80,6 +80,10 @@ class Problem:
         """Splines of the energy at cam angles (m,), rad."""
         return Grid.at(theta, self.coefficients, self.lobes)
 
+    def splines(self, count: int) -> int:
+        """Number of splines of a lobe: `count`, of a lift of constant breadth an even number."""
+        return count + count % 2 if self.variables.of_lift else count
+
     @property
     def coarse_points(self) -> int:
         """Number of cam angles of a coarse problem."""
@@ -191,6 +195,8 @@ class Design:
         splines = basis_matrix(theta, self.coefficients.size, lobes=self.lobes)
         energy = np.maximum(splines @ self.coefficients, 0.0)
         variables = self.variables
+        if variables.of_lift:
+            return Lift(uniform_turn(samples), energy)
         deflection = stored_lift(energy, variables.rate, variables.closing, variables.shape)
         return Lift(uniform_turn(samples), deflection)
 
@@ -203,7 +209,9 @@ def coarsened(problem: Problem) -> Problem:
         problem,
         scenarios=turns,
         points=points,
-        coefficients=min(problem.coefficients, per_lobe(COARSE_COEFFICIENTS, problem.lobes)),
+        coefficients=problem.splines(
+            min(problem.coefficients, per_lobe(COARSE_COEFFICIENTS, problem.lobes))
+        ),
         seed=None,
     )
 

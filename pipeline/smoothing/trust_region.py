@@ -310,7 +310,8 @@ def _program(
     ripple_weight : float   of ripple and costs in the objective
     """
     # The box alone does not bound short waves, which a speed ripple does not contain.
-    reach, box = Reach(search.root_hessian, trust), search.box(state, trust)
+    reach = Reach(search.root_hessian, trust, search.still)
+    box = search.box(state, trust)
     for left in reversed(range(_ADDITIONS)):
         program = solved(
             model.norms, model.limits,
