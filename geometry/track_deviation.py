@@ -53,6 +53,8 @@ class TrackDeviation:
         first : FollowerPath      path of the first roller or face
         second : SecondFollower   the second one; None: a groove
         """
+        if self == EXACT:
+            return np.zeros(theta.shape)
         if second is None:
             return np.full(theta.shape, -2.0 * self._filled)
         return self.on(second.track(first), theta)

@@ -20,7 +20,8 @@ _RIPPLE_SHARE = 1e-2
 spline of a lift where its jerk steps, beside a dwell."""
 _LEAVING_ROUND_OFF = 1e-9  # of the clearance, of a roller that leaves a wall
 _BENT_MOST = 1e-4  # of the clearance, greatest part of the bend of a wall within a step
-_LANDING_BISECTIONS = 60  # of the landing within a step
+_LANDING_STEPS = 100  # to the landing within a step, most of them by halves at a double root
+_SAME_SHARE = 1e-13  # of a step
 _LANDINGS_MAX = 1000  # a turn
 _REST_SHARE = 1e-3  # of the clearance: height of a rebound that counts as none
 
@@ -60,7 +61,8 @@ class Landing(NamedTuple):
 class Walls(NamedTuple):
     """Two walls with a rigid follower between them, over a turn in equal steps of time, s.
 
-    force : of each wall on the follower that it guides, N, positive outward: inner, outer
+    force : of each wall on the follower that it guides, N, positive outward: inner, outer; forces :
+        the same as arrays
     ends : that of the inner wall at begin and end of each step, linear in it, N
     gap, opening : clearance along the travel, m, and its rate, m/s
     mass, kg; stiffness, N/m, and damping, N s/m, against the motion in the clearance
@@ -69,6 +71,7 @@ class Walls(NamedTuple):
     """
 
     force: tuple[list[float], list[float]]
+    forces: tuple[Array, Array]
     ends: tuple[list[float], list[float]]
     gap: list[float]
     opening: list[float]
@@ -126,6 +129,7 @@ class Walls(NamedTuple):
         slack = min(max(bent, _LEAVING_ROUND_OFF * widest), _BENT_MOST * widest)
         return cls(
             (force.tolist(), outer.tolist()),
+            (force, outer),
             (ends[0].tolist(), ends[1].tolist()),
             gap.tolist(),
             opening.tolist(),
@@ -167,7 +171,7 @@ class Walls(NamedTuple):
         """
         if not 0.0 <= restitution < 1.0:
             raise InputError("follower.restitution", restitution, "in [0, 1)")
-        force = np.array(self.force[0])
+        force, _ = self.forces
         begin = int(np.abs(force).argmax())
         flown = self._over(float(begin), INNER if force[begin] > 0.0 else OUTER, restitution)
         if not flown or not flown[-1].rebound > 0.0:
@@ -188,7 +192,7 @@ class Walls(NamedTuple):
         those by which it rebounds, and leaves again where the force has not yet turned towards the
         wall.
         """
-        least = _RIPPLE_SHARE * max(map(abs, self.force[0]))
+        least = _RIPPLE_SHARE * float(np.abs(self.forces[0]).max())
         index, end = begin, floor(begin) + len(self.gap)
         flown: list[Landing] = []
         off: float | None = None  # speed off the wall; None: at rest on it
@@ -223,7 +227,7 @@ class Walls(NamedTuple):
         end : int       last index
         least : float   force towards the other wall that counts, N
         """
-        force = np.array(self.on(wall))
+        force = self.forces[0 if wall == INNER else 1]
         away = -wall * force[np.arange(floor(index) + 1, end + 1) % force.size]
         beyond = np.flatnonzero(away > least)
         if not beyond.size:
@@ -340,7 +344,7 @@ class Walls(NamedTuple):
         arc: FlightStep,
         restitution: float,
     ) -> Landing:
-        """Landing of the roller within a step of the turn, by bisection.
+        """Landing of the roller within a step of the turn.
 
         Parameters
         ----------
@@ -351,10 +355,7 @@ class Walls(NamedTuple):
         arc : FlightStep    motion to the end of the step
         restitution : float   of the landing
         """
-        low, high = 0.0, 1.0
-        for _ in range(_LANDING_BISECTIONS):
-            middle = 0.5 * (low + high)
-            low, high = (low, middle) if arc.room(middle, side) < 0.0 else (middle, high)
+        high = arc.lands(side)
         count, there = len(self.gap), index + high * (floor(index) + 1.0 - index)
         opening = 0.0 if side == INNER else self.at(self.opening, there)
         speed = max(side * (opening - arc.velocity(high)), 0.0)
@@ -397,6 +398,24 @@ class FlightStep(NamedTuple):
     def velocity(self, share: float) -> float:
         time, bend = share * self.span, share * (self.last - self.first)
         return self.speed + (self.first + bend / 2.0) * time
+
+    def lands(self, side: float) -> float:
+        """Share of the step at which it reaches a wall beyond which it ends, by Newton's steps
+        within a bracket.
+        """
+        low, high, share = 0.0, 1.0, 1.0
+        closes = (self.gaps[1] - self.gaps[0]) if side == OUTER else 0.0
+        for _ in range(_LANDING_STEPS):
+            room = self.room(share, side)
+            low, high = (low, share) if room < 0.0 else (share, high)
+            rate = side * self.span * self.velocity(share) + closes
+            after = share - room / rate if rate else low
+            if not low < after < high:
+                after = 0.5 * (low + high)
+            if abs(after - share) <= _SAME_SHARE:
+                return after
+            share = after
+        return high
 
     def room(self, share: float, side: float) -> float:
         """Distance from a wall, m; negative beyond it."""
