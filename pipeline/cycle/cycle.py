@@ -43,6 +43,7 @@ from camwright.pipeline.cycle.part_loads import (
     PartLoads,
     PivotPush,
     beside_first,
+    beyond_first,
     part_loads,
     shaft_of,
     spring_surge,
@@ -254,11 +255,12 @@ class Cycle(Tabled):
         """Reactions of the guides across the plane of the cam, under the couple that a forced tilt
         of the contact bends the stem with.
 
-        The part of `follower_moment` in that plane, at the angles with a forced tilt; None where
-        there is none.
+        The part of `follower_moment` in that plane, at the angles with a forced tilt, and that of a
+        second roller beside the first; None where there is none.
         """
-        forced = turn_of_line(self).tilt.forced > 0.0
-        couple = np.where(forced, self.follower_moment, 0.0) * np.cos(self.loads.pressure_angle)
+        turn = turn_of_line(self)
+        couple = np.where(turn.tilt.forced > 0.0, self.follower_moment, 0.0) + turn.beside
+        couple = couple * np.cos(self.loads.pressure_angle)
         if not couple.any():
             return None
         machine, knots = self.machine, self.guides.knots_a.size
@@ -679,7 +681,8 @@ def turn_of_line(cycle: Cycle) -> TurnOfLine:
     force = cycle.loads.normal_force
     turn = cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt
     yields = camshaft_compliance(cycle.machine, cycle.loads.wall < 0.0)
-    return TurnOfLine(*turn, np.hypot(*cycle.loads.pivot_load), yields, cycle.pin_slope)
+    pivot, beyond = np.hypot(*cycle.loads.pivot_load), beyond_first(cycle.machine, cycle.loads)
+    return TurnOfLine(*turn, pivot, yields, cycle.pin_slope, np.abs(beyond))
 
 
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:

@@ -208,7 +208,8 @@ class TurnOfLine(NamedTuple):
     force (n,): normal force, N; shaft (n,): slope of the camshaft at the cam, rad, as of
     `Cycle.shaft_tilt`; pivot (n,): load of an arm on its pivot, N, 0 without one; yields: as of
     `camshaft_compliance`; pin (n,): slope of the pin per couple, rad/(N m), by finite elements;
-    None: on a foundation.
+    None: on a foundation; beyond (n,): distance of the roller that carries from the first along
+    their pin, m.
     """
 
     machine: Machine
@@ -219,6 +220,7 @@ class TurnOfLine(NamedTuple):
     pivot: Array
     yields: Value
     pin: Array | None = None
+    beyond: Value = 0.0
 
     @property
     def tilting(self) -> FollowerTilt:
@@ -244,8 +246,24 @@ class TurnOfLine(NamedTuple):
             clearance=machine.limits[ROLLER_CLEARANCE],
             bearing_length=None if follower.slides else follower.line_width,
             guides=self.tilting.within(machine.guides.spacing),
-            twist=self.tilting.turned(self.pressed, machine.stem_offset),
+            twist=self._twist,
         )
+
+    @property
+    def _twist(self) -> Array:
+        """Turning (n,) of an arm by a contact beside its middle, or of a stem by the couple of a
+        second roller, rad.
+        """
+        machine = self.machine
+        if machine.arm is not None:
+            return self.tilting.turned(self.pressed, machine.stem_offset + self.beyond)
+        turned = self.tilting.turned(self.pressed, machine.stem_offset)
+        return np.asarray(turned + self.beside * self.tilt_compliance)
+
+    @property
+    def beside(self) -> Array:
+        """Couple (n,), N m, of a second roller on the pin about the middle of the first."""
+        return np.where(self.beyond == 0.0, 0.0, self.force * self.beyond)
 
     @property
     def loads(self) -> ContactLoads:
@@ -283,8 +301,8 @@ class TurnOfLine(NamedTuple):
 
     @property
     def couple(self) -> Array:
-        """Greatest couple (n,), N m, of guide friction and axial offset."""
-        return self.held + self.aside
+        """Greatest couple (n,), N m, of guide friction, axial offset and place of the roller."""
+        return self.held + self.aside + self.beside
 
     @property
     def rigid_moment(self) -> Array:

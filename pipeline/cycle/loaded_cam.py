@@ -737,16 +737,24 @@ class LoadedCam:
         return 0.0 * self.normal
 
     @property
-    def pin_couple(self) -> Array:
-        """Greatest moment of the contact on the pin about the middle of the first roller, N m:
-        `follower_moment`, and the force of a second one beside it.
+    def beyond(self) -> Value:
+        """Distance by which the roller that carries is farther into a groove than the first, on the
+        same pin, m; 0 of one roller.
         """
         case = self.numbers.case
         second = None if case is None else case.cam.on_pin
         if second is None:
-            return self.follower_moment
-        beyond = self.numbers.of_part(second).beyond(self.numbers["roller.radius"])
-        beside = np.where(self.wall < 0.0, beyond * self.normal, 0.0)
+            return 0.0
+        farther = self.numbers.of_part(second).beyond(self.numbers["roller.radius"])
+        return np.where(self.wall < 0.0, farther, 0.0)
+
+    @property
+    def pin_couple(self) -> Array:
+        """Greatest moment of the contact on the pin about the middle of the first roller, N m:
+        `follower_moment`, and the force of a second one beside it.
+        """
+        beyond = self.beyond
+        beside = np.where(beyond == 0.0, 0.0, beyond * self.normal)
         return np.asarray(self.follower_moment + beside)
 
     @property

@@ -202,13 +202,20 @@ def part_loads(
     )
 
 
-def beside_first(machine: Machine, loads: Loads) -> Array:
-    """Moment (n,), N m, of a second roller on the pin about the middle of the first; 0 without."""
+def beyond_first(machine: Machine, loads: Loads) -> Array:
+    """Distance (n,), m, by which the roller that carries is farther into a groove than the first,
+    on the same pin; 0 of one roller.
+    """
     second = machine.cam.on_pin
     if second is None:
         return np.zeros(loads.theta.size)
-    beyond = second.beyond(machine.roller.radius)
-    return np.where(loads.wall < 0.0, beyond * loads.normal_force, 0.0)
+    return np.where(loads.wall < 0.0, second.beyond(machine.roller.radius), 0.0)
+
+
+def beside_first(machine: Machine, loads: Loads) -> Array:
+    """Moment (n,), N m, of the roller that carries about the middle of the first on a pin."""
+    beyond = beyond_first(machine, loads)
+    return np.where(beyond == 0.0, 0.0, beyond * loads.normal_force)
 
 
 class PivotPush(NamedTuple):

@@ -84,13 +84,15 @@ class FollowerTurning(NamedTuple):
 
     shaft: slope of the camshaft at the cam, rad, as of `LineTilt`; yields: of it per moment there,
     rad/(N m); held: couple that the follower holds without a tilt, N m; twist: of an arm under a
-    contact beside its middle, rad
+    contact beside its middle, or of a stem by `beside`, rad; beside: couple of a second roller on
+    the pin about the first, N m
     """
 
     shaft: Array
     yields: Value
     held: Array
     twist: Array
+    beside: Array
 
 
 def turning_of(
@@ -100,6 +102,7 @@ def turning_of(
     force: Array,
     rubbing: tuple[Array, Array],
     pivot: Array,
+    beyond: Value,
 ) -> FollowerTurning:
     """What turns the followers of designs.
 
@@ -109,12 +112,18 @@ def turning_of(
     yields : float or (m, n)      of it per moment there, rad/(N m)
     force, pivot : array (m, n)   normal force, and load of an arm on its pivot, N
     rubbing : two arrays (m, n)   normal loads of guides A and B, N
+    beyond : float or (m, n)      distance of the roller that carries from the first on a pin, m
     """
     on_a, on_b = (designs.numbers[f"guides.{side}.friction_greatest"] for side in "ab")
     loads = TiltingLoads(force, rubbing, (on_a, on_b), pivot, _spacing(designs))
     follower = designs.tilting
-    twist = follower.turned(loads, designs.stem_offset)
-    return FollowerTurning(shaft, yields, follower.held(loads), twist)
+    on_arm = designs.machine.arm is not None
+    twist = follower.turned(loads, designs.stem_offset + (beyond if on_arm else 0.0))
+    beside = np.where(beyond == 0.0, 0.0, force * beyond)
+    turning = FollowerTurning(shaft, yields, follower.held(loads), twist, beside)
+    if on_arm:
+        return turning
+    return turning._replace(twist=twist + turning.beside * _yields(designs, turning))
 
 
 def factors_of(
@@ -160,7 +169,7 @@ def factors_of(
             at = (member == number)[:, None] & chosen
             if not at.any():
                 continue
-            held = couple[at] + aside[at]
+            held = couple[at] + aside[at] + turning.beside[at]
             turned = greatest[at], forced[at], yields[at]
             loads = ContactLoads(1.0 / radius[at], force[at], *turned, held, raised[at])
             mean = machine.limits[END_MEAN_LENGTH]

@@ -310,7 +310,7 @@ class ScreenedCam(CarriedCam):
         stem.
         """
         guides, block = self.guides, self.block
-        couple = forced_part(block, self._turning, self.follower_moment)
+        couple = forced_part(block, self._turning, self.follower_moment) + self._turning.beside
         couple = couple * np.cos(self.motion.pressure_angle)
         if not couple.any():
             return OfGuides(guides.bearing_a, guides.bearing_b)
@@ -332,7 +332,8 @@ class ScreenedCam(CarriedCam):
     def _turning(self) -> FollowerTurning:
         pivot = np.zeros(self.normal.shape) if self.pivoted is None else self.pivot_load
         return turning_of(
-            *(self.block, self.shaft_tilt, self.shaft_yield, self.normal, self.rubbing, pivot)
+            *(self.block, self.shaft_tilt, self.shaft_yield, self.normal, self.rubbing, pivot),
+            np.abs(self.beyond),
         )
 
     @cached_property

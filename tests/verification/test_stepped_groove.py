@@ -18,6 +18,7 @@ from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
 from camwright.pipeline.cycle.crossover_history import flights
+from camwright.pipeline.cycle.cycle import turn_of_line
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.follower.follower_stiffness import pin_compliance
 from camwright.pipeline.preview import preview_case
@@ -214,6 +215,22 @@ def test_the_second_roller_stands_on_its_own_pin():
     added = beyond - here
     assert 1.0 / second - 1.0 / first == pytest.approx(added, rel=1e-9)
     assert machine.axial_stiffness == second < first
+
+
+def test_the_stem_in_its_guides_under_the_couple_of_the_second_roller():
+    """F a across the plane of the cam, by the equilibrium of the guides 132 mm apart; it turns the
+    line of contact, too.
+    """
+    cycle, _ = running()
+    turn, loads, guides = turn_of_line(cycle), cycle.loads, cycle.sideways
+    couple = np.where(loads.axial_force < 0.0, 0.018 * loads.normal_force, 0.0)
+    assert turn.tilt.twist == pytest.approx(couple * turn.tilt_compliance)
+    forced = np.where(turn.tilt.forced > 0.0, cycle.follower_moment, 0.0)
+    across = (couple + forced) * np.cos(loads.pressure_angle)
+    assert guides is not None
+    borne = guides.moment_a + guides.moment_b - 0.132 * guides.reaction_b
+    assert np.abs(borne) == pytest.approx(across, rel=1e-6, abs=1e-6)
+    assert (couple > 1.0).any()
 
 
 # --- the body ---------------------------------------------------------------------------------
