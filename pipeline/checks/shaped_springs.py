@@ -300,7 +300,8 @@ extension_initial_tension = check(
     title="Initial tension of the extension spring",
     unit="N",
     source=Source(
-        "upper end of what a maker winds in routinely: Shigley, eq. 10-41, read second-hand",
+        "upper end of the range that a maker winds in routinely: Shigley, eq. 10-41 and fig. 10-7c,"
+        " 33500 psi/exp(0.105 C) + 1000 psi (4 - (C - 3)/6.5), by two transcriptions that agree",
         confirmed=False,
     ),
     method="stated value against the preload with its tolerance low, and what coiling gives",

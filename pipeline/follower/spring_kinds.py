@@ -618,7 +618,7 @@ class ExtensionSpring(SpringShape):
     References
     ----------
     EN 13906-2 (rate, body), recalled; Shigley's Mechanical Engineering Design, eqs 10-34 to 10-37
-    (hooks) and 10-41 (initial tension), read second-hand. Fatigue of the hook: amesweb.info,
+    (hooks) and 10-41 (initial tension), by transcriptions. Fatigue of the hook: amesweb.info,
     Maximum allowable stresses for coil extension springs, after Standard Handbook of Machine
     Design, p. 24.34.
     """
