@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import json
 import os
@@ -79,6 +80,47 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def pytest_collection_finish() -> None:
     gc.freeze()  # ten thousand tests, which no later search for cycles goes through
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> object:
+    """Frees at the end of a file of tests what it kept for its own tests."""
+    result = yield
+    if nextitem is None or nextitem.path != item.path:
+        _clear_caches()
+        if _memory() > MOST:
+            _return_memory()
+    return result
+
+
+MOST = 1e9
+"""Bytes of a test process above which it searches for cycles and returns what glibc keeps."""
+
+
+def _clear_caches() -> None:
+    """Empty the caches of the functions of all test files; those of the modules that they share,
+    and of the program, stay.
+    """
+    for name, module in list(sys.modules.items()):
+        if name.startswith("test_"):
+            for made in list(vars(module).values()):
+                if getattr(made, "__module__", "") == name and hasattr(made, "cache_clear"):
+                    made.cache_clear()
+
+
+def _memory() -> float:
+    """Resident memory of this process, bytes; 0 where the system does not tell."""
+    pages = Path("/proc/self/statm")
+    if not pages.is_file():
+        return 0.0
+    return float(pages.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def _return_memory() -> None:
+    gc.collect()
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:
+        trim(0)
 
 
 DIED = 70
