@@ -48,7 +48,7 @@ from camwright.pipeline.cycle.crank_speed import SpeedRipple
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.hub_history import HubFatigue, hub_fatigue
 from camwright.pipeline.cycle.numbers import Numbers, presses
-from camwright.pipeline.cycle.solved_cam import ForcesCam, SolvedCam, numbers_of
+from camwright.pipeline.cycle.solved_cam import ForcesCam, SolvedCam, numbers_of_discs
 from camwright.pipeline.cycle.speed_sweep import (
     SpeedSweep,
     SpringSweep,
@@ -141,11 +141,7 @@ class Solution(Displayed):
     @cached_property
     def numbers(self) -> Numbers:
         """Numbers of the machine in the design load case, and the greatest cam speed."""
-        numbers = numbers_of(self.case, self.machines)
-        if self.machine.cam.second is None and not self.machine.spring.absent:
-            return numbers
-        tips = [each.contour.radius_max().value for each in self.discs]
-        return numbers | {"cam.greatest_radius": max(tips)}
+        return numbers_of_discs(self.case, self.machines, self.contour)
 
     @cached_property
     def cams(self) -> Mapping[Cycle, SolvedCam]:

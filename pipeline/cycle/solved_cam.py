@@ -12,6 +12,7 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.contour import Contour
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
+from camwright.geometry.second_track import discs_of
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.cycle import Cycle
@@ -35,6 +36,15 @@ def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
         "spring.preload_least": min(each.spring.preload for each in machines),
     }
     return in_load_case(Numbers(shared, case), machines[0])
+
+
+def numbers_of_discs(case: Case, machines: Sequence[Machine], contour: Contour) -> Numbers:
+    """`numbers_of`, of a cam without a spring or with two tracks with its greatest radius."""
+    numbers, machine = numbers_of(case, machines), machines[0]
+    if machine.cam.second is None and not machine.spring.absent:
+        return numbers
+    tips = [each.contour.radius_max().value for each in discs_of(contour, machine.cam.second)]
+    return numbers | {"cam.greatest_radius": max(tips)}
 
 
 def in_load_case(numbers: Numbers, machine: Machine) -> Numbers:

@@ -27,7 +27,7 @@ from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.cycle.loaded_cam import round_of
 from camwright.pipeline.cycle.numbers import Numbers, fitted_ring, greatest_interference
-from camwright.pipeline.cycle.solved_cam import ContourCam, in_load_case, numbers_of
+from camwright.pipeline.cycle.solved_cam import ContourCam, in_load_case, numbers_of_discs
 from camwright.pipeline.records.check_record import CheckRecord
 from camwright.pipeline.results.check_records import RecordedCheck
 from camwright.pipeline.results.check_report import place
@@ -82,6 +82,8 @@ _CLOSED_FORM = {
 """Columns in place of one that a run without finite elements leaves empty: the first it has."""
 _FOR_OTHERS = {"stem_force": "axial_force"}
 """Column in place of one that a run has of some closures alone."""
+_ABSENT = ("spring_surge_force",)
+"""Columns of a part that a run lacks: their values are zero."""
 ONLY = "?"
 """Symbol of the keys and words for which a formula holds, such as ``follower.kind roller``."""
 
@@ -529,7 +531,8 @@ class _Evaluation:
         """Numbers of the case by key, SI, in the load case of the demand, with four that only
         formulas of checks need.
         """
-        shared = numbers_of(self.run.case, tuple(self.run.machines.values()))
+        states = tuple(self.run.machines.values())
+        shared = numbers_of_discs(self.run.case, states, self.run.contour)
         ring, interference = fitted_ring(shared), greatest_interference(shared)
         fitted = None if ring is None or interference is None else ring.pressure(interference)
         flanks = self.run.case.cam.key_flanks
@@ -593,6 +596,8 @@ class _Evaluation:
             return unit, self._rows[header]
         if name in _FOR_OTHERS:
             return self._column(_FOR_OTHERS[name])
+        if name in _ABSENT:
+            return "", np.zeros(next(iter(self._rows.values())).size)
         raise ResultError(f"5_cycle.csv: no column {name}")
 
 
