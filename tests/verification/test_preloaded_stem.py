@@ -282,7 +282,7 @@ def test_every_sheet_of_a_run_agrees(tmp_path):
 
 
 def test_a_synthesis_of_a_preloaded_stem_is_refused():
-    words = "must be a filter .* for discs, with a clearance"
+    words = "must be a filter .* with a clearance"
     with pytest.raises(InputError, match=rf"smoothing\.kind = constrained, {words}"):
         parse_case(text_of("preloaded_feeder", 8.0, 60.0))
 
