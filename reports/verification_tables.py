@@ -193,7 +193,7 @@ def certificate(points: Sequence[Record]) -> ReportTable:
     for point in points:
         pressure = _figure(point, "p0_MPa")
         rows.append([
-            number(point.get("cam_angle_deg")), _several(point.get("edges_across_half_width"), 3),
+            _angle(point), _several(point.get("edges_across_half_width"), 3),
             _several(point.get("dofs")), _several(pressure.get("meshes"), 5),
             number(pressure.get("extrapolated"), 5), _order(pressure),
             number(pressure.get("gci_percent"), 2), number(point.get("p0_hertz_MPa"), 5),
@@ -203,11 +203,17 @@ def certificate(points: Sequence[Record]) -> ReportTable:
     return ReportTable("Certificate points", CERTIFICATE_HEAD, rows, wide=True)
 
 
+def _angle(point: Record) -> str:
+    """Cam angle of a certificate point, and the disc where it is not the one that bears more."""
+    disc = ", disc that bears less" if point.get("bears_less") else ""
+    return number(point.get("cam_angle_deg")) + disc
+
+
 def certified(points: Sequence[Record]) -> ReportTable:
     """Half-width and stresses, by certificate point."""
     rows = [
         [
-            number(point.get("cam_angle_deg")), title, _several(figure.get("meshes"), 5),
+            _angle(point), title, _several(figure.get("meshes"), 5),
             number(figure.get("extrapolated"), 5), _order(figure),
             number(figure.get("gci_percent"), 2), number(figure.get("cycle"), 5),
             _deviation(figure),

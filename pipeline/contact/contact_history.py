@@ -150,7 +150,7 @@ class CertificatePoint(Displayed):
     On three meshes; or on the two coarser ones by the orders observed at the cam angles
     `order_from` (rad). theta rad; convergence of p0 (Pa), half_width (m), tau_max and von_mises
     (Pa); edges per half-width and degrees of freedom of each mesh; residuals, the largest of the
-    meshes.
+    meshes; bears_less: whether it is that of preloaded discs that bears less there.
     """
 
     theta: float
@@ -168,6 +168,7 @@ class CertificatePoint(Displayed):
     residual_equilibrium: float
     residual_complementarity: float
     order_from: tuple[float, ...] = ()
+    bears_less: bool = False
 
     @property
     def figures(self) -> Mapping[ContactFigure, tuple[Convergence, float]]:

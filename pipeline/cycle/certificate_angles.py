@@ -246,7 +246,8 @@ class BegunCertificate:
             """
             meshes = [solved[at, edges] for edges in EDGES if (at, edges) in solved]
             history, theta = at.contact(self.cycles), at.theta(self.cycles)
-            return certificate_point(history, at.index, theta, meshes, worst)
+            solved_point = certificate_point(history, at.index, theta, meshes, worst)
+            return replace(solved_point, bears_less=at.idle)
 
         worst = {at: point(at) for at in self.finest}
         observed = self.observed or tuple(worst.values())

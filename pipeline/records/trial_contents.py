@@ -61,6 +61,8 @@ class CertificateRecord(TypedDict):
     """Pressure against line load, relative."""
     residual_complementarity: float
     """Pressure times gap, relative."""
+    bears_less: NotRequired[bool]
+    """True: the contact of preloaded discs that bears less there."""
 
 
 @form()

@@ -586,7 +586,7 @@ def _motion_record(motion: CrankMotion) -> MotionRecord:
 
 def certificate_record(point: CertificatePoint) -> CertificateRecord:
     """Record of one certified angle, mm and MPa."""
-    return {
+    record: CertificateRecord = {
         "cam_angle_deg": float(np.degrees(point.theta)),
         "p0_MPa": _figure(point.p0, point.p0_cycle, _MPA),
         "half_width_mm": _figure(point.half_width, point.half_width_cycle, _MM),
@@ -603,6 +603,9 @@ def certificate_record(point: CertificatePoint) -> CertificateRecord:
         "residual_equilibrium": point.residual_equilibrium,
         "residual_complementarity": point.residual_complementarity,
     }
+    if point.bears_less:
+        record["bears_less"] = True
+    return record
 
 
 def _figure(figure: Convergence, cycle: float, scale: float) -> ConvergenceRecord:

@@ -20,15 +20,17 @@ from camwright.pipeline.contact.certificate import mesh_figures
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
-from camwright.pipeline.cycle.certificate_angles import positions_to_certify
+from camwright.pipeline.cycle.certificate_angles import BegunCertificate, positions_to_certify
 from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
 from camwright.pipeline.cycle.pressed_discs import pressed_discs
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.recomputation import recompute
 from camwright.pipeline.results.field_output import Shown
 from camwright.pipeline.results.run_reader import read_run
+from camwright.pipeline.results.run_records import certificate_record
 from camwright.pipeline.run import run_case
 from camwright.pipeline.solver import solve
+from camwright.reports.verification_tables import certificate
 
 DATA = Path(__file__).parents[1] / "data"
 STEM, ARM, YOKE = "conjugate_feeder", "conjugate_arm", "yoke_pump"
@@ -200,6 +202,18 @@ def test_a_preloaded_disc_that_never_bears_more_is_certified():
     force = float(worst.contact([turned]).line_load[worst.index]) * body.width
     assert force == pytest.approx(second[worst.index], rel=1e-12)
     full = mesh_figures(body, at, force, 4.0)
+    meshes = {
+        (each, edges): SimpleNamespace(result=lambda edges=edges: replace(full, edges=edges))
+        for each in chosen[:2] for edges in (4.0, 8.0, 16.0)
+    }  # fmt: skip
+    points = BegunCertificate([turned], chosen[:2], chosen[:2], meshes, None).points(
+        lambda *_: None
+    )
+    more, less = (certificate_record(point) for point in points)
+    assert less["p0_MPa"]["cycle"] == pytest.approx(1e-6 * turned.idle.p0[worst.index])
+    assert less["bears_less"] and "bears_less" not in more
+    rows = certificate([more, less]).rows
+    assert [row[0].endswith(", disc that bears less") for row in rows] == [False, True]
     assert full.p0 == pytest.approx(turned.idle.p0[worst.index], rel=1e-2)
 
 
