@@ -365,16 +365,6 @@ class Case(Displayed, Section):
             return {f"guides.{side.lower()}": guide for side, guide in self.guides.both}
         return {} if pivot is None or pivot.bush is None else {"follower.pivot.bush": pivot.bush}
 
-    def require_force_closure(self, use: str) -> None:
-        """Refuse a cam that pulls its follower for a use, in words, that is made for one track.
-
-        Raises
-        ------
-        InputError
-        """
-        if self.cam.pulls:
-            raise InputError("cam.closure", self.cam.closure, f'"spring" for {use}')
-
     @property
     def base_circle(self) -> float:
         """Radius of the base circle, m: of the cam surface at zero lift."""

@@ -367,7 +367,6 @@ def crown(
         If the case lacks an end, or no crown keeps the ratio, naming the least that one reaches.
     """
     chosen = _kind(kind)
-    case.require_force_closure("a crown")
     _require(case, ratio, on, tolerance)
     progress.stage("preview")
     cycles = preview_case(case, corners=False, progress=progress).cycles
@@ -454,20 +453,22 @@ def _crowned(machine: Machine, on: str | None, shape: Crown) -> tuple[FinitePair
 
 
 def _states(cycles: Sequence[Cycle]) -> tuple[ContactStates, Array]:
-    """Load states of the contact that may have the greatest pressure, of all load cases, and their
-    cam angles, rad.
+    """Load states of the contact that may have the greatest pressure, of all load cases and on each
+    track that is pressed, and their cam angles, rad.
 
     Parameters
     ----------
     cycles : sequence   solved turn of each load case, whose index is the number of the load case
     """
     columns: list[Array] = []
-    for number, cycle in enumerate(cycles):
-        contact, force = cycle.contact, cycle.loads.normal_force
-        rows = np.flatnonzero((force > 0) & (contact.p0 > 0))
+    both = [(k, each) for k, one in enumerate(cycles) for each in (one, one.on_other_track)]
+    for number, cycle in both:
+        if cycle is None:
+            continue
         turn = turn_of_line(cycle)
+        contact, rows = turn.contact, turn.rows
         values = (
-            *(1.0 / contact.relative_radius, force, turn.couple),
+            *(1.0 / contact.relative_radius, turn.force, turn.couple),
             *(turn.tilt.greatest, turn.tilt.forced, contact.p0, cycle.theta),
         )
         number_of = np.full(rows.size, number)

@@ -39,6 +39,8 @@ KINDS: tuple[CrownKind, ...] = get_args(CrownKind)
 
 # Design loads tried first, over that of the greatest pressure: powers of two.
 _LIGHTEST, _HEAVIEST = -3, 3
+# Most times that the heaviest is doubled while the ratio falls, under a great tilt of a light line.
+_LADDER_DOUBLED = 6
 # Of the design load, relative; of a ratio, between a state and one a cam angle beside it.
 _PRECISION, _NEIGHBOUR = 5e-3, 5e-4
 # Most states of a load case.
@@ -447,6 +449,11 @@ class _CrownSearch:
         ratio is too great, both are the load of the lowest ratio.
         """
         lowest = min(self._ladder, key=self.at)
+        for _ in range(_LADDER_DOUBLED):
+            if self.at(lowest) <= ratio or lowest < self._ladder[-1]:
+                break
+            self._ladder.append(to_digits(2.0 * lowest, _LOAD_DIGITS))
+            lowest = min(self._ladder, key=self.at)
         if not self.at(lowest) <= ratio:
             lowest = self._lowest()
         if not self.at(lowest) <= ratio:

@@ -16,6 +16,7 @@ from camwright.geometry.arrays import Array
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.finite_length import length_contact
 from camwright.pipeline.contact.finite_length.axial_drop import FinitePair
+from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMENT
 from camwright.pipeline.contact.finite_length.half_space import shared_compliance
 from camwright.pipeline.contact.finite_length.length_contact import LengthContact
 from camwright.pipeline.contact.finite_length.length_tiers import cycle_sizes
@@ -60,25 +61,31 @@ class SolvedLines:
         curvature: ArrayLike,
         force: ArrayLike,
         tilt: ArrayLike,
-        most: ArrayLike = np.inf,  # noqa: ARG002 - each is solved by itself
+        most: ArrayLike = np.inf,
         compliance: ArrayLike = 0.0,
     ) -> Array:
         """Moment (count,), N m, that tilts each contact by a given angle.
 
-        The support of one body yields to the moment; of the compliances given the least is taken
-        for all.
+        A light line whose tilt is more than that of the greatest moment is not solved at its tilt,
+        at which it would touch at one end alone. The support of one body yields to the moment; of
+        the compliances given the least is taken for all.
 
         Parameters
         ----------
         curvature, force : arrays (count,)   1/m; N
         tilt : array (count,)                rad
-        most : array                         not used: each contact is solved by itself
+        most : array (count,)                greatest moment, N m, at most `GREATEST_MOMENT`
         compliance : array                   of the support, rad/(N m)
         """
-        moment = np.empty(np.broadcast(curvature, force, tilt).shape)
-        yields = float(np.min(compliance))
-        for each, contact, _ in self._solved(curvature, force, yields, tilt=tilt):
-            moment[each] = contact.moment
+        kappa, load, turn = np.broadcast_arrays(*np.atleast_1d(curvature, force, tilt))
+        limit = GREATEST_MOMENT * load * self.pair.contact_length
+        moment, yields = np.sign(turn) * np.minimum(most, limit), float(np.min(compliance))
+        within = np.zeros(load.shape, dtype=bool)
+        for each, contact, _ in self._solved(kappa, load, yields, moment=moment):
+            within[each] = np.abs(contact.tilt) > np.abs(turn[each])
+        at, rows = np.flatnonzero(within), (kappa[within], load[within])
+        for each, contact, _ in self._solved(*rows, yields, tilt=turn[within]):
+            moment[at[each]] = contact.moment
         return moment
 
     def _solved(
