@@ -245,8 +245,13 @@ def of_constant_breadth(coefficients: Array) -> Array:
     """Coefficients (count,), m, of a lift whose sum with that half a turn later is constant, the
     nearest to those of another lift, with a minimum of zero; an even number, odd lobes.
     """
-    odd = 0.5 * (coefficients - np.roll(coefficients, coefficients.size // 2))
+    odd = odd_part(coefficients)
     return readonly(odd - lowest(odd))
+
+
+def odd_part(coefficients: Array) -> Array:
+    """Coefficients (count,) of the part of a lift that changes its sign after half a turn."""
+    return 0.5 * (coefficients - np.roll(coefficients, coefficients.size // 2))
 
 
 def breadth_changes(count: int) -> Array:

@@ -26,6 +26,8 @@ COEFFICIENTS_MAX = 240
 REMOVABLE = 0.01  # sum of the excess of each limit that more splines may still remove
 _REFINEMENT = 1.5  # of the number of splines
 _SEED = 1989
+_OF_EXACT = 0.5
+"""Share of random waves beside the exact lift at a start of a yoke."""
 
 
 @dataclass(frozen=True)
@@ -229,8 +231,10 @@ def _random(problem: Problem, size: float, random: np.random.Generator) -> Probl
     variables = problem.variables
     for name, (least, greatest) in problem.freed.items():
         variables = variables.with_value(name, float(random.uniform(least, greatest)))
-    seed = of_constant_breadth(energy) if variables.of_lift else readonly(energy)
-    return replace(problem, seed=seed, variables=variables)
+    if variables.of_lift:  # a lift of the other sign would have to pass none
+        waves = Search(problem).exact + _OF_EXACT * energy
+        return replace(problem, seed=of_constant_breadth(waves), variables=variables)
+    return replace(problem, seed=readonly(energy), variables=variables)
 
 
 def refined(coefficients: Array, count: int) -> Array:

@@ -28,6 +28,7 @@ from camwright.pipeline.smoothing.energy_spline import (
     basis_matrix,
     breadth_changes,
     exact_start,
+    odd_part,
     of_constant_breadth,
     reversals,
     spline_of,
@@ -880,7 +881,10 @@ class Search:
         for name, part in zip(self.problem.freed, step[count:], strict=True):
             value = getattr(variables, name) + _unit(name, variables) * float(part)
             variables = replace(variables, **{name: value})
-        return state.coefficients + self.scale * step[:count], variables
+        coefficients = state.coefficients + self.scale * step[:count]
+        if self.still is not None:  # the solver meets an equality to its tolerance
+            coefficients = odd_part(coefficients) + coefficients.mean()
+        return coefficients, variables
 
     def box(self, state: State, trust: float) -> Array:
         """Least and greatest step (2, size) in the scaled unknowns, within the trust region and, of

@@ -257,8 +257,7 @@ def test_more_splines_and_starts_of_a_yoke_keep_its_breadth():
     """Refined until the ripple settles, from two starts: even numbers of splines."""
     case = parse_case(text_of(*YOKE).replace("coefficients = 24", ""))
     made = explored(problem_of(case, engine_torques(case)), 2)
-    assert made.design.feasible and made.resolution.settled
-    assert made.design.ripple < 0.4  # another start may end at next to no lift
+    assert made.design.feasible and made.resolution.settled and made.starts.agree
     assert made.design.coefficients.size % 2 == 0
     lift = made.design.lift().values
     breadth = lift + np.roll(lift, lift.size // 2)
