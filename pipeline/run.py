@@ -368,7 +368,7 @@ def summary_of(
         "trials": len(points),
         "final_trial": final.number,
         "trial_points": [point.as_record() for point in points],
-        "scope": case.scope.as_record(),
+        "scope": case.scope_record,
         "headline": headline(final.solution),
         "load_ends": final.load_ends,
         "prices": None if final.synthesis is None else final.synthesis["prices"],

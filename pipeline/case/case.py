@@ -53,6 +53,7 @@ from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
 from camwright.pipeline.follower.rocker import Rocker, RockerOutput
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.records.run_summary import ScopeRecord
 from camwright.pipeline.torque.period import FOUR_STROKE, Period
 
 if TYPE_CHECKING:
@@ -319,6 +320,11 @@ class Case(Displayed, Section):
         arm = self.follower.arm
         spring = self.spring.on_arm(None if arm is None else arm.length, self.rocker)
         return self if spring is self.spring else self.model_copy(update={"spring": spring})
+
+    @property
+    def scope_record(self) -> ScopeRecord:
+        """Scope of the sign-off, which never covers the frame of a yoke."""
+        return self.scope.as_record("" if self.cam.yoke is None else "frame of the yoke")
 
     @property
     def spring_mass(self) -> float:

@@ -87,6 +87,9 @@ _KEYS: dict[ScopeName, tuple[str, ...]] = {
 """Keys, and tables by theirs, that a part alone needs: not missed where it is left out."""
 
 
+_NOT_COVERED = "Not covered by this sign-off: "
+
+
 class Scope(Section):
     """Parts that the sign-off does not cover, and why; every other part has to be described."""
 
@@ -116,15 +119,20 @@ class Scope(Section):
             if part in self.not_covered and part not in self.without
         )
         reason = " ".join(self.reason.split())
-        return f"Not covered by this sign-off: {parts}: {reason}" if parts else ""
+        return f"{_NOT_COVERED}{parts}: {reason}" if parts else ""
 
-    def as_record(self) -> ScopeRecord:
-        """The scope for ``run.json`` and ``signoff.json``."""
-        return {
-            "not_covered": list(self.not_covered),
-            "reason": self.reason,
-            "statement": self.statement,
-        }
+    def as_record(self, undescribed: str = "") -> ScopeRecord:
+        """The scope for ``run.json`` and ``signoff.json``.
+
+        Parameters
+        ----------
+        undescribed : str   part that no case describes, and so none can leave out
+        """
+        said = self.statement
+        if undescribed:
+            begin = f"{said}; " if said else _NOT_COVERED
+            said = f"{begin}{undescribed}: not in the case"
+        return {"not_covered": list(self.not_covered), "reason": self.reason, "statement": said}
 
     def covers(self, part: ScopeName) -> bool:
         """Whether the sign-off covers a part or subject."""

@@ -580,7 +580,7 @@ def _checked_case(
         "governing": governing_id(made),
         "load_ends": trial.load_ends,
         "figures": figures(trial),
-        "scope": case.scope.as_record(),
+        "scope": case.scope_record,
         "measurement": measurement_record(case),
         "checks": checks,
     }

@@ -168,7 +168,7 @@ def write_inspection(
         "measured": _figures_of(headline(part.trial.solution)),
         "verdict": verdict(part.trial.checks),
         "verdict_line": check_records.verdict_line(run_reader.read_records(folder / "checks.json")),
-        "scope": part.trial.case.scope.as_record(),
+        "scope": part.trial.case.scope_record,
         "binding": list(part.trial.binding),
     }
     if part.track is not None:

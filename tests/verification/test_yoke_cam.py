@@ -193,3 +193,13 @@ def test_refusals_of_the_case(old, new, message):
     with pytest.raises(InputError) as error:
         parse_case(text.replace(old, new, 1))
     assert str(error.value).startswith(message)
+
+
+def test_the_verdict_names_the_frame_as_not_covered():
+    words = "Not covered by this sign-off: frame of the yoke: not in the case"
+    assert trial().case.scope_record["statement"] == words
+    with_key = trial().case.scope.model_copy(update={"not_covered": ("key",), "reason": "bought"})
+    said = with_key.as_record("frame of the yoke")["statement"]
+    assert said == "Not covered by this sign-off: key: bought; frame of the yoke: not in the case"
+    plain = with_key.as_record()["statement"]
+    assert plain == "Not covered by this sign-off: key: bought"
