@@ -18,6 +18,7 @@ from camwright.meshes.gmsh_mesher import session
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import undrilled
+from camwright.pipeline.hand_check.hand_sheet import SheetRun
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.workshop_files import measured_surface, write_workshop
 from camwright.pipeline.run import run_case
@@ -150,6 +151,10 @@ def test_the_run_folder_has_both_walls_and_says_which_carries(run):
     assert contour["contour_x_mm"] == pytest.approx(
         1e3 * nominal.points(uniform_turn(contour["contour_x_mm"].size))[0], abs=1e-9
     )
+
+
+def test_the_sheet_of_a_bearing_without_a_wound_spring_agrees(run):
+    assert SheetRun(run.path).sheet("roller_life").agrees
 
 
 def test_the_arrangement_has_a_disc_with_its_groove_and_no_spring(run):

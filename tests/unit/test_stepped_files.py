@@ -15,7 +15,13 @@ from camwright.meshes.step_solid import write_step
 from camwright.meshes.step_text import PartTitle
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.hand_check.hand_sheet import SheetRun
 from camwright.pipeline.results.workshop_files import measured_surface, outline_of, write_workshop
+from camwright.pipeline.run import run_case
+from camwright.reports.arrangement_data import arrangement_at, mechanism_of
+from camwright.reports.report_data import read_material
+from camwright.reports.scene_groove import scene_groove
 
 FILE = Path(__file__).parents[1] / "data" / "stepped_groove.toml"
 ENDS = {"": -23.51, "_outer": 21.01, "_inner_relief": -21.5, "_outer_relief": 24.0}  # mm
@@ -119,3 +125,46 @@ def test_the_measured_walls_are_those_on_which_a_roller_runs(track, away):
     wall, theta = measured_surface(case, contour, track), uniform_turn(36)
     nominal = contour.pitch.points(theta) + away * contour.pitch.normal(theta)
     assert wall.points(theta) == pytest.approx(nominal, abs=1e-12)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("stepped_run") / "run"
+    return run_case(stepped()[0], folder, depth=Tier.PREVIEW, positions=72)
+
+
+@pytest.mark.slow
+def test_the_run_folder_has_both_walls_and_its_sheets_agree(run):
+    contour = run.final.contour
+    path, outer, inner = (
+        np.stack([contour[f"{name}_{axis}_mm"] for axis in "xy"])
+        for name in ("pitch", "outer", "contour")
+    )
+    assert np.hypot(*(outer - path)) == pytest.approx(21.0, abs=1e-9)
+    assert np.hypot(*(inner - path)) == pytest.approx(23.5, abs=1e-9)
+    sheets = SheetRun(run.path)
+    for name in ("outer_undercut", "second_roller_life", "second_roller_static", "crossover_slip"):
+        assert sheets.sheet(name).agrees, name
+
+
+@pytest.mark.slow
+def test_the_pictures_have_both_steps_and_both_rollers(run):
+    """The contact of each wall is at its roller; the scene has the floor, a ledge, the solids."""
+    turn = read_material(run.path).turn
+    mechanism = mechanism_of(turn)
+    for side, radius in ((1.0, 23.5), (-1.0, 21.0)):
+        carries = np.flatnonzero(turn.columns["wall"] == side)
+        row = int(carries[np.argmax(turn.columns["normal_force_N"][carries])])
+        (force,) = (each for group in arrangement_at(turn, row).groups if group.name == "forces"
+                    for each in group.shapes if each.name == "contact")  # fmt: skip
+        centre = mechanism.lowest + turn.columns["lift_mm"][row]
+        away = np.hypot(force.tip[0] - mechanism.axis, force.tip[1] - centre)
+        assert away == pytest.approx(radius)
+    inner, around = mechanism.contour, uniform_turn(mechanism.contour.shape[1])
+    bore = 15.0 * np.stack([np.cos(around), np.sin(around)])
+    scene = scene_groove(turn, mechanism.groove, inner, bore, 46.0)
+    heights = np.unique(np.round(scene.disc().points[2], 6))
+    # the middle of the first roller is 8.75 + 0.4 + 18 mm above the floor, 36 mm below the face
+    assert {8.85, -9.15, -27.15, -37.15} <= set(heights.tolist())
+    assert scene.second.height == -18.0
+    assert scene.follower(20.0, 100.0, 8.5).points[2].min() == pytest.approx(-18.0 - 8.75)

@@ -15,6 +15,8 @@ from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.second_track import CoaxialRoller
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
 from camwright.pipeline.cycle.crossover_history import flights
@@ -72,6 +74,23 @@ def test_two_equal_rollers_are_one_roller():
     same = [flights(each, cycle.contour).landings for each in (one, two)]
     for a, b in zip(*same, strict=True):
         assert (b.landing, b.speed) == pytest.approx((a.landing, a.speed), rel=1e-9)
+
+
+def test_two_equal_rollers_of_an_arm_are_one_roller():
+    """The arm in the groove of tests/data/groove_arm.toml, with friction of its pivot: 1e-9."""
+    case = read_case(FILE.with_name("groove_arm.toml"))
+    one = machines(case)[0]
+    path = case.contour(given_lift(case)).pitch
+    second = replace(running()[1].cam.groove.second, radius=one.roller.radius)
+    loads = [
+        follower_loads(path, each.system, one.cam_speed, uniform_turn(720))
+        for each in (one, with_second(one, second))
+    ]
+    for name in ("axial_force", "normal_force", "cam_torque", "pivot_load", "pivot_friction",
+                 "on_shaft", "wall"):  # fmt: skip
+        first, other = (getattr(each, name) for each in loads)
+        assert other == pytest.approx(first, rel=1e-9, abs=1e-9 * np.abs(first).max()), name
+    assert set(np.unique(loads[0].wall)) == {-1.0, 1.0}
 
 
 def test_a_strong_spring_makes_it_a_spring_closed_cam():
