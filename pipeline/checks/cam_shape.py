@@ -43,7 +43,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative, round_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.spring import NO_FORCE
+from camwright.pipeline.follower.spring import of_no_force
 
 _TINY = float(np.finfo(float).tiny)
 AT_REST = 1e-9  # range of s'' over the lift, 1/rad^2, of a round cam
@@ -485,7 +485,7 @@ spring_travel = check(
 ).measured(
     "top",
     allowed=of_key("spring.travel_max"),
-    applies=lambda _, numbers: magnitude(np.asarray(numbers["spring.preload"])) > NO_FORCE,
+    applies=lambda _, at: ~of_no_force(at["spring.preload"], at["spring.rate"]),
     deviation=1e-4,
     kept=Kept(unit="mm"),
 )(lift)

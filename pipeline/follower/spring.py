@@ -387,7 +387,7 @@ class Spring(Part):
     @property
     def absent(self) -> bool:
         """Whether it stands in for no spring, which form closure does without."""
-        return abs(self.preload) <= NO_FORCE and self.rate <= _RATE_OF_NONE
+        return bool(of_no_force(self.preload, self.rate))
 
     @property
     def parts(self) -> dict[str, Part | None]:
@@ -431,6 +431,12 @@ class Spring(Part):
     def energy(self, lift: float) -> float:
         """Energy stored from zero lift to a lift, m, J."""
         return float(spring_energy(self.preload, self.rate, np.asarray(lift), self.shape))
+
+
+def of_no_force(preload: ArrayLike, rate: ArrayLike) -> NDArray[np.bool_]:
+    """Whether springs (...) stand in for none; preload, N, and rate, N/m, at zero lift."""
+    none = np.abs(np.real(preload)) <= NO_FORCE
+    return np.asarray(none & (np.real(rate) <= _RATE_OF_NONE))
 
 
 def spring_force(

@@ -13,6 +13,7 @@ from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks.cam_shape import spring_travel
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -142,6 +143,9 @@ def test_a_torsion_spring_about_the_pivot_draws_the_lift_of_a_coil():
 def test_a_spring_of_no_preload_is_none_that_is_absent():
     case = parse_case(text_of("feeder-groove", COIL.replace("-200 N", "0 N")))
     assert not case.spring.absent and COIL_OF_NO_FORCE.absent
+    for spring in (case.spring, COIL_OF_NO_FORCE):
+        numbers = {"spring.preload": spring.preload, "spring.rate": spring.rate}
+        assert spring_travel.measured.applies(None, numbers) == (spring is case.spring)
 
 
 GAS = (
