@@ -1,5 +1,6 @@
-"""Crown of roller, face or disc of cams that pull, on both tracks: elliptic contact of Hertz."""
+"""Crown of roller, face or disc of cams that pull, on both tracks: elliptic contact, elements."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,11 @@ from scipy.special import ellipe, ellipk
 
 import camwright as cw
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.limits import END_MEAN_LENGTH
+from camwright.pipeline.contact.finite_length.length_tiers import both_tiers
+from camwright.pipeline.cycle.length_history import signed_factor
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.search.crown.solved_lines import SolvedLines, signed_range
 
 MOTIONS = Path(__file__).parents[2] / "cases" / "motions"
 RADIUS = 0.5
@@ -75,3 +80,32 @@ def test_the_crown_of_both_faces_of_a_yoke():
     assert chosen.ratio <= 1.15 < chosen.straight.max()
     lighter = chosen.family.crown(0.5 * chosen.lightest)
     assert chosen.problem.ratios(lighter).max() > 1.15
+
+
+@pytest.mark.slow
+def test_the_crown_of_a_roller_in_a_groove_by_finite_elements():
+    """`design crown` over both walls: where the pressure of each is greatest over plane strain,
+    finite elements of both bodies agree within the 2 % that the half-spaces state.
+    """
+    case = cw.read_case(MOTIONS / "feeder-groove.toml")
+    design = cw.crown(case, 1.4, kind="circular")
+    chosen, states = design.chosen, design.chosen.problem.states
+    assert chosen.ratio <= 1.4 < chosen.straight.max()
+    outer = 1.0 / states.curvature > design.machine.follower.contact_radius
+    assert outer.any() and not outer.all()
+    for wall in (outer, ~outer):
+        row = int(np.where(wall, chosen.ratios, 0.0).argmax())
+        loads = states.loads(np.array([row]), chosen.problem.compliance)
+        mean, force = design.machine.limits[END_MEAN_LENGTH], states.force[[row]]
+        tried = []
+        for pair in chosen.problem.pairs(chosen.crown):
+            here = replace(pair, curvature=float(states.curvature[row]))
+            lines = SolvedLines(here, mean)
+            most = signed_range(lines, loads).moment
+            for moment in (0.0 * most, most, -most):
+                factor = signed_factor(lines, states.curvature[[row]], force, moment).value
+                tried.append((float(factor[0]), float(moment[0]), here))
+        factor, moment, here = max(tried, key=lambda each: each[0])
+        assert factor * states.share[row] == pytest.approx(chosen.ratios[row], rel=1e-6)
+        _, blocks = both_tiers(here, float(force[0]), moment=moment)
+        assert float(blocks.factors.greatest[0]) == pytest.approx(factor, rel=0.02)
