@@ -24,6 +24,7 @@ TOLD = {
     "pipeline/screening/live_preview.py: with_torques": "without a range of speeds",
     "pipeline/screening/screened_cam.py: _settled": "NaN of what has not settled",
     "pipeline/screening/screened_cam.py: _pressed_at": "NaN of what has not settled",
+    "pipeline/search/crown/least_crown.py: within": "its lowest ratio, which is judged",
     "pipeline/search/machine/synthesised_points.py: promising": "a count of designs",
     "pipeline/search/parts/part_search.py: searched": "a count of limits",
     "pipeline/search/parts/redesign_study.py: _fronts_judged": "a count of fronts",
