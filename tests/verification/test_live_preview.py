@@ -308,13 +308,14 @@ def test_many_settings_are_within_the_stated_error(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PULLED)
 def test_a_follower_that_the_cam_pulls_is_lost_in_no_load_case(name: str) -> None:
-    """Its figures hold where its force changes sign; landings are among them."""
-    _, _, record = live_settings.fitted(name)
+    """Its figures hold where its force changes sign; landings are among them but of a preload."""
+    case, _, record = live_settings.fitted(name)
     assert schema_errors("live", record) == []
     assert record["contact"] == []
     assert {tuple(part["loads"]) for each in record["quantities"] for part in each["parts"]} == {()}
     followed = {each["id"] for each in record["quantities"]}
-    assert {"contact_force", "hertz_pressure", "landing_speed", "undercut"} <= followed
+    landings = {"landing_speed"} if case.cam.clearance > 0.0 else set()
+    assert {"contact_force", "hertz_pressure", "undercut"} | landings <= followed
     run = live_settings.values(record, [1.0] * len(record["factors"]))
     assert all(each.holds for each in run.values())
 
