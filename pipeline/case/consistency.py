@@ -412,6 +412,8 @@ def _steps() -> Iterator[Rule]:
         """The first number less the others."""
         return lambda at: np.round(at(keys[0]) - sum(at(key) for key in keys[1:]), _DECIMALS)
 
+    yield _more(radius, lambda at: at("roller.hub_radius"), "> {roller.hub_radius}")
+    yield _less(radius, lambda at: at("cam.prime_radius"), "< {cam.prime_radius}")
     above, within = "the roller runs above the fillet", "each roller is in its step"
     yield _at_most(fillet, less(upper, wide), f"<= {{}}, {{{upper}}} less {{{wide}}}: {above}")
     limit = f"<= {{}}, {{{depth}}} less {{{upper}}} and {{{wide}}}: {above}"
