@@ -18,6 +18,7 @@ from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.closed_form import closed_form_history
+from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
 from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
 from camwright.pipeline.cycle.crossover_history import flights
 from camwright.pipeline.cycle.cycle import turn_of_line
@@ -152,6 +153,21 @@ def test_contact_on_each_wall_by_its_roller():
     assert pulled.any() and not pulled.all()
     factor = (1.0 + 0.021 / middle).min()
     assert demand("outer_undercut").demand == pytest.approx(factor, rel=1e-3)
+
+
+def test_the_outer_wall_conforms_to_its_own_roller_under_great_loads():
+    """Persson's closed form at its angle, radii of the second roller and its wall; 1e-6."""
+    cycle, _ = running()
+    contact = closed_form_history(cycle.pair, cycle.theta, 400.0 * cycle.loads.normal_force)
+    middle = cycle.contour.pitch.radius_of_curvature(cycle.theta)
+    outer = contact.conforming & (cycle.loads.axial_force < 0.0)
+    assert outer.sum() > 20
+    for k in np.flatnonzero(outer)[::9]:
+        wall = middle[k] + 0.021
+        number = 2.0 * cycle.pair.contact_modulus * (wall - 0.021) / contact.line_load[k]
+        angle = persson_contact_angle(number)
+        exact = persson_pressure(angle) * contact.line_load[k] / np.sqrt(0.021 * wall)
+        assert contact.p0[k] == pytest.approx(exact, rel=1e-6)
 
 
 def test_no_roller_changes_its_spin():
