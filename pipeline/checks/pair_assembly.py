@@ -197,7 +197,7 @@ def gaps_of(solution: Solution) -> dict[str, PartGap]:
     parts; {} of one track and of a groove.
     """
     cam = solution.machine.cam
-    if cam.second is None:
+    if cam.second is None or cam.groove is not None:
         return {}
     if cam.conjugate is None:
         return dict(_in_yoke(solution))

@@ -294,6 +294,8 @@ def test_mass_of_the_disc_by_the_volume_of_both_steps():
 def test_the_case_passes_by_check():
     must = [each for each in trial().checks if each.must_have and not each.judged_at]
     assert [each.id for each in must if each.status != "pass"] == []
+    of_others = {"second_track_gap", "second_disc_gap", "yoke_breadth", "cam_radius"}
+    assert not of_others & {each.id for each in trial().checks}
 
 
 SECOND = "cam.groove.second"
