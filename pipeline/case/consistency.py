@@ -384,7 +384,7 @@ def _groove(second: GrooveRoller | None) -> Iterator[Rule]:
     depth, fillet = "cam.groove.depth", "cam.groove.corner_radius"
     yield _less(depth, lambda at: at("cam.width"), "< {cam.width}: a floor is left")
     if second is not None:
-        yield from _steps()
+        yield from _steps(second)
         return
     limit = ">= {roller.width}: the roller is within the groove"
     yield _at_least(depth, lambda at: at("roller.width"), limit)
@@ -399,9 +399,9 @@ def _groove(second: GrooveRoller | None) -> Iterator[Rule]:
     yield _at_most(key, half, limit)
 
 
-def _steps() -> Iterator[Rule]:
-    """Rules of a groove of two steps: each roller runs in its own, above the fillet and clear of
-    the wall that is not its own.
+def _steps(second: GrooveRoller) -> Iterator[Rule]:
+    """Rules of a groove of two steps: each roller is around its bearing and runs in its own step,
+    above the fillet and clear of the wall that is not its own.
     """
     depth, fillet, wide = "cam.groove.depth", "cam.groove.corner_radius", "roller.width"
     radius, spacing, upper, relief = (
@@ -414,6 +414,11 @@ def _steps() -> Iterator[Rule]:
 
     yield _more(radius, lambda at: at("roller.hub_radius"), "> {roller.hub_radius}")
     yield _less(radius, lambda at: at("cam.prime_radius"), "< {cam.prime_radius}")
+    if second.C is None and second.C0 is None:  # no bearing of its own
+        ring, thick = (f"roller.bearing.ring.{each}" for each in ("outer_diameter", "thickness"))
+        limit = f"> {{}}, half of {{{ring}}} less {{{thick}}}: it runs on balls as the first"
+        balls = lambda at: np.round(0.5 * at(ring) - at(thick), _DECIMALS)  # noqa: E731
+        yield _more(radius, balls, limit)
     above, within = "the roller runs above the fillet", "each roller is in its step"
     yield _at_most(fillet, less(upper, wide), f"<= {{}}, {{{upper}}} less {{{wide}}}: {above}")
     limit = f"<= {{}}, {{{depth}}} less {{{upper}}} and {{{wide}}}: {above}"

@@ -312,6 +312,7 @@ SECOND = "cam.groove.second"
         ('outer_radius = "125 mm"', 'outer_radius = "91.9 mm"', "cam.groove.outer_radius = 91.9"),
         ('tool_radius = "21 mm"', 'tool_radius = "21.3 mm"', "workshop.tool_radius = 21.3 mm"),
         ('radius = "21 mm"\ns', 'radius = "11 mm"\ns', f"{SECOND}.radius = 11 mm, must be > "),
+        ('radius = "21 mm"\ns', 'radius = "17.5 mm"\ns', "17.5 mm, must be > 17.9 mm, half"),
         ('radius = "21 mm"\ns', 'radius = "70 mm"\ns', f"{SECOND}.radius = 70 mm, must be < "),
         ('radius = "21 mm"\nspacing', 'spacing', f"{SECOND}.radius = missing"),
     ],
