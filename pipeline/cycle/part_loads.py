@@ -242,15 +242,9 @@ class PivotPush(NamedTuple):
         bush, card = machine.pivot.bush, machine.pivot.pin_material
         if bush is None or card is None:
             return None
-        pair, force = machine.cam.conjugate, np.maximum(loads.normal_force, 0.0)
-        forces = [
-            np.where(on, force, loads.idle_force) for on in (loads.wall > 0.0, loads.wall < 0.0)
-        ]
-        beside = beside_middle(
-            machine.arm.plane_offset,
-            None if pair is None else pair.spacing,
-            [force] if pair is None else forces,
-        )
+        offset, spacing = machine.arm.plane_offset, machine.cam.spacing
+        forces = (np.maximum(loads.normal_force, 0.0),) if spacing is None else loads.track_forces
+        beside = beside_middle(offset, spacing, forces)
         normal = loads.pressure_angle - loads.turned
         return cls.under(bush, card, loads.pivot_load, normal, moment + beside)
 

@@ -33,16 +33,13 @@ def pressed_discs(contour: Contour, loads: Loads) -> tuple[PressedDisc, ...]:
     force, second = np.maximum(loads.normal_force, 0.0), loads.second
     if second is None:
         return (PressedDisc(contour, loads.theta, force, loads.cam_torque),)
-    track, pulls = second.track(contour.pitch), loads.wall < 0.0
+    track = second.track(contour.pitch)
     there = np.mod(loads.theta + track.turn, FULL_TURN)
     if not second.own_disc:
-        at = np.where(pulls, there, loads.theta)
+        at = np.where(loads.wall < 0.0, there, loads.theta)
         return (PressedDisc(contour, at, force, loads.cam_torque),)
-    idle = loads.idle_force + 0.0 * force
-    tracks = (contour, loads.theta, ~pulls), (track.contour, there, pulls)
-    return tuple(
-        _rolled(disc, theta, np.where(carries, force, idle)) for disc, theta, carries in tracks
-    )
+    near, far = loads.track_forces
+    return _rolled(contour, loads.theta, near), _rolled(track.contour, there, far)
 
 
 def _rolled(contour: Contour, theta: Array, force: Array) -> PressedDisc:

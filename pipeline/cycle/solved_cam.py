@@ -202,10 +202,8 @@ class ForcesCam(ContourCam):
         loads = self.loads
         if loads.second is None or not loads.second.own_disc:
             return super().on_bodies
-        track, force = loads.second.track(self.contour.pitch), loads.normal_force
+        track, (first, second) = loads.second.track(self.contour.pitch), loads.track_forces
         push, pull = self._of_first, track.motion(loads.theta)
-        first, second = (np.where(carries, force, loads.idle_force) for carries in (
-            self.wall > 0.0, self.wall < 0.0))  # fmt: skip
         return (
             BodyContact.of(push, first / push.gain),
             BodyContact.of(pull, second / pull.gain, track.turned(loads.theta)),

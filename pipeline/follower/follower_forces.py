@@ -442,6 +442,12 @@ class Loads(Displayed):
         return wall_of(self.signed_force, held=self.held)
 
     @property
+    def track_forces(self) -> tuple[Array, Array]:
+        """Normal force on the first and on the second of two tracks (n,), N, >= 0."""
+        force, pulls = np.maximum(self.normal_force, 0.0), self.wall < 0.0
+        return np.where(pulls, self.idle_force, force), np.where(pulls, force, self.idle_force)
+
+    @property
     def normal_direction(self) -> Array:
         """Angle of the contact normal from the follower axis, clockwise, rad."""
         return np.asarray(self.pressure_angle - self.travel - self.turned)

@@ -290,10 +290,10 @@ class Roller(Part):
         track, first = loads.second.track(pitch), roller_motion(pitch, self.radius, speed, theta)
         disc, there = track.contour.require_roller(), theta + track.turn
         second = roller_motion(disc.pitch, disc.roller_radius, speed, there, wall=disc.wall)
-        carried, idle = loads.normal_force, loads.idle_force + 0.0 * loads.normal_force
+        near, far = loads.track_forces
         return [
-            _Turning(first, self.radius, ~pulls, np.where(pulls, idle, carried)),
-            _Turning(second, disc.roller_radius, pulls, np.where(pulls, carried, idle)),
+            _Turning(first, self.radius, ~pulls, near),
+            _Turning(second, disc.roller_radius, pulls, far),
         ]
 
     def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:  # noqa: ARG002
