@@ -724,13 +724,6 @@ class _ThinnedCycle(Cycle):
     def follower_moment(self) -> Array:
         return self.whole.follower_moment[:: self.step]
 
-    @property
-    def pin_couple(self) -> Array:
-        """Greatest moment of the contact on the pin (n,) about the middle of the first roller, N m:
-        `follower_moment`, and the force of a second one beside it.
-        """
-        return self.follower_moment + beside_first(self.machine, self.loads)
-
     @KeptResult
     def sideways(self) -> GuideReactions | None:
         return _at_every(self.whole.sideways, self.whole.theta.size, self.step)
