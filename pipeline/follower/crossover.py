@@ -48,11 +48,6 @@ class Landing(NamedTuple):
     rebound: float = 0.0
     leaving: float = 0.0
 
-    @property
-    def crosses(self) -> bool:
-        """Whether it lands on the other wall."""
-        return self.wall != self.start
-
     def loss(self, mass: float) -> float:
         """Kinetic energy against the wall that the landing of a mass, kg, takes, J."""
         return 0.5 * mass * (self.speed**2 - self.rebound**2)
