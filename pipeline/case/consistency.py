@@ -419,6 +419,7 @@ def _steps(second: GrooveRoller) -> Iterator[Rule]:
         limit = f"> {{}}, half of {{{ring}}} less {{{thick}}}: it runs on balls as the first"
         balls = lambda at: np.round(0.5 * at(ring) - at(thick), _DECIMALS)  # noqa: E731
         yield _more(radius, balls, limit)
+    yield from _rated(GrooveRoller.table, radius)
     above, within = "the roller runs above the fillet", "each roller is in its step"
     yield _at_most(fillet, less(upper, wide), f"<= {{}}, {{{upper}}} less {{{wide}}}: {above}")
     limit = f"<= {{}}, {{{depth}}} less {{{upper}}} and {{{wide}}}: {above}"
@@ -730,21 +731,29 @@ def _roller(case: Case) -> Iterator[Rule]:
         limit,
         _half(ring),
     )
-    limit = "<= {}, the greatest of rolling bearings within {roller.radius} and {roller.width}"
+    yield from _rated("roller.bearing", "roller.radius")
+    pin = case.roller.pin
+    if pin is not None and pin.mounting == "straddled":
+        yield _at_least("roller.pin.span", lambda at: at("roller.width"), ">= {roller.width}")
+
+
+def _rated(table: str, radius: str) -> Iterator[Rule]:
+    """Rules that no bearing has greater ratings than rolling bearings of its size.
+
+    table : of the ratings; radius : dotted key of the radius of its roller
+    """
+    limit = f"<= {{}}, the greatest of rolling bearings within {{{radius}}} and {{roller.width}}"
 
     def dynamic(at: At) -> Any:
-        return rating_bound(2.0 * at("roller.radius"), at("roller.width"))
+        return rating_bound(2.0 * at(radius), at("roller.width"))
 
     def static(at: At) -> Any:
-        return static_rating_bound(2.0 * at("roller.radius"), at("roller.width"))
+        return static_rating_bound(2.0 * at(radius), at("roller.width"))
 
     for name, bound in (
         ("C", dynamic), ("C0", static), ("radial_limit", static), ("static_radial_limit", static),
     ):  # fmt: skip
-        yield _at_most(f"roller.bearing.{name}", bound, limit)
-    pin = case.roller.pin
-    if pin is not None and pin.mounting == "straddled":
-        yield _at_least("roller.pin.span", lambda at: at("roller.width"), ">= {roller.width}")
+        yield _at_most(f"{table}.{name}", bound, limit)
 
 
 def _refusal(case: Case, rule: Rule, at: At) -> InputError:

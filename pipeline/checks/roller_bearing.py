@@ -42,7 +42,7 @@ from camwright.pipeline.checks.check import (
     check,
     of_key,
 )
-from camwright.pipeline.checks.demands import NORMAL_FORCE, force_over, normal_force, rating_over
+from camwright.pipeline.checks.demands import NORMAL_FORCE, force_over, rating_over
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
@@ -90,6 +90,7 @@ _CUBE_MEAN = {
 _ALONE = {"?": "cam.groove.second.radius None"}
 """Symbols of a formula that holds for one roller on all tracks."""
 _SECOND, _SECOND_STATIC = "cam.groove.second.C", "cam.groove.second.C0"
+_OWN = ", of two rollers in a groove that of the inner wall"
 
 
 def _with_card(demand: Demand, solution: Solution) -> Demand:
@@ -115,18 +116,32 @@ def _damage(cam: LoadedCam) -> Array:
     return _on_first(cam, wear(not_negative(cam.surged), cam.spin))
 
 
-def _on_first(cam: LoadedCam, damage: Array) -> Array:
-    """Damage (...) of the first roller: of two in a groove that on the inner wall."""
+def _on_first(cam: LoadedCam, each: Array) -> Array:
+    """Damage or force (...) of the first roller: of two in a groove that on the inner wall."""
     case = cam.numbers.case
     if case is None or case.cam.on_pin is None:
-        return damage
-    return np.where(cam.wall > 0.0, damage, 0.0 * damage)
+        return each
+    return np.where(cam.wall > 0.0, each, 0.0 * each)
+
+
+def _on_second(cam: LoadedCam, each: Array) -> Array:
+    """Damage or force (...) of the second roller of a groove: that on the outer wall."""
+    return np.where(cam.wall < 0.0, each, 0.0 * each)
 
 
 def _second_damage(cam: LoadedCam) -> Array:
     """`_damage` of the second roller of a groove."""
-    damage = wear(not_negative(cam.surged), cam.spin)
-    return np.where(cam.wall < 0.0, damage, 0.0 * damage)
+    return _on_second(cam, wear(not_negative(cam.surged), cam.spin))
+
+
+def first_force(cam: LoadedCam) -> Array:
+    """Normal force on the first roller, N."""
+    return _on_first(cam, cam.normal)
+
+
+def second_force(cam: LoadedCam) -> Array:
+    """Normal force on the second roller of a groove, N."""
+    return _on_second(cam, not_negative(cam.normal))
 
 
 def _with_damage(demand: Demand, solution: Solution) -> Demand:
@@ -271,8 +286,8 @@ roller_static = check(
     needs="roller",
     part="roller_bearing",
     kept_as="static load rating of the roller",
-    formula="C0/N >= S; C0: static rating, N: greatest normal force over all load cases and angles,"
-    " S: limits.roller_static_safety",
+    formula="C0/N >= S; C0: static rating, N: greatest normal force over all load cases and"
+    f" angles{_OWN}, S: limits.roller_static_safety",
     symbols={
         "N": "normal_force",
         "C0": "roller.bearing.C0",
@@ -289,7 +304,7 @@ roller_static = check(
     remark=_with_card,
     deviation=0.005,
     kept=Kept(force_over, group=NORMAL_FORCE, unit="N"),
-)(normal_force)
+)(first_force)
 
 
 _AXES = f"limits.{AXIS_PARALLELISM.id}", f"limits.{CAM_RUN_OUT.id}"
@@ -352,8 +367,8 @@ roller_load_share = check(
     needs="roller",
     part="roller_bearing",
     kept_as="share of the dynamic load rating of the roller",
-    formula="N/C <= x; N: greatest normal force over all load cases and angles, C: dynamic rating,"
-    " x: limits.roller_load_share",
+    formula="N/C <= x; N: greatest normal force over all load cases and"
+    f" angles{_OWN}, C: dynamic rating, x: limits.roller_load_share",
     symbols={
         "N": "normal_force",
         "C": "roller.bearing.C",
@@ -370,7 +385,33 @@ roller_load_share = check(
     remark=_with_card,
     deviation=0.005,
     kept=Kept(group=NORMAL_FORCE),
-)(normal_force)
+)(first_force)
+
+
+second_roller_load_share = check(
+    ROLLER_LOAD_SHARE,
+    id="second_roller_load_share",
+    title="Greatest load over dynamic rating of the bearing of the second roller",
+    method="greatest normal force on the outer wall over the dynamic rating",
+    lift_can_help=True,
+    tier=Tier.SCREENING,
+    needs="roller",
+    closed_by="rollers",
+    part="roller_bearing",
+    formula="N/C <= x; N: greatest normal force on the outer wall over all load cases and angles,"
+    " C: dynamic rating, x: limits.roller_load_share",
+    symbols={"N": "normal_force", "C": _SECOND},
+    reason="beyond it the balls yield in their raceways and no rating life is valid",
+    values=(*given.LOADS, _SECOND),
+    levers=(levers.one(_SECOND), *levers.LOAD),
+    page="Roller",
+).measured(
+    "angles",
+    value=lambda worst, numbers: worst / numbers[_SECOND],
+    needed=(_SECOND,),
+    remark=_with_card,
+    deviation=0.005,
+)(second_force)
 
 
 roller_life = check(
@@ -448,7 +489,7 @@ second_roller_life = check(
 )(_second_damage)
 
 
-@check(
+second_roller_static = check(
     ROLLER_STATIC_SAFETY,
     id="second_roller_static",
     title="Static safety factor of the bearing of the second roller",
@@ -471,11 +512,7 @@ second_roller_life = check(
     needed=(_SECOND_STATIC,),
     remark=_with_card,
     deviation=0.005,
-)
-def second_roller_static(cam: LoadedCam) -> Array:
-    """Normal force on the second roller of a groove, N."""
-    force = not_negative(cam.normal)
-    return np.where(cam.wall < 0.0, force, 0.0 * force)
+)(second_force)
 
 
 roller_modified_life = check(
@@ -593,8 +630,8 @@ def _outer_ring(
         needs="roller",
         part="roller_bearing",
         kept_as=f"maximum {kept} load of the roller's outer ring",
-        formula=f"N <= {symbol}; N: greatest normal force over all load cases and angles, {symbol}:"
-        f" maximum {words} load of an outer ring without a housing",
+        formula=f"N <= {symbol}; N: greatest normal force over all load cases and angles{_OWN},"
+        f" {symbol}: maximum {words} load of an outer ring without a housing",
         symbols={"N": "normal_force", symbol: f"roller.bearing.{key}"},
         reason=reason,
         values=(*given.LOADS, f"roller.bearing.{key}"),
@@ -606,24 +643,46 @@ def _outer_ring(
         remark=_with_card,
         deviation=0.005,
         kept=Kept(group=NORMAL_FORCE),
-    )(normal_force)
+    )(first_force)
 
 
+def _second_ring(name: str, words: str, symbol: str, reason: str, key: str) -> Declaration:
+    stated = f"cam.groove.second.{key}"
+    return check(
+        id=name,
+        title=f"Normal force vs. maximum {words} load of the outer ring of the second roller",
+        unit="N",
+        source=Source(f"{symbol} of a track roller", confirmed=True),
+        method="greatest normal force on the outer wall over the turn",
+        lift_can_help=True,
+        tier=Tier.SCREENING,
+        needs="roller",
+        closed_by="rollers",
+        part="roller_bearing",
+        formula=f"N <= {symbol}; N: greatest normal force on the outer wall over all load cases and"
+        f" angles, {symbol}: maximum {words} load of an outer ring without a housing",
+        symbols={"N": "normal_force", symbol: stated},
+        reason=reason,
+        values=(*given.LOADS, stated),
+        levers=(levers.one(stated), *levers.LOAD),
+        page="Roller",
+    ).measured("angles", allowed=of_key(stated), remark=_with_card, deviation=0.005)(second_force)
+
+
+_FATIGUE = "an outer ring on a cam bends, and breaks in fatigue"
+_OVERLOAD = "an outer ring on a cam bends, and breaks under a single overload"
 roller_radial = _outer_ring(
-    "roller_radial",
-    "dynamic radial",
-    "radial",
-    "F_r,max",
-    "an outer ring on a cam bends, and breaks in fatigue",
-    "radial_limit",
+    "roller_radial", "dynamic radial", "radial", "F_r,max", _FATIGUE, "radial_limit"
 )
 roller_static_radial = _outer_ring(
-    "roller_static_radial",
-    "static radial",
-    "static radial",
-    "F_0r,max",
-    "an outer ring on a cam bends, and breaks under a single overload",
+    "roller_static_radial", "static radial", "static radial", "F_0r,max", _OVERLOAD,
     "static_radial_limit",
+)  # fmt: skip
+second_roller_radial = _second_ring(
+    "second_roller_radial", "dynamic radial", "F_r,max", _FATIGUE, "radial_limit"
+)
+second_roller_static_radial = _second_ring(
+    "second_roller_static_radial", "static radial", "F_0r,max", _OVERLOAD, "static_radial_limit"
 )
 
 

@@ -154,7 +154,9 @@ class GrooveRoller(Part):
     """
 
     table: ClassVar[str] = "cam.groove.second"
-    defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(("C", "C0"), "that of the first roller")
+    defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("C", "C0", "radial_limit", "static_radial_limit"), "that of the first roller"
+    )
     source: TableSource = NO_SOURCE
 
     radius: Annotated[Length, Known("bearing catalogue", "21 mm")]
@@ -173,6 +175,14 @@ class GrooveRoller(Part):
         float | None, In("kN", above=0, at_most=1e5), Known("bearing catalogue", "7.8 kN")
     ] = None
     """static rating of the bearing of the second roller"""
+    radial_limit: Annotated[
+        float | None, In("N", above=0, at_most=1e9), Known("catalogue of track rollers", "8.3 kN")
+    ] = None
+    """greatest dynamic radial load of its outer ring without a housing"""
+    static_radial_limit: Annotated[
+        float | None, In("N", above=0, at_most=1e9), Known("catalogue of track rollers", "11.8 kN")
+    ] = None
+    """greatest static radial load of its outer ring without a housing"""
 
     @property
     def roller(self) -> CoaxialRoller:

@@ -454,8 +454,10 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "cam.waviness": _waviness,
     "roller.rotor_inertia": _rotor_inertia,
     "cam.groove.second.radius": partial(_on_outer_wall, "radius", "roller.radius"),
-    "cam.groove.second.C": partial(_on_outer_wall, "C", "roller.bearing.C"),
-    "cam.groove.second.C0": partial(_on_outer_wall, "C0", "roller.bearing.C0"),
+    **{
+        f"cam.groove.second.{each}": partial(_on_outer_wall, each, f"roller.bearing.{each}")
+        for each in ("C", "C0", "radial_limit", "static_radial_limit")
+    },
     "spring.link.body": _link_body,
     "roller.bearing.pitch_diameter": _ball_circle,
     "roller.bearing.cleanliness_load": _cleanliness_load,

@@ -42,7 +42,8 @@ ARRAYS: tuple[str, ...] = (
     "cam.prime_radius", "cam.offset", "cam.width", "cam.bore_radius", "cam.profile_tolerance",
     *(f"cam.groove.{name}" for name in ("clearance", "depth", "corner_radius", "outer_radius")),
     *(f"cam.groove.second.{name}" for name in (
-        "radius", "spacing", "step_depth", "relief", "C", "C0")),
+        "radius", "spacing", "step_depth", "relief", "C", "C0", "radial_limit",
+        "static_radial_limit")),
     *(f"cam.conjugate.{name}" for name in (
         "roller_radius", "distance", "arm_length", "arm_angle", "clearance", "interference",
         "spacing")),

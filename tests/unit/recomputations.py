@@ -51,7 +51,8 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_PAIR, "test_the_ends_of_the_disc_that_bears_less_by_half_spaces"): ("other_edge_pressure",),
     (_GROOVE, "test_the_rim_is_a_cantilever_plate"): ("groove_wall",),
     (_STEPS, "test_the_bearing_of_each_roller_by_its_own_forces"): (
-        "second_roller_static", "second_roller_life",
+        "second_roller_static", "second_roller_life", "second_roller_load_share",
+        "second_roller_radial", "second_roller_static_radial",
     ),
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",

@@ -1,7 +1,7 @@
 """How the checks of a groove are tried: a harmonic lift in it, without a spring."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import hand_calculations as by_hand
 import made_trial as made
@@ -328,9 +328,22 @@ def unrated(name: str) -> Solution:
     return made.changed_solution(base, case=made.changed(base.case, cam=cam, roller_given=other))
 
 
+def limit_of_second(name: str):
+    """The groove of two steps by the radial limit of its second roller, N."""
+
+    def at(limit: float | None) -> Solution:
+        base = made.in_steps()
+        groove = base.case.cam.groove
+        second = replace(groove.second, **{name: limit})
+        cam = replace(base.case.cam, groove=replace(groove, second=second))
+        return made.changed_solution(base, case=made.changed(base.case, cam=cam))
+
+    return at
+
+
 def on_outer_wall() -> tuple[float, float]:
-    """Static safety factor of the second roller, 1.5 kN, and life, h, of its 3 kN by Miner's rule
-    over the equal steps of a turn in which the outer wall carries.
+    """Greatest force on the second roller, N, and life, h, of its 3 kN by Miner's rule over the
+    equal steps of a turn in which the outer wall carries.
     """
     solution = made.in_steps()
     (cycle,) = solution.cycles
@@ -339,7 +352,7 @@ def on_outer_wall() -> tuple[float, float]:
     pace = np.hypot(*solution.contour.pitch.velocity(cycle.theta[pulled]))
     turned = solution.machine.cam_speed * (pace / 0.007 + 1.0)
     rate = np.sum((force / 3e3) ** 3 * turned) / cycle.theta.size / (FULL_TURN * 1e6)
-    return 1.5e3 / float(force.max()), 1.0 / float(rate) / 3600.0
+    return float(force.max()), 1.0 / float(rate) / 3600.0
 
 
 # --- the checks -------------------------------------------------------------------------------
@@ -351,16 +364,35 @@ by_limit(
     "1 + r kappa at the least curvature of the path",
     base=made.in_groove,
 )
-SECOND_SAFETY, SECOND_LIFE = on_outer_wall()
+SECOND_FORCE, SECOND_LIFE = on_outer_wall()
 by_limit(
     "second_roller_static",
     "roller_static_safety",
     lambda: stepped(normal_force=NAN),
-    SECOND_SAFETY,
+    1.5e3 / SECOND_FORCE,
     "C0 over the greatest force on the outer wall",
     base=made.in_steps,
     missing=lambda: unrated("C0"),
 )
+by_limit(
+    "second_roller_load_share",
+    "roller_load_share",
+    lambda: stepped(normal_force=NAN),
+    SECOND_FORCE / 3e3,
+    "greatest force on the outer wall over C",
+    base=made.in_steps,
+    missing=lambda: unrated("C"),
+)
+for words in ("radial", "static_radial"):
+    tried(
+        f"second_roller_{words}",
+        limited(f"second_roller_{words}", limit_of_second(f"{words}_limit"), made.in_steps),
+        partial(unrated, f"{words}_limit"),
+        lambda: stepped(normal_force=NAN),
+        SECOND_FORCE,
+        "greatest force on the outer wall",
+        made.in_steps,
+    )
 by_limit(
     "second_roller_life",
     "roller_life",

@@ -154,8 +154,13 @@ OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
     ),
     "concave_radius": hollow,
     "groove_wall": in_groove,
-    "second_roller_life": in_steps,
-    "second_roller_static": in_steps,
+    **dict.fromkeys(
+        (
+            f"second_roller_{each}"
+            for each in ("life", "static", "load_share", "radial", "static_radial")
+        ),
+        in_steps,
+    ),
     "guide_temperature_A": warm,
     "guide_temperature_B": warm,
     "spring_stress": surging,
