@@ -44,6 +44,7 @@ from camwright.reports.report_tables import (
     shortened,
     words,
 )
+from camwright.reports.sheet_turn import beside_path
 from camwright.reports.verdict_text import Verdict
 
 SIGNOFF = "8_signoff.pdf"
@@ -439,12 +440,8 @@ def _groove(material: ReportMaterial, contour: Array, record: Record | None) -> 
     half = 0.5 * record["width_mm"]
     steps = [StepView(contour, wall, half, half, float(record["depth_mm"]))]
     if "steps" in record:
-        path, normal = (
-            np.array([table[f"{name}_{axis}{unit}"] for axis in "xy"])
-            for name, unit in (("pitch", "_mm"), ("normal", ""))
-        )
         steps = [
-            StepView(path - inner * normal, path + outer * normal, inner, outer, bottom)
+            StepView(beside_path(table, -inner), beside_path(table, outer), inner, outer, bottom)
             for bottom, inner, outer in (
                 (float(step[f"{name}_mm"]) for name in ("bottom", "inner", "outer"))
                 for step in record["steps"]

@@ -11,7 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.reports.drawing.arrangement import DrawnGroove
 from camwright.reports.scene_solids import Solid, box, joined, pin, ring, rod, tube
-from camwright.reports.sheet_turn import SheetTurn
+from camwright.reports.sheet_turn import SheetTurn, beside_path
 
 _CHEEK = 0.35  # of the width of the roller, where the case states no cheek
 
@@ -140,9 +140,7 @@ def scene_groove(
     bore : array (2, n)    at equal cam angles
     width : float          of the disc
     """
-    stations = np.linspace(0.0, 360.0, inner.shape[1], endpoint=False)
-    angle = turn.contour["cam_angle_deg"]
-    outer = np.stack([np.interp(stations, angle, each, period=360.0) for each in groove.wall])
+    outer = _at_stations(turn, groove.wall, inner.shape[1])
     corner = turn.length("cam", "groove", "corner_radius") or 0.0
     roller = min(turn.length("roller", "width") or groove.depth, groove.depth - corner)
     face, second = groove.depth - corner - 0.5 * roller, _second(turn)
@@ -155,6 +153,14 @@ def scene_groove(
     cheek_at = max(face, 0.5 * roller) + 0.6 * wide if span is None else span
     return SceneGroove(
         groove, inner, outer, bore, face, width, roller, (cheek_at, wide), steps, second
+    )
+
+
+def _at_stations(turn: SheetTurn, wall: Array, count: int) -> Array:
+    """Wall (2, n) of the contour table at equal cam angles (2, count), mm."""
+    angle = np.linspace(0.0, 360.0, count, endpoint=False)
+    return np.stack(
+        [np.interp(angle, turn.contour["cam_angle_deg"], each, period=360.0) for each in wall]
     )
 
 
@@ -185,15 +191,12 @@ def _steps(
     relief, middle = (
         turn.length("cam", "groove", "second", key) or 0.0 for key in ("relief", "step_depth")
     )
-    stations = np.linspace(0.0, 360.0, walls[0].shape[1], endpoint=False)
-    table, first = turn.contour, turn.length("roller", "radius") or 0.0
-    path, normal = (
-        np.stack([np.interp(stations, table["cam_angle_deg"], table[f"{name}_{axis}{unit}"],
-                            period=360.0) for axis in "xy"])
-        for name, unit in (("pitch", "_mm"), ("normal", ""))
-    )  # fmt: skip
-    of_first = walls[0], path + (first + relief) * normal
-    of_second = path - (second.radius + relief) * normal, walls[1]
+    first, count = turn.length("roller", "radius") or 0.0, walls[0].shape[1]
+    beside_first, beside_second = (
+        _at_stations(turn, beside_path(turn.contour, distance), count)
+        for distance in (first + relief, -second.radius - relief)
+    )
+    of_first, of_second = (walls[0], beside_first), (beside_second, walls[1])
     both = [(of_first, (True, False)), (of_second, (False, True))]
     upper, lower = both if second.height < 0.0 else both[::-1]
     return (

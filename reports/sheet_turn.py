@@ -218,6 +218,13 @@ class SheetTurn:
         return (LimitLine(rating / safety, label),) if rating and safety else ()
 
 
+def beside_path(contour: Table, distance: float) -> Array:
+    """Wall (2, n), mm, parallel to the path of the roller; distance, mm, positive outwards."""
+    return np.array(
+        [contour[f"pitch_{axis}_mm"] + distance * contour[f"normal_{axis}"] for axis in "xy"]
+    )
+
+
 def both_ways(limits: Sequence[LimitLine]) -> tuple[LimitLine, ...]:
     """Limits of a magnitude above and below zero."""
     return (*limits, *(LimitLine(-line.value, line.label) for line in limits))
