@@ -23,6 +23,7 @@ class TrackDeviation:
     ----------
     tracks : float    of each track towards its roller or face, m
     rollers : float   of the radius of each roller, m
+    second_roller : float  of the radius of the second roller beyond that of the first, m
     apart : float     of the second roller away from its disc, along its own travel, or of the
                       second face from the first, m
     centre : float    of the pivot of an arm away from the cam axis, m
@@ -32,6 +33,7 @@ class TrackDeviation:
 
     tracks: float = 0.0
     rollers: float = 0.0
+    second_roller: float = 0.0
     apart: float = 0.0
     centre: float = 0.0
     turn: float = 0.0
@@ -74,7 +76,8 @@ class TrackDeviation:
         travel = first.travel(theta)
         away = _from_the_axis(near, travel) * ratio + _from_the_axis(other, travel)
         displaced = self.apart - self.turn * rise
-        return np.asarray(displaced * along[1] + self.centre * away - self._filled * (1.0 + ratio))
+        opened = displaced * along[1] + self.centre * away - self._filled * (1.0 + ratio)
+        return np.asarray(opened - self.second_roller)
 
 
 def _from_the_axis(touch: Touch, travel: Array) -> Array:

@@ -112,6 +112,7 @@ class Corner:
     profile: float = 0.0
     tracks: float = 0.0
     rollers: float = 0.0
+    second_roller: float = 0.0
     apart: float = 0.0
     centre: float = 0.0
     turn: float = 0.0

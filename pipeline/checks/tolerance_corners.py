@@ -230,7 +230,7 @@ def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
         "crank inertia": {"inertia": around(inertia)},
         "phase": {"phase": (-tolerances.phase, tolerances.phase)},
         "line profile": {"profile": (-0.5 * profile, 0.5 * profile)},
-        **{name: {key: (low, high)} for name, (key, low, high) in case.cam.deviations.items()},
+        **{name: dict(moved) for name, moved in case.cam.deviations.items()},
     }
     return {
         label: bounds

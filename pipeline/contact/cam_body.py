@@ -155,7 +155,8 @@ class GrooveRoller(Part):
 
     table: ClassVar[str] = "cam.groove.second"
     defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("C", "C0", "radial_limit", "static_radial_limit"), "that of the first roller"
+        ("C", "C0", "radial_limit", "static_radial_limit", "roller_tolerance"),
+        "that of the first roller",
     )
     source: TableSource = NO_SOURCE
 
@@ -183,6 +184,10 @@ class GrooveRoller(Part):
         float | None, In("N", above=0, at_most=1e9), Known("catalogue of track rollers", "11.8 kN")
     ] = None
     """greatest static radial load of its outer ring without a housing"""
+    roller_tolerance: Annotated[FitTolerance | None, Known("drawing of the roller", "0.005 mm")] = (
+        None
+    )
+    """tolerance of its radius, either way"""
 
     @property
     def roller(self) -> CoaxialRoller:
@@ -225,7 +230,7 @@ class CamGroove(Part):
     roller_tolerance: Annotated[FitTolerance | None, Known("drawing of the roller", "0.005 mm")] = (
         None
     )
-    """tolerance of the roller radius, either way"""
+    """tolerance of the radius of the roller, either way"""
     wear_depth: Annotated[FitTolerance | None, Known("own choice, or measured", "0.01 mm")] = None
     """depth that each wall loses with the roller until it is replaced"""
 
@@ -470,10 +475,12 @@ class CamBody(Part):
         return 0.0 if stated is None else stated.clearance or 0.0
 
     @property
-    def deviations(self) -> Mapping[str, tuple[str, float, float]]:
-        """Least and greatest of each field of `TrackDeviation` by what varies it, SI.
+    def deviations(self) -> Mapping[str, Mapping[str, tuple[float, float]]]:
+        """Least and greatest of fields of `TrackDeviation` by what varies them together, SI.
 
-        Of an interference the tolerance of the contours is left out: its checks have it.
+        Two rollers on a pin are both greatest where they close the clearance most, and both least
+        where they open it. Of an interference the tolerance of the contours is left out: its checks
+        have it.
         """
         stated = self._two_tracks
         half = 0.5 * self.profile_tolerance if self.clearance > 0.0 else 0.0
@@ -484,11 +491,17 @@ class CamBody(Part):
             "phase of the discs": ("turn", "turn_tolerance"),
         }
         either = {
-            label: (field, getattr(stated, key, None) or 0.0)
+            label: {field: getattr(stated, key, None) or 0.0}
             for label, (field, key) in named.items()
-        } | {"both contours": ("tracks", half)}
-        ranges = {label: (field, -most, most) for label, (field, most) in either.items()}
-        return ranges | {"wear of the tracks": ("wear_depth", 0.0, self.wear_depth)}
+        } | {"both contours": {"tracks": half}}
+        if self.on_pin is not None and self.on_pin.roller_tolerance is not None:
+            first = either["roller radius"]
+            first["second_roller"] = self.on_pin.roller_tolerance - first["rollers"]
+        ranges = {
+            label: {field: (-most, most) for field, most in moved.items()}
+            for label, moved in either.items()
+        }
+        return ranges | {"wear of the tracks": {"wear_depth": (0.0, self.wear_depth)}}
 
     @property
     def wear_depth(self) -> float:

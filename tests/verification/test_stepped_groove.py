@@ -17,6 +17,7 @@ from camwright.geometry.second_track import CoaxialRoller
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks.tolerance_corners import corners_of
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
 from camwright.pipeline.cycle.contact_setup import contact_pair, under_load
@@ -281,6 +282,36 @@ def test_the_stem_in_its_guides_under_the_couple_of_the_second_roller():
     borne = guides.moment_a + guides.moment_b - 0.132 * guides.reaction_b
     assert np.abs(borne) == pytest.approx(across, rel=1e-6, abs=1e-6)
     assert (couple > 1.0).any()
+
+
+def test_own_tolerance_of_the_second_roller_at_the_corners():
+    """Of the four ends of both radii those at which both are greatest, or least, close and open the
+    clearance of the pin most: by 3 + 5 um, by points of both walls.
+    """
+    text = FILE.read_text(encoding="utf-8")
+    text = text.replace('relief = "0.5 mm"', 'relief = "0.5 mm"\nroller_tolerance = "5 um"')
+    case = parse_case(text.replace("[cam.groove]\n", '[cam.groove]\nroller_tolerance = "3 um"\n'))
+    cycle, machine = running()
+    path, theta = cycle.contour.pitch, uniform_turn(24)
+    clearance, normal = machine.cam.clearance, path.normal(theta)
+
+    def play(first, second):
+        """Travel of the centre between both walls along their normal, by distances."""
+        place = path.points(theta)
+        walls = (place + side * (radius + 0.5 * clearance) * normal
+                 for side, radius in ((1.0, 0.0235), (-1.0, 0.021)))  # fmt: skip
+        near, far = (np.hypot(*(wall - place)) for wall in walls)
+        return (near - 0.0235 - first) + (far - 0.021 - second)
+
+    ends = {(a, b): play(a, b) for a in (-3e-6, 3e-6) for b in (-5e-6, 5e-6)}
+    order = sorted(ends, key=lambda each: ends[each].max())
+    corners = {each.name: each for each in corners_of(case)}
+    for name, end in (("high", order[0]), ("low", order[-1])):
+        there = machine.at_corner(corners[f"roller radius {name}"])
+        assert there.clearance_on(path, theta) == pytest.approx(ends[end], abs=1e-12)
+    plain = corners_of(parse_case(text.replace('roller_tolerance = "5 um"', "")))
+    assert "roller radius low" not in {each.name for each in plain}
+    assert [corners["roller radius low"].rollers] == [-3e-6]
 
 
 # --- the body ---------------------------------------------------------------------------------
