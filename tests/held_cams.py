@@ -4,18 +4,44 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.follower.crossover import Landing
 from camwright.pipeline.follower.friction_coupling import guided_loads
+from camwright.pipeline.results.trial import Trial
 
 FORCES = ("axial_force", "normal_force", "cam_torque", "friction_force_a", "reaction_a")
+
+
+def running_in(trial: Trial) -> tuple[Cycle, Machine]:
+    """Cycle and machine of the load case "running"."""
+    (cycle,) = (each for each in trial.cycles if each.load_case == "running")
+    return cycle, cycle.machine
+
+
+def ids_where_all_pass(trial: Trial) -> set[str]:
+    """Ids of the checks of a preview, of which none of the design fails or lacks data."""
+    must = [each for each in trial.checks if each.must_have and not each.judged_at]
+    assert [each.id for each in must if each.status != "pass"] == []
+    return {each.id for each in trial.checks}
+
+
+def assert_refused(file: Path, old: str, new: str, message: str) -> None:
+    """A case file with other words in one place is refused by a message that begins so."""
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    with pytest.raises(InputError) as error:
+        parse_case(text.replace(old, new, 1))
+    assert str(error.value).startswith(message)
 
 
 def assert_as_closed_by_a_strong_spring(cycle: Cycle, machine: Machine) -> None:

@@ -11,11 +11,17 @@ from types import MappingProxyType
 
 import numpy as np
 import pytest
-from held_cams import assert_as_closed_by_a_strong_spring, landing_of, turned_by_friction
+from held_cams import (
+    assert_as_closed_by_a_strong_spring,
+    assert_refused,
+    ids_where_all_pass,
+    landing_of,
+    running_in,
+    turned_by_friction,
+)
 from scipy.integrate import quad, solve_ivp
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
-from camwright.geometry.errors import InputError
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
@@ -45,8 +51,7 @@ def trial():
 
 def running():
     """Cycle and machine of the load case of the file."""
-    (cycle,) = (each for each in trial().cycles if each.load_case == "running")
-    return cycle, cycle.machine
+    return running_in(trial())
 
 
 def demand(name):
@@ -457,9 +462,7 @@ def test_the_rim_is_a_cantilever_plate():
 # --- the case ---------------------------------------------------------------------------------
 def test_the_case_passes_by_check():
     """No check of the design fails or lacks data; one track, and no check of a closing force."""
-    must = [each for each in trial().checks if each.must_have and not each.judged_at]
-    assert [each.id for each in must if each.status != "pass"] == []
-    made = {each.id for each in trial().checks}
+    made = ids_where_all_pass(trial())
     assert not made & {"jump", "contact_force_margin", "spring_travel", "traction_demand"}
     assert {"groove_wall", "landing_speed", "outer_undercut"} <= made
 
@@ -483,11 +486,7 @@ def test_the_case_passes_by_check():
     ],
 )  # fmt: skip
 def test_refusals_of_the_case(old, new, message):
-    text = FILE.read_text(encoding="utf-8")
-    assert old in text
-    with pytest.raises(InputError) as error:
-        parse_case(text.replace(old, new, 1))
-    assert str(error.value).startswith(message)
+    assert_refused(FILE, old, new, message)
 
 
 def test_tables_of_a_case_in_a_groove_read_back():

@@ -8,10 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from held_cams import assert_as_closed_by_a_strong_spring, landing_of
+from held_cams import (
+    assert_as_closed_by_a_strong_spring,
+    assert_refused,
+    ids_where_all_pass,
+    landing_of,
+    running_in,
+)
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.errors import InputError
 from camwright.geometry.flat_face_contour import FacePath
 from camwright.geometry.lift import Lift
 from camwright.geometry.second_track import OppositeFace
@@ -37,8 +42,7 @@ def trial(shifted=False):
 
 def running(shifted=False):
     """Cycle and machine of the load case of the file."""
-    (cycle,) = (each for each in trial(shifted).cycles if each.load_case == "running")
-    return cycle, cycle.machine
+    return running_in(trial(shifted))
 
 
 def test_an_eccentric_between_faces_two_radii_apart():
@@ -172,9 +176,7 @@ def test_the_breadth_by_the_points_of_the_cam():
 
 
 def test_the_case_passes_by_check():
-    must = [each for each in trial().checks if each.must_have and not each.judged_at]
-    assert [each.id for each in must if each.status != "pass"] == []
-    made = {each.id for each in trial().checks}
+    made = ids_where_all_pass(trial())
     assert not made & {"jump", "contact_force_margin", "groove_wall", "second_disc_gap"}
     assert {"landing_speed", "landing_pressure", "yoke_breadth", "cam_radius"} <= made
 
@@ -188,11 +190,7 @@ def test_the_case_passes_by_check():
     ],
 )  # fmt: skip
 def test_refusals_of_the_case(old, new, message):
-    text = FILE.read_text(encoding="utf-8")
-    assert old in text
-    with pytest.raises(InputError) as error:
-        parse_case(text.replace(old, new, 1))
-    assert str(error.value).startswith(message)
+    assert_refused(FILE, old, new, message)
 
 
 def test_the_verdict_names_the_frame_as_not_covered():
