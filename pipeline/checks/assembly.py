@@ -698,12 +698,13 @@ def _in_fork(numbers: Numbers) -> Gaps:
     ASSEMBLY_GAP,
     title="Gap between fork and roller or cam",
     tier=Tier.SCREENING,
-    formula="min(f - w/2, l - r, f - b/2 - x) >= g; f: inner face of a cheek from the middle of the"
-    " roller, (span - cheek_width)/2 of a straddled pin, span of an overhung one, w, r: width and"
-    " radius of the roller, l: roller.fork.cheek_length, b: width of the cam, x:"
-    " roller.axial_offset; the last where h/2 > r, h: cheek_height, g: limits.assembly_gap",
+    formula="min(f - w/2, l - r, f - step(h/2 - r) (b/2 + x)) >= g; f: inner face of a cheek from"
+    " the middle of the roller, (span - cheek_width)/2 of a straddled pin, span of an overhung one,"
+    " w, r: width and radius of the roller, l: roller.fork.cheek_length, h: cheek_height, beside"
+    " the cam where h/2 > r, b: width of the cam, x: roller.axial_offset, g: limits.assembly_gap",
     symbols={
-        "?": "roller.pin.mounting straddled",
+        "?": "roller.pin.mounting straddled; cam.groove None",
+        "h": "roller.fork.cheek_height",
         "f": "(roller.pin.span - roller.fork.cheek_width)/2 [mm]",
         "w": "roller.width",
         "l": "roller.fork.cheek_length",

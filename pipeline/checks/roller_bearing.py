@@ -6,7 +6,7 @@ duty of the load cases; without one that in the worst load case, run all the tim
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -57,7 +57,7 @@ from camwright.pipeline.checks.extremes import (
 from camwright.pipeline.checks.missing_keys import lacking, unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, TurningRoller, not_negative
 from camwright.pipeline.cycle.numbers import Numbers, base_radius
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import bearing_life
@@ -87,7 +87,8 @@ _CUBE_MEAN = {
     "n": "mean(|roller_speed|)/(2 pi) [1/s]",
 }
 """Dynamic rating, cube mean of the force and mean speed of a roller in the symbols of a formula."""
-_ALONE = {"?": "cam.groove.second.radius None"}
+_PRESSED = "cam.conjugate.interference None"
+_ALONE = {"?": f"cam.groove.second.radius None; {_PRESSED}"}
 """Symbols of a formula that holds for one roller on all tracks."""
 _SECOND, _SECOND_STATIC = "cam.groove.second.C", "cam.groove.second.C0"
 _OWN = ", of two rollers in a groove that of the inner wall"
@@ -112,8 +113,20 @@ def _cube(numbers: Numbers) -> Value:
 
 
 def _damage(cam: LoadedCam) -> Array:
-    """N^3 |n|, N^3 rad/s; of the demand, L10 = (C/P_m)^3 10^6/n, s: P_m^3 n is the mean."""
-    return _on_first(cam, wear(not_negative(cam.surged), cam.spin))
+    """N^3 |n|, N^3 rad/s; of the demand, L10 = (C/P_m)^3 10^6/n, s: P_m^3 n is the mean.
+
+    Of two preloaded rollers at each angle the greater one, so that neither lives shorter.
+    """
+    every = [wear(not_negative(each.force), each.spin) for each in cam.rollers]
+    return _on_first(cam, _greatest(every))
+
+
+def _greatest(every: Sequence[Array]) -> Array:
+    """Greatest (...) of the values of each roller."""
+    most = every[0]
+    for other in every[1:]:
+        most = np.where(np.real(other) > np.real(most), other, most)
+    return most
 
 
 def _on_first(cam: LoadedCam, each: Array) -> Array:
@@ -169,9 +182,13 @@ def _reliability(numbers: Numbers) -> tuple[float]:
 
 def _modified_damage(cam: LoadedCam) -> Array:
     """|n| (P/C)^3/a_ISO, rad/s; NaN where the viscosity ratio is outside of ISO 281."""
-    kappa = _viscosity_ratio(cam.spin_mean, cam.numbers)
-    within = np.real(kappa) >= bearing_life.LEAST_VISCOSITY_RATIO
-    return _damage_rate(cam, np.where(within, kappa, np.nan))
+
+    def rate(roller: TurningRoller) -> Array:
+        kappa = _viscosity_ratio(roller.mean, cam.numbers)
+        within = np.real(kappa) >= bearing_life.LEAST_VISCOSITY_RATIO
+        return _damage_rate(cam, roller, np.where(within, kappa, np.nan))
+
+    return _greatest([rate(each) for each in cam.rollers])
 
 
 def _modified_kept(cam: LoadedCam, limit: float) -> Array | None:
@@ -180,20 +197,25 @@ def _modified_kept(cam: LoadedCam, limit: float) -> Array | None:
     """
     if cam.numbers.get(_VISCOSITY) is None:
         return None
-    kappa, least = _viscosity_ratio(cam.spin_mean, cam.numbers), bearing_life.LEAST_VISCOSITY_RATIO
-    return _damage_rate(cam, np.where(np.real(kappa) > least, kappa, least)) / limit
+    least = bearing_life.LEAST_VISCOSITY_RATIO
+
+    def rate(roller: TurningRoller) -> Array:
+        kappa = _viscosity_ratio(roller.mean, cam.numbers)
+        return _damage_rate(cam, roller, np.where(np.real(kappa) > least, kappa, least))
+
+    return _greatest([rate(each) for each in cam.rollers]) / limit
 
 
-def _damage_rate(cam: LoadedCam, kappa: Array) -> Array:
+def _damage_rate(cam: LoadedCam, roller: TurningRoller, kappa: Array) -> Array:
     """Damage per time, |n| (P/C)^3/a_ISO (n,), rad/s, at a viscosity ratio `kappa`; zero of a
     roller at rest.
     """
-    numbers, surged = cam.numbers, not_negative(cam.surged)
+    numbers, surged = cam.numbers, not_negative(roller.force)
     force = np.where(np.real(surged) < _LEAST_FORCE, _LEAST_FORCE, surged)
     rating, clean = numbers[_RATING], numbers["roller.bearing.cleanliness_load"]
-    used = bearing_life.life_used(force, rating, clean, kappa) * magnitude(cam.spin)
+    used = bearing_life.life_used(force, rating, clean, kappa) * magnitude(roller.spin)
     used = _on_first(cam, used)
-    return np.where(np.real(cam.spin_mean) < STANDSTILL, 0.0, used)
+    return np.where(np.real(roller.mean) < STANDSTILL, 0.0, used)
 
 
 def _with_modified_damage(demand: Demand, solution: Solution) -> Demand:
@@ -235,14 +257,14 @@ def _with_line_of_viscosity(demand: Demand, solution: Solution) -> Demand:
     noted = replace(demand, figures=(bearing_life.SOURCE, solution.machine.roller.bearing.source))
     if demand.at is None or not demand.at.load_case:
         return noted
-    mean = mean_of(solution, lambda cam: magnitude(cam.spin), cycle_of(solution.cycles, demand.at))
+    mean = mean_of(solution, _slowest, cycle_of(solution.cycles, demand.at))
     line = bearing_life.viscosity_line(mean / factor("rpm"))
     return replace(noted, stated=dict(zip("ab", line, strict=True)))
 
 
 def _film_kept(cam: LoadedCam, limit: float) -> Array:
     """Speed over the least mean speed; no film is necessary at rest."""
-    spin = magnitude(cam.spin)
+    spin = _slowest(cam)
     turns = np.real(cam.spin_mean) >= STANDSTILL
     return np.where(turns, spin / limit, _AMPLE + 0.0 * spin)
 
@@ -585,14 +607,15 @@ roller_modified_life = check(
     needs="roller",
     part="roller_bearing",
     kept_as="limiting speed of the roller",
-    formula="w (|P'| - r)/r <= x n_g; P': pitch curve by cam angle, r: roller radius, n_g: limiting"
-    " speed, x: limits.roller_speed_share",
+    formula="w |(|P'| - r)/r| <= x n_g; P': pitch curve by cam angle, r: radius of the roller that"
+    " carries, negative on the outer wall of a groove, n_g: limiting speed, x:"
+    " limits.roller_speed_share",
     symbols={
         "w": "cam.speed",
         "P'": "pitch_speed",
-        "r": "roller.radius",
+        "r": "surface_radius",
         "n_g": "roller.bearing.speed_limit",
-        "?": "follower.kind roller",
+        "?": f"follower.kind roller; {_PRESSED}",
     },
     reason="beyond it seals and grease overheat",
     values=("roller.bearing.speed_limit", "limits.overspeed"),
@@ -612,8 +635,8 @@ roller_modified_life = check(
     kept=Kept(unit="rpm"),
 )
 def roller_speed(cam: LoadedCam) -> Array:
-    """Speed of the roller on its pin, rad/s."""
-    return magnitude(cam.spin)
+    """Speed of the roller on its pin, of two preloaded ones the higher at each angle, rad/s."""
+    return _greatest([magnitude(each.spin) for each in cam.rollers])
 
 
 def _outer_ring(
@@ -699,6 +722,7 @@ second_roller_static_radial = _second_ring(
     " roller in rpm, D: pitch diameter of its balls in mm, a, b: 45000 and -0.83 below 1000 rpm,"
     " else 4500 and -0.5, v: viscosity in operation, both in mm2/s, k: limits.viscosity_ratio",
     symbols={
+        "?": _PRESSED,
         "v": "1000000 roller.bearing.viscosity",
         "D": "1000 roller.bearing.pitch_diameter",
         "n": "60 mean(|roller_speed|)/(2 pi)",
@@ -724,7 +748,12 @@ second_roller_static_radial = _second_ring(
 )
 def bearing_lubrication(cam: LoadedCam) -> Array:
     """Measure: roller speed, rad/s; demand: viscosity ratio at its mean."""
-    return magnitude(cam.spin)
+    return _slowest(cam)
+
+
+def _slowest(cam: LoadedCam) -> Array:
+    """Speed of the roller on its pin, of two preloaded ones the lower at each angle, rad/s."""
+    return -_greatest([-magnitude(each.spin) for each in cam.rollers])
 
 
 def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
@@ -774,6 +803,7 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     " Oil has no such life. Over the load cases"
     f" {BY_DUTY}.",
     symbols={
+        "?": _PRESSED,
         "h": "3600 [s]",
         "x": "[-]",
         "D": f"{STATED} [mm]",
@@ -842,11 +872,17 @@ def greased(cam: LoadedCam) -> Array:
         return np.array([bearing.grease_life])
     if rating is None or temperature is None:
         return np.array([np.nan])
-    loads_finite = np.isfinite(cam.normal).all(axis=-1, keepdims=True)
-    load = equivalent_load(np.where(loads_finite, cam.normal, 0.0), cam.spin)[..., None]
-    share = np.where(loads_finite, load, np.nan) / rating
-    speed = np.asarray(cam.spin_mean / factor("rpm"))
-    return bearing_life.grease_life(speed, _greased_diameter(numbers), share, temperature)
+    lives = list[Array]()
+    for roller in cam.rollers:
+        force = cam.normal if len(cam.rollers) == 1 else roller.force
+        loads_finite = np.isfinite(force).all(axis=-1, keepdims=True)
+        load = equivalent_load(np.where(loads_finite, force, 0.0), roller.spin)[..., None]
+        share = np.where(loads_finite, load, np.nan) / rating
+        speed = np.asarray(roller.mean / factor("rpm"))
+        lives.append(
+            bearing_life.grease_life(speed, _greased_diameter(numbers), share, temperature)
+        )
+    return np.asarray(np.min(lives, axis=0))
 
 
 def _greased_diameter(numbers: Numbers) -> Value:

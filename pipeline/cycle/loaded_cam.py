@@ -182,6 +182,14 @@ class BodyContact(NamedTuple):
         return cls(motion, axial, np.asarray(axial * motion.gain), turned)
 
 
+class TurningRoller(NamedTuple):
+    """Force on a roller with the surge (..., n), N; its speed, and mean over the turn, rad/s."""
+
+    force: Array
+    spin: Array
+    mean: Array
+
+
 class OfGuides(NamedTuple):
     """Pair of values of guides A and B."""
 
@@ -308,6 +316,22 @@ class LoadedCam:
         numbers = self.numbers
         rolling = rolling_share(np.asarray(numbers["cam.prime_radius"]), numbers["roller.radius"])
         return np.asarray(self.speed * rolling)
+
+    @cached_property
+    def rollers(self) -> tuple[TurningRoller, ...]:
+        """The roller that carries; both of preloaded discs, which are pressed at once all the
+        turn.
+        """
+        pair = None if self.numbers.case is None else self.numbers.case.cam.conjugate
+        if pair is None or pair.interference is None:
+            return (TurningRoller(self.surged, self.spin, self.spin_mean),)
+        turning = list[TurningRoller]()
+        for each, carries in zip(self.on_bodies, (self.wall > 0.0, self.wall < 0.0), strict=True):
+            spin = np.asarray(self.speed * each.motion.rolling)
+            force = np.where(carries, self.surged, each.normal)
+            mean = np.mean(magnitude(spin), axis=-1, keepdims=True)
+            turning.append(TurningRoller(force, spin, mean))
+        return tuple(turning)
 
     @cached_property
     def reactions(self) -> tuple[Reaction, Reaction]:

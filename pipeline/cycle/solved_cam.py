@@ -12,7 +12,7 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.contour import Contour
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
-from camwright.geometry.second_track import discs_of
+from camwright.geometry.second_track import SecondFollower, discs_of
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.cycle import Cycle
@@ -89,6 +89,22 @@ class ContourCam(LoadedCam):
         friction = self.numbers.get("follower.face.friction")
         return self.contour.motion(self.jet, 0.0 if friction is None else friction)
 
+    def on_track(self, second: SecondFollower | None, theta: Array, wall: Array) -> Motion:
+        """Motion of the roller or face that carries.
+
+        Parameters
+        ----------
+        second : SecondFollower   of two rollers or faces; None of one
+        theta : array (n,)        cam angles, rad
+        wall : array (n,)         1 where the first track carries, -1 where the other does
+        """
+        unloaded = self._of_first
+        if second is None:
+            return on_wall(unloaded, wall) if self.pulls else unloaded
+        friction = self.numbers.get("follower.face.friction")
+        rubs = 0.0 if friction is None else friction
+        return second.track(self.contour.pitch).carried(unloaded, theta, wall < 0.0, rubs)
+
     @property
     def least_radius(self) -> float:
         return float(self.contour.radius_min().value)
@@ -137,13 +153,7 @@ class ForcesCam(ContourCam):
 
     @cached_property
     def motion(self) -> Motion:
-        unloaded, loads = self._of_first, self.loads
-        if loads.second is None:
-            return on_wall(unloaded, self.wall) if self.pulls else unloaded
-        track = loads.second.track(self.contour.pitch)
-        friction = self.numbers.get("follower.face.friction")
-        pulls, rubs = self.wall < 0.0, 0.0 if friction is None else friction
-        return track.carried(unloaded, loads.theta, pulls, rubs)
+        return self.on_track(self.loads.second, self.loads.theta, self.wall)
 
     @property
     def reach(self) -> Value:

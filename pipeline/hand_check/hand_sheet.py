@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import NamedTuple
@@ -18,6 +18,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.follower_path import Motion
+from camwright.geometry.second_track import CamDisc, discs_of
 from camwright.pipeline.base import formula, units
 from camwright.pipeline.base.quantities import Count, In
 from camwright.pipeline.case.case_values import quantity_of, text_of, value_of
@@ -285,6 +287,17 @@ class SheetRun:
         return all(str(value_of(self.case, key)) == word for key, word in only)
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _OnTrack(ContourCam):
+    """Cam with the motion of the roller or face that carries."""
+
+    track: Motion
+
+    @property
+    def motion(self) -> Motion:
+        return self.track
+
+
 @dataclass(frozen=True)
 class _Evaluation:
     """Evaluation of the formula of a check at the load case and cam angle of its demand."""
@@ -516,7 +529,7 @@ class _Evaluation:
         cam as drawn.
         """
         if "." in name:
-            return name
+            return f"{name}, of the second disc" if name in self._of_disc else name
         file = "cam as drawn" if name in FIGURES else _CYCLE
         at = place(self.record)
         return f"{file}, {at}" if at else file
@@ -531,8 +544,7 @@ class _Evaluation:
         """Numbers of the case by key, SI, in the load case of the demand, with four that only
         formulas of checks need.
         """
-        states = tuple(self.run.machines.values())
-        shared = numbers_of_discs(self.run.case, states, self.run.contour)
+        shared = self._shared
         ring, interference = fitted_ring(shared), greatest_interference(shared)
         fitted = None if ring is None or interference is None else ring.pressure(interference)
         flanks = self.run.case.cam.key_flanks
@@ -543,18 +555,71 @@ class _Evaluation:
             "cam.fit.ring_pressure": fitted,
             "cam.key.bearing_length": None if flanks is None else flanks.length,
         }
-        return in_load_case(shared, self._machine) | own
+        return in_load_case(shared, self._machine) | own | self._of_disc
+
+    @cached_property
+    def _shared(self) -> Numbers:
+        states = tuple(self.run.machines.values())
+        return numbers_of_discs(self.run.case, states, self.run.contour)
+
+    @property
+    def _of_disc(self) -> dict[str, float]:
+        """Numbers of the second disc under the keys of the first, where the demand is of it."""
+        second = self._machine.cam.second
+        if second is None or self._disc.contour is self.run.contour:
+            return {}
+        offset = -float(self._shared["cam.offset"])  # across a stem; 0 of an arm
+        return {"roller.radius": second.radius, "cam.offset": offset}
 
     @cached_property
     def _cam(self) -> ContourCam:
-        """Cam at the angle of the demand; at maximum lift without one."""
-        contour, angle = self.run.contour, self.record["cam_angle_deg"]
-        theta = contour.lift.highest.theta if angle is None else math.radians(angle)
-        at = np.array([theta])
-        cam = ContourCam.at(contour, self._numbers, at, 3)
-        system, least = self._machine.system, contour.lift.lowest.value
+        """Cam at the angle of the demand, at maximum lift without one; of a contour the disc of the
+        demand, else with the motion of the roller or face that carries.
+        """
+        angle = self.record["cam_angle_deg"]
+        if angle is None:
+            return self._on(CamDisc(self.run.contour, 0.0), self.run.contour.lift.highest.theta)
+        disc, theta = self._disc, math.radians(angle)
+        cam = self._on(disc, theta + disc.turn)
+        if self._is_of_contour or not self._has("wall"):
+            return cam
+        at, wall = np.array([theta]), self._rows["wall"][[self._row]]
+        track = cam.on_track(self._machine.cam.second, at, wall)
+        return _OnTrack(**{each.name: getattr(cam, each.name) for each in fields(cam)}, track=track)
+
+    @property
+    def _is_of_contour(self) -> bool:
+        measured = self.declared.measured
+        return measured is not None and measured.reduce == "contour"
+
+    @cached_property
+    def _disc(self) -> CamDisc:
+        """Disc of the demand of a contour: that on which its measure is nearest to it; the first
+        one of other demands.
+        """
+        first, *others = discs_of(self.run.contour, self._machine.cam.second)
+        measured, measure = self.declared.measured, self.declared.measure
+        angle, demand = self.record["cam_angle_deg"], self.record["demand"]
+        if not others or not self._is_of_contour or angle is None or demand is None:
+            return first
+        if measured is None or measure is None:
+            return first
+        wanted = units.from_unit(demand, self.record["unit"])
+
+        def miss(disc: CamDisc) -> float:
+            cam = self._on(disc, math.radians(angle) + disc.turn)
+            value = measured.value(measure(cam), cam.numbers)
+            return abs(float(np.ravel(value)[0]) - wanted)
+
+        return min((first, *others), key=miss)
+
+    def _on(self, disc: CamDisc, theta: float) -> ContourCam:
+        """Cam of a disc at its own cam angle, rad."""
+        at, lift = np.array([theta]), disc.contour.lift
+        cam = ContourCam.at(disc.contour, in_load_case(self._shared, self._machine), at, 3)
+        system = self._machine.system
         external, gravity = system.external.at(at), system.gravity_along_axis
-        return replace(cam, external=external, gravity=gravity, least_lift=least)
+        return replace(cam, external=external, gravity=gravity, least_lift=lift.lowest.value)
 
     @cached_property
     def _rows(self) -> Mapping[str, Array]:

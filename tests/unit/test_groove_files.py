@@ -153,8 +153,11 @@ def test_the_run_folder_has_both_walls_and_says_which_carries(run):
     )
 
 
-def test_the_sheet_of_a_bearing_without_a_wound_spring_agrees(run):
-    assert SheetRun(run.path).sheet("roller_life").agrees
+def test_the_sheets_of_a_bearing_without_a_wound_spring_agree(run):
+    """The speed is greatest on the outer wall, on which the roller turns the other way."""
+    sheets = SheetRun(run.path)
+    assert sheets.sheet("roller_life").agrees and sheets.sheet("roller_speed").agrees
+    assert sheets.sheet("roller_speed").result is not None
 
 
 def test_the_arrangement_has_a_disc_with_its_groove_and_no_spring(run):

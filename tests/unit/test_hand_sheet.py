@@ -23,7 +23,7 @@ from camwright.reports import sections
 from camwright.reports.documents import PDF
 from camwright.reports.page import PAGE
 
-CASES = Path(__file__).parents[2] / "cases"
+CASES, DATA = Path(__file__).parents[2] / "cases", Path(__file__).parents[1] / "data"
 
 
 @pytest.fixture(scope="module")
@@ -229,3 +229,23 @@ def test_the_sheets_of_the_redesigned_case_give_its_demands(tmp_path):
         change = 0.01 * abs(record["limit"] or record["demand"] or 1.0)
         altered = with_record(run, name, "demand", lambda value, more=change: value + more)
         assert not altered.sheet(name).agrees, (name, record["demand"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["stem", "arm"])
+def test_sheets_of_unequal_discs_are_of_the_disc_of_the_demand(tmp_path, name):
+    """Radius or curvature of the second disc govern, and its roller turns faster."""
+    text = (DATA / f"conjugate_{'feeder' if name == 'stem' else 'arm'}.toml").read_text("utf-8")
+    if name == "stem":
+        text = text.replace('roller_radius = "23.5 mm"', 'roller_radius = "20 mm"')
+        text = text.replace('distance = "154 mm"', 'distance = "170 mm"')
+        text = text.replace('prime_radius = "68 mm"', 'prime_radius = "68 mm"\noffset = "4 mm"')
+    run_case(parse_case(text), tmp_path / "run", positions=48, depth=Tier.PREVIEW, jobs=1)
+    run = SheetRun(tmp_path / "run")
+    sheets = [run.sheet(each) for each in run.records]
+    assert [each.record["id"] for each in sheets if not each.agrees] == []
+    if name == "stem":
+        assert run.sheet("cam_radius").result > 1.2e3 * run.contour.radius_max().value
+    else:
+        quantities = run.sheet("curvature_ratio").quantities
+        assert "roller.radius, of the second disc" in [each.source for each in quantities]

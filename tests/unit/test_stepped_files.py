@@ -143,7 +143,8 @@ def test_the_run_folder_has_both_walls_and_its_sheets_agree(run):
     assert np.hypot(*(outer - path)) == pytest.approx(21.0, abs=1e-9)
     assert np.hypot(*(inner - path)) == pytest.approx(23.5, abs=1e-9)
     sheets = SheetRun(run.path)
-    for name in ("outer_undercut", "second_roller_life", "second_roller_static", "crossover_slip"):
+    second = "outer_undercut", "second_roller_life", "second_roller_static", "crossover_slip"
+    for name in (*second, "roller_speed"):
         assert sheets.sheet(name).agrees, name
 
 
