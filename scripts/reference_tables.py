@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import groupby
 from pathlib import Path
 
-from camwright.pipeline.base.missing_kinds import MISSING_KINDS
+from camwright.pipeline.base.missing_kinds import MISSING_KINDS, MissingKind
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.keys import (
@@ -160,11 +160,18 @@ def model_limits() -> str:
 
 def missing_kinds() -> str:
     """Kinds that are not done, the words of a case file that name them, and what comes nearest."""
-    rows = (
-        (each.name.rstrip(","), each.area, ", ".join(each.words), each.instead)
-        for each in MISSING_KINDS
-    )
+    rows = (_kind_row(each) for each in MISSING_KINDS if not each.done)
     return markdown(("not done", "part", "called in a case file", "nearest to it"), rows)
+
+
+def renamed_kinds() -> str:
+    """Kinds that are done, the words that name them elsewhere, and what states them."""
+    rows = (_kind_row(each) for each in MISSING_KINDS if each.done)
+    return markdown(("done", "part", "called elsewhere", "stated by"), rows)
+
+
+def _kind_row(kind: MissingKind) -> tuple[str, ...]:
+    return kind.name.rstrip(","), kind.area, ", ".join(kind.words), kind.instead
 
 
 def screening() -> str:
@@ -263,6 +270,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "limits": limits,
     "open_sources": to_be_confirmed,
     "missing_kinds": missing_kinds,
+    "renamed_kinds": renamed_kinds,
     "checks": checks,
     "columns": columns,
     "arrays": arrays,

@@ -1,4 +1,4 @@
-"""Cams, followers, laws, springs and machines that are not supported."""
+"""Cams, followers, laws, springs and machines that are not supported, or by another name."""
 
 from __future__ import annotations
 
@@ -17,15 +17,17 @@ _AREAS: dict[str, Area] = {
 
 @dataclass(frozen=True)
 class MissingKind:
-    """Kind of part or machine that is not supported, with the nearest supported one.
+    """Kind of part or machine that is not supported, with the nearest supported one; or one that a
+    case file states in other words.
 
     Parameters
     ----------
     name : str      in the words of the field
     area : str      part of the machine that it is a kind of
     words : tuple   by which a value names it, joined by underscores
-    instead : str   what comes nearest to it; "" without any
+    instead : str   what comes nearest to it, or states it; "" without any
     keys : tuple    words that name it as a key or table, too
+    done : bool     whether it is supported, stated by `instead`
     """
 
     name: str
@@ -33,15 +35,20 @@ class MissingKind:
     words: tuple[str, ...]
     instead: str = ""
     keys: tuple[str, ...] = ()
+    done: bool = False
 
     @property
     def sentence(self) -> str:
-        """Message: the kind is not supported, the nearest one, where all are listed."""
+        """Message: how the kind is stated; or that it is not supported, the nearest one, where all
+        are listed.
+        """
+        if self.done:
+            return f"{self.name} is stated by {self.instead}"
         nearest = f" (nearest: {self.instead})" if self.instead else ""
         return f"{self.name} is not done{nearest}; {LISTED}"
 
 
-_PLATE = "a plate cam with a spring"
+_PLATE = 'a plate cam with a spring, or cam.closure = "groove"'
 _BY_TABLE = '[lift] kind = "table" or "points"'
 _DRAWINGS = ("dxf", "dwg", "igs", "iges", "stp", "contour", "outline", "surface_points")
 _OF_CONTOUR = f"its lift as {_BY_TABLE}"
@@ -51,7 +58,7 @@ MISSING_KINDS = (
         "a rocker, finger or lever", "follower",
         ("rocking", "rocker", "rocker_arm", "finger", "lever"),
         'kind = "oscillating" with a roller or a face, and [rocker] for its second arm',
-        keys=("rocker_arm", "lever"),
+        keys=("rocker_arm", "lever"), done=True,
     ),
     MissingKind(
         "a knife-edge (pointed) follower", "follower",
@@ -64,12 +71,11 @@ MISSING_KINDS = (
         'kind = "oscillating" with follower.face.radius, "roller", or a flat face with a crown',
     ),
     MissingKind(
-        "a follower that holds the cam on both sides without [cam.yoke] or [cam.conjugate]",
-        "follower",
+        "a follower that holds the cam on both sides", "follower",
         ("yoke", "scotch_yoke", "constant_breadth", "constant_width", "constant_diameter",
          "positive_drive", "positive_return", "double_roller", "twin_roller", "two_rollers"),
         'cam.closure = "yoke", "conjugate", or "groove" with [cam.groove.second]',
-        keys=("yoke", "second_roller"),
+        keys=("yoke", "second_roller"), done=True,
     ),
     MissingKind(
         "a follower with a hydraulic element, or lash without [rocker]", "follower",
@@ -78,23 +84,23 @@ MISSING_KINDS = (
         keys=("lash", "pushrod", "hydraulic"),
     ),
     MissingKind(
-        "a groove (track, face) cam without [cam.groove]", "cam",
+        "a groove (track, face) cam", "cam",
         ("groove", "grooved", "groove_width", "track", "face", "face_cam", "slot", "slotted",
          "box", "box_cam", "closed", "internal"),
-        'cam.closure = "groove", with [cam.groove.second] for two rollers',
-        keys=("groove_width", "groove_depth", "track", "track_width"),
+        'cam.closure = "groove" and [cam.groove], with [cam.groove.second] for two rollers',
+        keys=("groove_width", "groove_depth", "track", "track_width"), done=True,
     ),
     MissingKind(
-        "a pair of discs without [cam.conjugate]", "cam",
-        ("complementary", "double", "double_disc", "dual", "twin", "counter_cam"),
-        'cam.closure = "conjugate"',
-        keys=("conjugate_cam", "second_cam", "counter_cam"),
+        "a pair of discs", "cam",
+        ("conjugate", "complementary", "double", "double_disc", "dual", "twin", "counter_cam"),
+        'cam.closure = "conjugate" and [cam.conjugate]',
+        keys=("conjugate_cam", "second_cam", "counter_cam"), done=True,
     ),
     MissingKind(
         "a desmodromic (positively driven) cam", "cam",
         ("desmodromic", "desmo", "positive_motion", "positive_drive", "positive"),
         'cam.closure = "groove", "conjugate" or "yoke"',
-        keys=("desmodromic", "desmo"),
+        keys=("desmodromic", "desmo"), done=True,
     ),
     MissingKind(
         "a barrel (cylindrical, drum) cam", "cam",
@@ -179,10 +185,13 @@ MISSING_KINDS = (
         ("elastomer", "rubber", "polyurethane", "pu", "urethane", "foam"), _AS_FORCE,
     ),
     MissingKind(
-        "a closing force without a spring (constant pressure, magnet, weight)", "spring",
-        ("constant_force", "constant", "pneumatic", "air", "hydraulic", "magnet", "magnetic",
-         "weight", "gravity", "none"),
-        "a spring of small rate beside follower.external_force or gravity_angle",
+        "a closing force without a spring (constant pressure, magnet)", "spring",
+        ("constant_force", "constant", "pneumatic", "air", "hydraulic", "magnet", "magnetic"),
+        "a spring of small rate beside follower.external_force",
+    ),
+    MissingKind(
+        "a follower without a spring", "spring", ("weight", "gravity", "none"),
+        'cam.closure = "gravity", "groove", "conjugate" or "yoke", [spring] left out', done=True,
     ),
     MissingKind(
         "a rolling guide (ball bushing, linear bearing)", "guides",
