@@ -421,6 +421,10 @@ def _steps(second: GrooveRoller) -> Iterator[Rule]:
         yield _more(radius, balls, limit)
     yield from _rated(GrooveRoller.table, radius)
     above, within = "the roller runs above the fillet", "each roller is in its step"
+    limit = f">= {{}}, twice {{{wide}}}: a step for each roller"
+    yield _at_least(depth, lambda at: np.round(2.0 * at(wide), _DECIMALS), limit)
+    yield _at_least(upper, lambda at: at(wide), f">= {{{wide}}}: {within}")
+    yield _at_most(upper, less(depth, wide), f"<= {{}}, {{{depth}}} less {{{wide}}}: {within}")
     yield _at_most(fillet, less(upper, wide), f"<= {{}}, {{{upper}}} less {{{wide}}}: {above}")
     limit = f"<= {{}}, {{{depth}}} less {{{upper}}} and {{{wide}}}: {above}"
     yield _at_most(fillet, less(depth, upper, wide), limit)

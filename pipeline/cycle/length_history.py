@@ -166,7 +166,7 @@ class LengthHistory:
                 " with the mesh, the mean does not"
             )
         most, held = float(self.moment[place]), float(self.couple[place])
-        by = "that friction in the guides and axial offset hold"
+        by = f"that {self.tilt.words.held} and axial offset hold"
         if most > held * (1.0 + TIE):
             by = "that the tilt forces"
         return (
@@ -247,6 +247,7 @@ class TurnOfLine(NamedTuple):
             bearing_length=None if follower.slides else follower.line_width,
             guides=self.tilting.within(machine.guides.spacing),
             twist=self._twist,
+            words=self.tilting.words,
         )
 
     @property

@@ -9,6 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, Value, freeze
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.follower.follower_tilt import StemTilt, TiltWords
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,8 +19,8 @@ class LineTilt:
     shaft (n,): slope of the camshaft at the cam, signed; parallelism: of the axes of cam and
     follower as made; run_out: of the cam on its shaft; roller: of the roller in the clearance of
     its bearing; guides: of the stem in the clearances of its guides, or of an arm in that of its
-    pivot; twist: of an arm under a contact beside its middle. All but that of the shaft have either
-    sign, arrays that broadcast against it.
+    pivot; twist: of an arm under a contact beside its middle, or of a stem by a second roller. All
+    but that of the shaft have either sign, arrays that broadcast against it. words: of the follower
 
     A stem aligns itself with the cam within the clearances of its guides, up to their friction, an
     arm up to the couple of its load on the pivot. What cam and follower are out of parallel beyond
@@ -32,6 +33,7 @@ class LineTilt:
     roller: Value
     guides: Value
     twist: Value = 0.0
+    words: TiltWords = StemTilt.words
 
     def __post_init__(self) -> None:
         freeze(self, shaft=self.shaft)
@@ -56,10 +58,10 @@ class LineTilt:
         yield "camshaft", abs(float(self.shaft[place]))
         yield "parallelism", float(self.parallelism)
         yield "run-out", float(self.run_out)
-        yield "guide clearance", float(self.guides)
+        yield self.words.clearance, float(self.guides)
         yield "roller bearing", float(self.roller)
         if np.any(self.twist):
-            yield "twist of the arm", float(np.broadcast_to(self.twist, self.shaft.shape)[place])
+            yield self.words.turned, float(np.broadcast_to(self.twist, self.shaft.shape)[place])
 
     def sentence(self, place: int) -> str:
         """Tilt and its parts at one angle, in words."""
@@ -82,6 +84,7 @@ def line_tilt(
     bearing_length: Value | None,
     guides: Value,
     twist: Value,
+    words: TiltWords,
 ) -> LineTilt:
     """Tilt of a line of contact from shaft slope and tolerances.
 
@@ -94,10 +97,13 @@ def line_tilt(
     clearance : float          radial internal clearance of the roller's bearing, m: full play
     bearing_length : float     m; None: a follower without a bearing
     guides : float             tilt of the stem in its guides, or of an arm in its pivot, rad
-    twist : float or array     of an arm under a contact beside its middle, rad
+    twist : float or array     of an arm under a contact beside its middle, or of a stem by a second
+                               roller, rad
+    words : TiltWords          of the follower
     """
     roller = 0.0 if bearing_length is None else clearance / bearing_length
-    return LineTilt(shaft, parallelism, run_out / (2.0 * base_radius), roller, guides, twist)
+    run_out = run_out / (2.0 * base_radius)
+    return LineTilt(shaft, parallelism, run_out, roller, guides, twist, words)
 
 
 def rigid_moment(forced: Array, compliance: Value, held: Array, most: Array) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -28,8 +28,21 @@ class TiltingLoads(NamedTuple):
     spacing: Value
 
 
+class TiltWords(NamedTuple):
+    """Words of the field for what lets a follower tilt.
+
+    clearance: within which it does; held: what holds its couple; turned: what turns it besides
+    """
+
+    clearance: str
+    held: str
+    turned: str
+
+
 class FollowerTilt(Protocol):
     """Tilt of a follower in the plane of the contact normal and the cam axis."""
+
+    words: ClassVar[TiltWords]
 
     def within(self, spacing: Value) -> Value:
         """Greatest tilt within the clearances (...), rad, at a spacing of the guides, m."""
@@ -60,6 +73,10 @@ class FollowerTilt(Protocol):
 @dataclass(frozen=True)
 class StemTilt:
     """Stem that aligns itself in the clearances of its guides, up to their friction."""
+
+    words: ClassVar = TiltWords(
+        "guide clearance", "friction in the guides", "couple of the deeper roller"
+    )
 
     stem: Stem
     guides: GuidePair
@@ -101,6 +118,8 @@ class ArmTilt:
     bush : Guide     of its pivot; None: of needles, or not described
     pin : float      slope of the pin in its bush per couple, rad/(N m); None: on its foundation
     """
+
+    words: ClassVar = TiltWords("pivot clearance", "the load on the pivot", "twist of the arm")
 
     twist: Value
     offset: Value

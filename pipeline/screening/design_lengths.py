@@ -288,6 +288,7 @@ def _tilt(designs: DesignValues, turning: FollowerTurning) -> LineTilt:
         bearing_length=width,
         guides=designs.tilting.within(_spacing(designs)),
         twist=turning.twist,
+        words=designs.tilting.words,
     )
 
 

@@ -280,6 +280,9 @@ def test_the_stem_in_its_guides_under_the_couple_of_the_second_roller():
     turn, loads, guides = turn_of_line(cycle), cycle.loads, cycle.sideways
     couple = np.where(loads.axial_force < 0.0, 0.018 * loads.normal_force, 0.0)
     assert turn.tilt.twist == pytest.approx(couple * turn.tilt_compliance)
+    words = turn.tilt.sentence(int(np.argmax(couple)))
+    assert "couple of the deeper roller" in words and "guide clearance" in words
+    assert "arm" not in words
     forced = np.where(turn.tilt.forced > 0.0, cycle.follower_moment, 0.0)
     across = (couple + forced) * np.cos(loads.pressure_angle)
     assert guides is not None
@@ -354,6 +357,9 @@ SECOND = "cam.groove.second"
     [
         ('step_depth = "18 mm"', 'step_depth = "17.8 mm"', "cam.groove.corner_radius = 0.4 mm"),
         ('depth = "36 mm"', 'depth = "35.8 mm"', "cam.groove.corner_radius = 0.4 mm"),
+        ('depth = "36 mm"', 'depth = "34 mm"', "cam.groove.depth = 34 mm, must be >= 35 mm"),
+        ('step_depth = "18 mm"', 'step_depth = "17 mm"', "step_depth = 17 mm, must be >= "),
+        ('step_depth = "18 mm"', 'step_depth = "36 mm"', "step_depth = 36 mm, must be <= 18.5 mm"),
         ('spacing = "18 mm"', 'spacing = "17.8 mm"', f"{SECOND}.spacing = 17.8 mm, must be >="),
         ('spacing = "18 mm"', 'spacing = "18.2 mm"', f"{SECOND}.spacing = 18.2 mm, must be <="),
         ('relief = "0.5 mm"', 'relief = "0.01 mm"', f"{SECOND}.relief = 0.01 mm, must be >"),
