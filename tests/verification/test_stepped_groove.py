@@ -19,7 +19,7 @@ from held_cams import (
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.second_track import CoaxialRoller
-from camwright.pipeline.case.case_file import case_of, read_case
+from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.tolerance_corners import corners_of
