@@ -456,7 +456,7 @@ def _root_in_words(demand: Demand, solution: Solution) -> Demand:
         if cam.fit is not None and fitted_ring(numbers) is None:
             missing += ("camshaft.material",)
         return Demand(None, limit, missing=missing)
-    wall = float(solution.contour.radius_min().value - root.held_radius)
+    wall = solution.least_radius - float(root.held_radius)
     thin, fillet = float(root.thin), float(root.root_radius)
     if not wall >= thin:
         note = f"wall of {shown(wall, 'mm')}, the stress is known from {shown(thin, 'mm')}"

@@ -94,7 +94,7 @@ def held_distance(solution: Solution) -> Demand:
     half-width.
     """
     machine = solution.machine
-    wall = solution.contour.radius_min().value - machine.cam.held_radius
+    wall = solution.least_radius - machine.cam.held_radius
     depth = machine.follower.held_depth
     stated = {"w": float(wall), "t": float(wall if depth is None else min(wall, depth))}
     wall = stated["t"]

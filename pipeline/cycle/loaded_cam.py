@@ -265,7 +265,7 @@ class LoadedCam:
 
     @property
     def least_radius(self) -> Value:
-        """Minimum radius of the contour, m: in a dwell at minimum lift."""
+        """Minimum radius of the contour, m: in a dwell at minimum lift; of two discs the lesser."""
         return self.motion.radius_at(self.least_lift)
 
     @property

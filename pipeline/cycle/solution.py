@@ -138,6 +138,11 @@ class Solution(Displayed):
         """CamDisc of the contour, and the second one of a conjugate pair."""
         return discs_of(self.contour, self.machine.cam.second)
 
+    @property
+    def least_radius(self) -> float:
+        """Minimum radius of the contour of all discs, m."""
+        return min(float(each.contour.radius_min().value) for each in self.discs)
+
     @cached_property
     def numbers(self) -> Numbers:
         """Numbers of the machine in the design load case, and the greatest cam speed."""

@@ -107,7 +107,9 @@ class ContourCam(LoadedCam):
 
     @property
     def least_radius(self) -> float:
-        return float(self.contour.radius_min().value)
+        case = self.numbers.case
+        discs = discs_of(self.contour, None if case is None else case.cam.second)
+        return min(float(each.contour.radius_min().value) for each in discs)
 
     @classmethod
     def at(cls, contour: Contour, numbers: Numbers, theta: Array, order: int) -> ContourCam:

@@ -295,8 +295,9 @@ class Designs:
 
     @KeptResult
     def least_radius(self) -> Array:
-        """Minimum radius of the contour (m, 1), m."""
-        return sampled_least(self.whole.motion.contour_radius)[:, None]
+        """Minimum radius of the contour (m, 1), m, of two discs the lesser."""
+        radii = [sampled_least(each.contour_radius) for each in self.tracks]
+        return np.asarray(np.min(radii, axis=0))[:, None]
 
     @property
     def least_convex_radius(self) -> Array:

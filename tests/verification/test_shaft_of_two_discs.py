@@ -170,3 +170,13 @@ def test_the_unbalance_of_two_discs_is_that_at_both_bearings():
     assert unbalance == pytest.approx(ends[0].max() + ends[1].max(), rel=1e-9)
     static = undrilled(machine.cam, cycle.contour).product
     assert unbalance > 1.05 * static
+
+
+def test_the_wall_over_the_keyway_is_that_of_the_smaller_disc():
+    """Of the second one 150 - 68 - 18 - 23.5 - 15 - 3.3 = 22.2 mm, of the first 26.2 mm."""
+    text = (DATA / "preloaded_feeder.toml").read_text(encoding="utf-8")
+    text = text.replace('distance = "154 mm"', 'distance = "150 mm"')
+    lines = [each for each in text.splitlines() if not each.startswith("fit = ")]
+    trial = preview_case(parse_case("\n".join(lines)), corners=False)
+    (root,) = (each for each in trial.checks if each.id == "keyway_root")
+    assert "wall 22.2 mm" in root.note
