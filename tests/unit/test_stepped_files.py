@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
+from camwright.meshes import step_solid
 from camwright.meshes.gmsh_mesher import session
 from camwright.meshes.step_solid import write_step
 from camwright.meshes.step_text import PartTitle
@@ -84,14 +85,19 @@ def closed_form(case, contour):
     return volume - (2.0 * half * (bore + cam.keyway.depth - at) - segment) * cam.width
 
 
+@pytest.mark.slow
 def test_the_solid_has_the_volume_of_the_disc_less_both_steps(workshop):
+    """As written, within 1e-8 m: OpenCASCADE reads its splines for 10 s."""
     volume = volume_of(workshop / "cam.step")
     assert volume == pytest.approx(closed_form(*stepped()), rel=1e-5)
 
 
-@pytest.mark.parametrize("radius", [0.0235, 0.0255])
-def test_a_step_under_the_upper_one_and_a_larger_second_roller(tmp_path, radius):
-    """Equal rollers, whose lower step reaches under the upper one; the second at the face."""
+@pytest.mark.parametrize("radius", [0.021, 0.0235, 0.0255])
+def test_solids_of_a_smaller_an_equal_and_a_larger_second_roller(tmp_path, monkeypatch, radius):
+    """The case, equal rollers, whose lower step reaches under the upper one, and the second at the
+    face; walls within 10 um of the contours, and the same faces.
+    """
+    monkeypatch.setattr(step_solid, "_STEP_ERROR", 1e-5)
     case, contour = stepped()
     second = replace(case.cam.groove.second, radius=radius)
     cam = replace(case.cam, groove=replace(case.cam.groove, second=second))
