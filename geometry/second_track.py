@@ -410,14 +410,8 @@ class CamDisc(NamedTuple):
 
 def discs_of(contour: Contour, second: SecondFollower | None) -> tuple[CamDisc, ...]:
     """Disc of the first contour, and that of a second roller."""
-    tracks = tracks_of(contour, second)
-    return tracks if second is None or second.own_disc else tracks[:1]
-
-
-def tracks_of(contour: Contour, second: SecondFollower | None) -> tuple[CamDisc, ...]:
-    """First contour, and that of a second roller or face, on whichever disc."""
     first = CamDisc(contour, 0.0)
-    if second is None:
+    if second is None or not second.own_disc:
         return (first,)
     track = second.track(contour.pitch)
     return first, CamDisc(track.contour, track.turn)
