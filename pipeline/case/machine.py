@@ -38,7 +38,7 @@ from camwright.pipeline.case.scope_section import (
     ScopeName,
 )
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd
-from camwright.pipeline.contact.cam_body import CamBody, CamConjugate
+from camwright.pipeline.contact.cam_body import CamBody, CamConjugate, GrooveRoller
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.finite_length.axial_drop import (
     BodyCrown,
@@ -468,33 +468,24 @@ class Machine(Displayed):
         """Stiffness from each disc, or wall with a roller of its own, to the follower mass along
         the travel of the first roller, N/m: stated, else members in series.
         """
-        pair, farther = self.cam.conjugate, self._on_second_of_pin
+        pair, on_pin = self.cam.conjugate, self.cam.on_pin
         if self.stiffness is not None:
-            one = pair is None and farther is None
+            one = pair is None and on_pin is None
             return (self.stiffness,) if one else (self.stiffness, self.stiffness)
         first = in_series(self.compliances.values())
-        if farther is not None:
-            return first, in_series(farther.compliances.values())
+        if on_pin is not None:
+            return first, in_series(self._at_second_of_pin(on_pin).compliances.values())
         if pair is None:
             return (first,)
         return first, in_series(self._compliances_to(pair).values()) / self._leverage**2
 
-    @property
-    def _on_second_of_pin(self) -> Machine | None:
-        """Machine with the first roller at the place of a second on its pin; None without one."""
-        second = self.cam.on_pin
-        if second is None:
-            return None
+    def _at_second_of_pin(self, second: GrooveRoller) -> Machine:
+        """Machine with the first roller at the place of a second on its pin."""
         roller = self.roller
-        pin = roller.pin
-        if pin is not None:
-            pin = replace(pin, span=pin.span + float(second.beyond(roller.radius)))
-        groove = replace(self.cam.groove, second=None) if self.cam.groove else None
-        return replace(
-            self,
-            follower=replace(roller, pin=pin),
-            cam=replace(self.cam, groove=groove),
-        )
+        if roller.pin is None:
+            return self
+        span = roller.pin.span + float(second.beyond(roller.radius))
+        return replace(self, follower=replace(roller, pin=replace(roller.pin, span=span)))
 
     @property
     def _leverage(self) -> float:
@@ -560,18 +551,10 @@ class Machine(Displayed):
 
     @property
     def disc_preload(self) -> DiscPreload | None:
-        """Preload of conjugate discs by their interference; None of other cams.
-
-        Raises
-        ------
-        InputError
-            If nothing between disc and follower mass is compliant.
-        """
+        """Preload of conjugate discs by their interference; None of other cams."""
         pair = self.cam.conjugate
         if pair is None or pair.interference is None:
             return None
-        if not self.axial_stiffness < np.inf:
-            raise InputError("follower.stiffness", "missing", "given with an interference")
         return DiscPreload(pair.interference, self.roller_compliances, self.deviation)
 
     @property
@@ -581,20 +564,25 @@ class Machine(Displayed):
         On a stem those of roller, pin and fork, of the second with the stem between the rollers,
         which goes on there with its section: stem and camshaft beyond bear the axial force alone.
         On arms, and of a stated stiffness, those from each disc to the follower mass.
+
+        Raises
+        ------
+        InputError
+            If nothing of a roller is compliant.
         """
         pair = self.cam.conjugate
         if self.stiffness is not None:
             return Compliances(1.0 / self.stiffness, 1.0 / self.stiffness)
-        if self.arm is not None or pair is None:
-            first, *others = self.track_stiffnesses
-            second = others[0] if others else first
-            return Compliances(1.0 / first, 1.0 / (second * self._leverage**2))
-        parts, _ = self.follower.elastic(self.contact_width, self.spring.preload)
-        alone = sum(value for value in parts.values() if value is not None)
-        if not alone > 0.0:
+        if self.arm is None:
+            parts, _ = self.follower.elastic(self.contact_width, self.spring.preload)
+            first = sum(value for value in parts.values() if value is not None)
+            distance = 0.0 if pair is None else pair.distance or 0.0
+            second = first + stem_compliance_along(self.stem, distance)
+        else:
+            first, second = (sum(self._compliances_to(one).values()) for one in (None, pair))
+        if not first > 0.0:
             raise InputError("follower.stiffness", "missing", "given with an interference")
-        distance = 0.0 if pair.distance is None else pair.distance
-        return Compliances(alone, alone + stem_compliance_along(self.stem, distance))
+        return Compliances(first, second)
 
     def clearance_on(self, path: FollowerPath, theta: Array) -> Array:
         """Clearance of the follower between both tracks at cam angles (n,), rad, square to the
