@@ -77,15 +77,20 @@ _LEAST_FORCE = 1.0  # N, of a force that damages a bearing
 _AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
 _RATING, _STATIC = "roller.bearing.C", "roller.bearing.C0"
 _VISCOSITY, _CIRCLE = "roller.bearing.viscosity", "roller.bearing.pitch_diameter"
-_CUBE_MEAN = {
-    "C": _RATING,
-    "P_m": (
-        "(mean((normal_force + spring_surge_force/((1 - "
-        "sign(follower_velocity) jam_index) cos(pressure_angle)))^3 "
-        "|roller_speed|)/mean(|roller_speed|))^(1/3) [N]"
-    ),
-    "n": "mean(|roller_speed|)/(2 pi) [1/s]",
-}
+_SURGED = (
+    "normal_force + spring_surge_force/((1 - sign(follower_velocity) jam_index)"
+    " cos(pressure_angle))"
+)
+"""Normal force with the surge of the spring, in the columns of a run."""
+
+
+def _cube_mean(rating: str, force: str) -> dict[str, str]:
+    """Symbols C, P_m, n of a rating life: key of the rating, and an expression of the force."""
+    mean = f"(mean(({force})^3 |roller_speed|)/mean(|roller_speed|))^(1/3) [N]"
+    return {"C": rating, "P_m": mean, "n": "mean(|roller_speed|)/(2 pi) [1/s]"}
+
+
+_CUBE_MEAN = _cube_mean(_RATING, _SURGED)
 """Dynamic rating, cube mean of the force and mean speed of a roller in the symbols of a formula."""
 _PRESSED = "cam.conjugate.interference None"
 _ALONE = {"?": f"cam.groove.second.radius None; {_PRESSED}"}
@@ -107,9 +112,9 @@ def _life(worst: Value, numbers: Numbers) -> Value:
     return rating_over(_cube(numbers), worst, np.inf)
 
 
-def _cube(numbers: Numbers) -> Value:
-    """C^3 million turns, N^3 rad."""
-    return numbers[_RATING] ** BALL_LIFE_EXPONENT * MILLION_TURNS
+def _cube(numbers: Numbers, rating: str = _RATING) -> Value:
+    """C^3 million turns, N^3 rad; rating : key of C."""
+    return numbers[rating] ** BALL_LIFE_EXPONENT * MILLION_TURNS
 
 
 def _damage(cam: LoadedCam) -> Array:
@@ -487,13 +492,7 @@ second_roller_life = check(
     formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force on the"
     " outer wall, 0 elsewhere, over the revolutions of the roller that carries, n: its mean speed,"
     f" L: limits.roller_life. Over the load cases {BY_DUTY}.",
-    symbols={
-        "C": _SECOND,
-        "P_m": _CUBE_MEAN["P_m"]
-        .replace("normal_force", "0.5 (1 - wall) (normal_force", 1)
-        .replace("cos(pressure_angle)))^3", "cos(pressure_angle))))^3"),
-        "n": _CUBE_MEAN["n"],
-    },
+    symbols=_cube_mean(_SECOND, f"0.5 (1 - wall) ({_SURGED})"),
     reason="each roller of a groove has its own wall and its own forces",
     load_cases=LASTING,
     values=(*given.LOADS, *given.SURGE, _SECOND),
@@ -501,9 +500,7 @@ second_roller_life = check(
     page="Roller",
 ).measured(
     "life",
-    value=lambda worst, numbers: rating_over(
-        numbers[_SECOND] ** BALL_LIFE_EXPONENT * MILLION_TURNS, worst, np.inf
-    ),
+    value=lambda worst, numbers: rating_over(_cube(numbers, _SECOND), worst, np.inf),
     needed=(_SECOND,),
     remark=_with_card,
     deviation=0.03,
