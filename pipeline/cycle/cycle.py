@@ -33,12 +33,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.crossover_history import Flights, WallImpact, flights, landed
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
-from camwright.pipeline.cycle.length_history import (
-    LengthHistory,
-    TurnOfLine,
-    camshaft_compliance,
-    length_histories,
-)
+from camwright.pipeline.cycle.length_history import LengthHistory, TurnOfLine, length_histories
 from camwright.pipeline.cycle.part_loads import (
     PartLoads,
     PivotPush,
@@ -60,7 +55,12 @@ from camwright.pipeline.follower.follower_forces import (
 )
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions, guide_reactions
-from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_under, slopes_of
+from camwright.pipeline.follower.shaft_strength import (
+    couple_compliance,
+    in_the_normal,
+    slope_under,
+    slopes_of,
+)
 from camwright.pipeline.follower.spring import Spring
 
 LIFT = Column("lift", "mm", "Lift")
@@ -680,9 +680,10 @@ def turn_of_line(cycle: Cycle) -> TurnOfLine:
     """Inputs of the pressure along the line of contact of a cycle."""
     force = cycle.loads.normal_force
     turn = cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt
-    yields = camshaft_compliance(cycle.machine, cycle.loads.wall < 0.0)
+    slopes = slopes_of(cycle.machine.camshaft, cycle.machine.cam.spacing)
+    compliance = couple_compliance(slopes, cycle.loads.wall < 0.0)
     pivot, beyond = np.hypot(*cycle.loads.pivot_load), beyond_first(cycle.machine, cycle.loads)
-    return TurnOfLine(*turn, pivot, yields, cycle.pin_slope, np.abs(beyond))
+    return TurnOfLine(*turn, pivot, compliance, cycle.pin_slope, np.abs(beyond))
 
 
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:

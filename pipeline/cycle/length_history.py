@@ -45,7 +45,6 @@ from camwright.pipeline.cycle.line_tilt import (
 )
 from camwright.pipeline.follower.follower_tilt import FollowerTilt, TiltingLoads
 from camwright.pipeline.follower.guide_reactions import GuideReactions
-from camwright.pipeline.follower.shaft_strength import of_disc, slopes_of
 from camwright.pipeline.follower.spring import NO_FORCE
 
 _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
@@ -206,10 +205,10 @@ class TurnOfLine(NamedTuple):
     """Inputs of the pressure along the line over one turn.
 
     force (n,): normal force, N; shaft (n,): slope of the camshaft at the cam, rad, as of
-    `Cycle.shaft_tilt`; pivot (n,): load of an arm on its pivot, N, 0 without one; yields: as of
-    `camshaft_compliance`; pin (n,): slope of the pin per couple, rad/(N m), by finite elements;
-    None: on a foundation; beyond (n,): distance of the roller that carries from the first along
-    their pin, m.
+    `Cycle.shaft_tilt`; pivot (n,): load of an arm on its pivot, N, 0 without one;
+    shaft_compliance: slope of the camshaft at the disc that carries per moment there, rad/(N m);
+    pin (n,): slope of the pin per couple, rad/(N m), by finite elements; None: on a foundation;
+    beyond (n,): distance of the roller that carries from the first along their pin, m.
     """
 
     machine: Machine
@@ -218,7 +217,7 @@ class TurnOfLine(NamedTuple):
     guides: GuideReactions
     shaft: Array
     pivot: Array
-    yields: Value
+    shaft_compliance: Value
     pin: Array | None = None
     beyond: Value = 0.0
 
@@ -322,7 +321,7 @@ class TurnOfLine(NamedTuple):
         """
         machine = self.machine
         follower = self.tilting.compliance(machine.overhang_at_max_lift, machine.guides.spacing)
-        return follower + self.yields
+        return follower + self.shaft_compliance
 
     def history(self, solved: FactorRange | None) -> LengthHistory:
         """Pressure along the line over the turn from the factors at the angles with contact; None:
@@ -449,15 +448,6 @@ def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> F
     corner = np.where(worse, tilts[0].at_corner, tilts[-1].at_corner)
     at_corner = np.where(level.value > tilted, level.at_corner, corner)
     return FactorRange(level.centre, level.value, tilted, moment / raised, at_corner)
-
-
-def camshaft_compliance(machine: Machine, pulls: NDArray[np.bool_]) -> Value:
-    """Slope of the camshaft at the disc that carries per moment there, rad/(N m); 0 of a rigid one.
-
-    pulls : (n,)   where the second disc of a pair carries
-    """
-    slopes = slopes_of(machine.camshaft, machine.cam.spacing)
-    return of_disc([each.couple for each in slopes], pulls) if slopes else 0.0
 
 
 class TiltedPair(Protocol):

@@ -41,6 +41,7 @@ from camwright.pipeline.follower.pivot_forces import (
 from camwright.pipeline.follower.rocker import RockerOutput
 from camwright.pipeline.follower.shaft_strength import (
     CamSlope,
+    couple_compliance,
     in_the_normal,
     of_disc,
     slope_under,
@@ -722,10 +723,9 @@ class LoadedCam:
         return tuple(CamSlope(*flat[k : k + size]) for k in range(0, len(flat), size))
 
     @property
-    def shaft_yield(self) -> Value:
+    def shaft_compliance(self) -> Value:
         """Slope of the camshaft at the disc that carries per moment there, rad/(N m)."""
-        couples = [each.couple for each in self.shaft_slopes]
-        return of_disc(couples, self.wall < 0.0) if couples else 0.0
+        return couple_compliance(self.shaft_slopes, self.wall < 0.0)
 
     @cached_property
     def shaft_tilt(self) -> Array:

@@ -420,19 +420,27 @@ def slopes_of(shaft: Camshaft | None, spacing: float | None = None) -> tuple[Cam
     ----------
     spacing : float   of a second disc from the first, m; None: of one disc
     """
-    first = slope_of(shaft, spacing or 0.0)
-    if first is None or shaft is None:
+    if shaft is None:
         return ()
-    if spacing is None:
-        return (first,)
-    second = slope_of(replace(shaft, cam_position=shaft.cam_position + spacing), -spacing)
-    return (first,) if second is None else (first, second)
+    slopes = [slope_of(shaft, spacing or 0.0)]
+    if spacing is not None:
+        there = replace(shaft, cam_position=shaft.cam_position + spacing)
+        slopes.append(slope_of(there, -spacing))
+    return tuple(each for each in slopes if each is not None)
 
 
 def of_disc(values: Sequence[Value], pulls: NDArray[np.bool_]) -> Value:
     """Of values (...), one a disc, those of the disc that carries: the second where it pulls."""
     first, *others = values
     return np.where(pulls, others[0], first) if others else first
+
+
+def couple_compliance(slopes: Sequence[CamSlope], pulls: NDArray[np.bool_]) -> Value:
+    """Slope of the shaft at the disc that carries per moment there, rad/(N m); 0 of a rigid one.
+
+    pulls : bool (...)   where the second disc of a pair carries
+    """
+    return of_disc([each.couple for each in slopes], pulls) if slopes else 0.0
 
 
 def slope_under(

@@ -82,14 +82,14 @@ class LineFactors(NamedTuple):
 class FollowerTurning(NamedTuple):
     """What turns the followers of designs across the plane of the cam, arrays (m, n).
 
-    shaft: slope of the camshaft at the cam, rad, as of `LineTilt`; yields: of it per moment there,
-    rad/(N m); held: couple that the follower holds without a tilt, N m; twist: of an arm under a
-    contact beside its middle, or of a stem by `beside`, rad; beside: couple of a second roller on
-    the pin about the first, N m
+    shaft: slope of the camshaft at the cam, rad, as of `LineTilt`; shaft_compliance: of
+    it per moment there, rad/(N m); held: couple that the follower holds without a tilt, N m; twist:
+    of an arm under a contact beside its middle, or of a stem by `beside`, rad; beside: couple of a
+    second roller on the pin about the first, N m
     """
 
     shaft: Array
-    yields: Value
+    shaft_compliance: Value
     held: Array
     twist: Array
     beside: Array
@@ -98,7 +98,7 @@ class FollowerTurning(NamedTuple):
 def turning_of(
     designs: DesignValues,
     shaft: Array,
-    yields: Value,
+    shaft_compliance: Value,
     force: Array,
     rubbing: tuple[Array, Array],
     pivot: Array,
@@ -108,11 +108,12 @@ def turning_of(
 
     Parameters
     ----------
-    shaft : array (m, n)          slope of the camshaft at the cam, rad
-    yields : float or (m, n)      of it per moment there, rad/(N m)
-    force, pivot : array (m, n)   normal force, and load of an arm on its pivot, N
-    rubbing : two arrays (m, n)   normal loads of guides A and B, N
-    beyond : float or (m, n)      distance of the roller that carries from the first on a pin, m
+    shaft : array (m, n)                 slope of the camshaft at the cam, rad
+    shaft_compliance : float or (m, n)   of it per moment there, rad/(N m)
+    force, pivot : array (m, n)          normal force, and load of an arm on its pivot, N
+    rubbing : two arrays (m, n)          normal loads of guides A and B, N
+    beyond : float or (m, n)             distance of the roller that carries from the first on a
+                                         pin, m
     """
     on_a, on_b = (designs.numbers[f"guides.{side}.friction_greatest"] for side in "ab")
     loads = TiltingLoads(force, rubbing, (on_a, on_b), pivot, _spacing(designs))
@@ -120,10 +121,10 @@ def turning_of(
     on_arm = designs.machine.arm is not None
     twist = follower.turned(loads, designs.stem_offset + (beyond if on_arm else 0.0))
     beside = np.where(beyond == 0.0, 0.0, force * beyond)
-    turning = FollowerTurning(shaft, yields, follower.held(loads), twist, beside)
+    turning = FollowerTurning(shaft, shaft_compliance, follower.held(loads), twist, beside)
     if on_arm:
         return turning
-    return turning._replace(twist=twist + turning.beside * _yields(designs, turning))
+    return turning._replace(twist=twist + turning.beside * _tilt_compliance(designs, turning))
 
 
 def factors_of(
@@ -150,9 +151,9 @@ def factors_of(
     if not designs.machine.finite_pairs or len(shapes) > _SHAPES:
         return None
     tilt = _tilt(designs, turning)
-    greatest, forced, yields, couple = (
+    greatest, forced, compliance, couple = (
         np.broadcast_to(each, force.shape)
-        for each in (tilt.greatest, tilt.forced, _yields(designs, turning), turning.held)
+        for each in (tilt.greatest, tilt.forced, _tilt_compliance(designs, turning), turning.held)
     )
     whole = LineFactors(np.ones(force.shape), np.ones(force.shape), np.zeros(force.shape))
     contact = lines_pressed(designs.machine, force, radius)
@@ -170,7 +171,7 @@ def factors_of(
             if not at.any():
                 continue
             held = couple[at] + aside[at] + turning.beside[at]
-            turned = greatest[at], forced[at], yields[at]
+            turned = greatest[at], forced[at], compliance[at]
             loads = ContactLoads(1.0 / radius[at], force[at], *turned, held, raised[at])
             mean = machine.limits[END_MEAN_LENGTH]
             worst = worst_of([factor_range(pair, mean, loads) for pair in machine.finite_pairs])
@@ -236,7 +237,7 @@ def moment_on_follower(
     forced, held = _tilt(designs, turning).forced, turning.held
     if factors is None:
         most = GREATEST_MOMENT * force * designs.numbers["contact.width"]
-        line = rigid_moment(forced, _yields(designs, turning), held, most)
+        line = rigid_moment(forced, _tilt_compliance(designs, turning), held, most)
     else:
         line = np.maximum(force, 0.0) * factors.arm
     return follower_moment(line, forced, held, force * designs.stem_offset)
@@ -292,10 +293,12 @@ def _tilt(designs: DesignValues, turning: FollowerTurning) -> LineTilt:
     )
 
 
-def _yields(designs: DesignValues, turning: FollowerTurning) -> Array:
+def _tilt_compliance(designs: DesignValues, turning: FollowerTurning) -> Array:
     """Slope of stem and camshaft under the moment of the contact (m, 1) or (m, n), rad/(N m)."""
     overhang = designs.value("follower.overhang_at_max_lift")
-    return np.asarray(designs.tilting.compliance(overhang, _spacing(designs)) + turning.yields)
+    return np.asarray(
+        designs.tilting.compliance(overhang, _spacing(designs)) + turning.shaft_compliance
+    )
 
 
 def _spacing(designs: DesignValues) -> Array:
