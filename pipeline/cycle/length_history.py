@@ -43,7 +43,11 @@ from camwright.pipeline.cycle.line_tilt import (
     line_tilt,
     rigid_moment,
 )
-from camwright.pipeline.follower.follower_tilt import FollowerTilt, TiltingLoads
+from camwright.pipeline.follower.follower_tilt import (
+    FollowerTilt,
+    TiltingLoads,
+    couple_of_second,
+)
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 from camwright.pipeline.follower.spring import NO_FORCE
 
@@ -263,7 +267,7 @@ class TurnOfLine(NamedTuple):
     @property
     def beside(self) -> Array:
         """Couple (n,), N m, of a second roller on the pin about the middle of the first."""
-        return np.where(self.beyond == 0.0, 0.0, self.force * self.beyond)
+        return couple_of_second(self.force, self.beyond)
 
     @property
     def loads(self) -> ContactLoads:

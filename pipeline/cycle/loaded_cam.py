@@ -30,6 +30,7 @@ from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import NO_TORQUE, gear_force
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import levers, wall_of
+from camwright.pipeline.follower.follower_tilt import couple_of_second
 from camwright.pipeline.follower.pivot_forces import (
     FRICTION,
     ArmPivot,
@@ -777,9 +778,7 @@ class LoadedCam:
         """Greatest moment of the contact on the pin about the middle of the first roller, N m:
         `follower_moment`, and the force of a second one beside it.
         """
-        beyond = self.beyond
-        beside = np.where(beyond == 0.0, 0.0, beyond * self.normal)
-        return np.asarray(self.follower_moment + beside)
+        return np.asarray(self.follower_moment + couple_of_second(self.normal, self.beyond))
 
     @property
     def pressure_factor(self) -> Value:

@@ -27,6 +27,7 @@ from camwright.pipeline.follower.camshaft_loads import (
     torque_reversals,
 )
 from camwright.pipeline.follower.follower_forces import Loads
+from camwright.pipeline.follower.follower_tilt import couple_of_second
 from camwright.pipeline.follower.guide_friction import (
     FrictionBounds,
     friction_power,
@@ -214,8 +215,7 @@ def beyond_first(machine: Machine, loads: Loads) -> Array:
 
 def beside_first(machine: Machine, loads: Loads) -> Array:
     """Moment (n,), N m, of the roller that carries about the middle of the first on a pin."""
-    beyond = beyond_first(machine, loads)
-    return np.where(beyond == 0.0, 0.0, beyond * loads.normal_force)
+    return couple_of_second(loads.normal_force, beyond_first(machine, loads))
 
 
 class PivotPush(NamedTuple):

@@ -39,6 +39,18 @@ class TiltWords(NamedTuple):
     turned: str
 
 
+def couple_of_second(force: Array, beyond: Value) -> Array:
+    """Couple (..., n), N m, of the roller that carries about the middle of the first on their pin.
+
+    Parameters
+    ----------
+    force : array (..., n)            normal force, N
+    beyond : float or array (..., n)  distance of that roller from the first, m; 0: none, also of a
+                                      force that is not known
+    """
+    return np.where(beyond == 0.0, 0.0, force * beyond)
+
+
 class FollowerTilt(Protocol):
     """Tilt of a follower in the plane of the contact normal and the cam axis."""
 

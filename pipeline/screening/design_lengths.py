@@ -32,7 +32,11 @@ from camwright.pipeline.cycle.line_tilt import (
     rigid_moment,
 )
 from camwright.pipeline.cycle.numbers import Numbers
-from camwright.pipeline.follower.follower_tilt import FollowerTilt, TiltingLoads
+from camwright.pipeline.follower.follower_tilt import (
+    FollowerTilt,
+    TiltingLoads,
+    couple_of_second,
+)
 
 # Keys that the contact of finite length depends on, and the number of its different shapes up to
 # which each is solved.
@@ -120,7 +124,7 @@ def turning_of(
     follower = designs.tilting
     on_arm = designs.machine.arm is not None
     twist = follower.turned(loads, designs.stem_offset + (beyond if on_arm else 0.0))
-    beside = np.where(beyond == 0.0, 0.0, force * beyond)
+    beside = couple_of_second(force, beyond)
     turning = FollowerTurning(shaft, shaft_compliance, follower.held(loads), twist, beside)
     if on_arm:
         return turning
