@@ -297,7 +297,8 @@ def _with_slope(demand: Demand, solution: Solution) -> Demand:
     if demand.at is None or not demand.at.load_case:
         return demand
     cycle, row = row_of(solution.cycles, demand.at)
-    slope = float(abs(cycle.shaft_tilt[row]))
+    tilts = cam_of(solution, cycle).shaft_tilts
+    slope = max(float(abs(each[row])) for each in tilts)
     figures = tuple(map(solution.machine.limits.source, (AXIS_PARALLELISM, CAM_RUN_OUT)))
     note = f"{shown(slope, 'mrad', 3)} of it by the camshaft"
     return replace(demand, note=note, figures=figures, stated={"phi": slope})
@@ -381,7 +382,8 @@ def roller_misalignment(cam: LoadedCam) -> Array:
     numbers = cam.numbers
     guides = numbers.known_case.guides.tilt_at(numbers["guides.spacing"])
     run_out = numbers.limit(CAM_RUN_OUT) / (2.0 * base_radius(numbers))
-    return magnitude(cam.shaft_tilt) + (numbers.limit(AXIS_PARALLELISM) + run_out + guides)
+    tilt = _greatest([magnitude(each) for each in cam.shaft_tilts])
+    return tilt + (numbers.limit(AXIS_PARALLELISM) + run_out + guides)
 
 
 roller_load_share = check(

@@ -45,7 +45,6 @@ from camwright.pipeline.follower.shaft_strength import (
     couple_compliance,
     in_the_normal,
     of_disc,
-    slope_under,
     slopes_of,
 )
 from camwright.pipeline.follower.spring import end_travel, lever
@@ -730,23 +729,43 @@ class LoadedCam:
 
     @cached_property
     def shaft_tilt(self) -> Array:
-        """Slope of the camshaft at the cam in the plane of the contact normal, rad.
+        """Slope of the camshaft at the cam in the plane of the contact normal (..., n), rad; 0 of a
+        rigid one.
 
         As of `Cycle.shaft_tilt`.
         """
+        return np.asarray(of_disc(self._disc_tilts, self.wall < 0.0))
+
+    @property
+    def shaft_tilts(self) -> tuple[Array, ...]:
+        """`shaft_tilt`; of two preloaded discs, both of which are pressed, that of each."""
+        return (self.shaft_tilt,) if len(self.rollers) == 1 else self._disc_tilts
+
+    @cached_property
+    def _disc_tilts(self) -> tuple[Array, ...]:
+        """Slope at each disc in the plane of the normal of its own contact (..., n), rad."""
         shaft = None if self.numbers.case is None else self.numbers.case.camshaft
-        if shaft is None or not self.shaft_slopes:
-            return np.zeros(self.normal.shape)
+        bodies, slopes = self.on_bodies, self.shaft_slopes
+        if shaft is None or not slopes:
+            return tuple(np.zeros(self.normal.shape) for _ in bodies)
         travel, (on_discs, held), pushes = self.motion.travel, self.thrown, list[Array]()
-        for (motion, axial, _, turned), thrown in zip(self.on_bodies, on_discs, strict=True):
+        for (motion, axial, _, turned), thrown in zip(bodies, on_discs, strict=True):
             cos, sin = np.cos(travel + turned), np.sin(travel + turned)
             along, across = axial * motion.pressing, axial * motion.side
             pushes.append(
                 thrown - np.stack([along * cos + across * sin, across * cos - along * sin])
             )
-        gear, pulls = gear_force(self.torque, shaft), self.wall < 0.0
-        bent = slope_under(self.shaft_slopes, pushes, gear, held, pulls)
-        return in_the_normal(bent, self.motion.pressure_angle - travel - self.turned)
+        gear = gear_force(self.torque, shaft)
+        if len(bodies) == 1:
+            bent = slopes[0].under(pushes[0], gear, held)
+            return (in_the_normal(bent, self.motion.pressure_angle - travel - self.turned),)
+        return tuple(
+            in_the_normal(
+                at.under(on, gear, held, beside),
+                each.motion.pressure_angle - travel - each.turned,
+            )
+            for each, at, on, beside in zip(bodies, slopes, pushes, pushes[::-1], strict=True)
+        )
 
     @property
     def contact_radius(self) -> Value:

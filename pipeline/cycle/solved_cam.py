@@ -257,6 +257,11 @@ class SolvedCam(ForcesCam):
         return self.cycle.shaft_tilt
 
     @property
+    def shaft_tilts(self) -> tuple[Array, ...]:
+        other = self.cycle.on_other_track
+        return (self.shaft_tilt,) if other is None else (self.shaft_tilt, other.shaft_tilt)
+
+    @property
     def jam_worst(self) -> Array:
         return self.cycle.parts.friction.greatest.jam_index
 

@@ -172,6 +172,43 @@ def test_the_unbalance_of_two_discs_is_that_at_both_bearings():
     assert unbalance > 1.05 * static
 
 
+def test_rings_of_both_preloaded_rollers_are_judged_by_the_slope_of_their_disc():
+    """Slopes of beam elements in the normal of each contact; that of the second disc is greater.
+
+    The roller that carries has a slope less by a fifth.
+    """
+    text = (DATA / "preloaded_feeder.toml").read_text(encoding="utf-8")
+    for old, new in (
+        ('cam_position = "35 mm"', 'cam_position = "52 mm"'),
+        ('spacing = "34 mm"', 'spacing = "41 mm"'),
+        ('roller_radius = "23.5 mm"', 'roller_radius = "19 mm"'),
+        ('distance = "154 mm"', 'distance = "168 mm"'),
+        ('mass = "2.5 kg"', 'mass = "4.1 kg"'),
+        ('overspeed = "220 rpm"', 'overspeed = "380 rpm"'),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    trial = preview_case(parse_case(text), corners=False)
+    (check,) = (each for each in trial.checks if each.id == "roller_misalignment")
+    carrying, tilted = [], []
+    for cycle in trial.cycles:
+        shaft, loads = cycle.machine.camshaft, cycle.shaft
+        beam = flexibility(shaft, (0.052, 0.093, shaft.gear_position))
+        acting = np.stack([loads.cam, loads.second.force, loads.gear])
+        track = cycle.machine.cam.second.track(cycle.contour.pitch)
+        first = cycle.contour.pitch.pressure_angle(cycle.theta)
+        second = track.contour.pitch.pressure_angle(cycle.theta + np.pi) - np.pi
+        slopes = np.einsum("kj,jin->kin", beam[3:5, :3], acting)
+        at_discs = [
+            np.abs(slope[0] * np.cos(angle) + slope[1] * np.sin(angle))
+            for slope, angle in zip(slopes, (first, second), strict=True)
+        ]
+        tilted.append(np.max(at_discs))
+        carrying.append(np.abs(cycle.shaft_tilt).max())
+    assert check.stated["phi"] == pytest.approx(max(tilted), rel=1e-6)
+    assert max(carrying) < 0.9 * max(tilted)
+
+
 def test_the_wall_over_the_keyway_is_that_of_the_smaller_disc():
     """Of the second one 150 - 68 - 18 - 23.5 - 15 - 3.3 = 22.2 mm, of the first 26.2 mm."""
     text = (DATA / "preloaded_feeder.toml").read_text(encoding="utf-8")
