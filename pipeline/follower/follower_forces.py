@@ -733,14 +733,16 @@ def follower_loads(
         )
         if system.held:
             swung, wall = _swung(pitch, system, theta)(demand, pull, np.sign(slope))
-    squeeze, guided = system.squeezed(pitch, theta), in_guides(pitch, system, theta)
-    pressed_axial = None if guided is None else guided(demand, np.sign(slope))
-    if pressed_axial is not None:
-        wall = wall_of(pressed_axial, held=True)
-    carrying, stem_force = Carried.at(pitch, system, theta, wall), None
-    if squeeze is not None and pressed_axial is not None:
-        side_loads = SideLoads.of(*sides_of(pitch, system, theta), squeeze.forces(pressed_axial))
-        carrying, stem_force = carrying.with_both(side_loads, wall), wall * side_loads.force
+    guided = in_guides(pitch, system, theta)
+    squeeze = system.squeezed(pitch, theta) if guided is None else guided.squeeze
+    tracks = () if squeeze is None else _both_carried(pitch, system, theta)
+    if guided is not None:
+        guided_axial = guided(demand, np.sign(slope))
+        wall = wall_of(guided_axial, held=True)
+        both = SideLoads.of(*_sides(*tracks), guided.squeeze.forces(guided_axial))
+    carrying = Carried.at(pitch, system, theta, wall)
+    if guided is not None:
+        carrying = carrying.with_both(both, wall)
     slide, push, pressure_angle = carrying.slide, carrying.push, carrying.pressure_angle
     overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift) + carrying.reach
     on_points = push.on_points(*levers(overhang, system.guide_spacing))
@@ -754,14 +756,11 @@ def follower_loads(
         held = swung or pivot.clipped(demand, pressed, pull, np.sign(slope), JAM_FLOOR)
         axial_force, jam_index, pivot_friction = held.axial, held.jam_index, held.friction
         pivot_load = np.stack(pressed.total(axial_force, pull))
-    if pressed_axial is not None:
-        axial_force = pressed_axial
-    if stem_force is None:
-        stem_force = axial_force
-    side_load = stem_force * wall * push.side_factor
-    driving_jam = np.sign(slope * wall) * jam_index
+    stem_force, driving_jam = axial_force, np.sign(slope * wall) * jam_index
     if guided is not None:
+        axial_force, stem_force = guided_axial, wall * both.force
         driving_jam = driving(guided.jams, np.sign(slope))
+    side_load = stem_force * wall * push.side_factor
     friction_a = system.friction_a * rubbing_a * side_load
     friction_b = system.friction_b * rubbing_b * side_load
     sliding = axial_force * slide.torque
@@ -773,7 +772,7 @@ def follower_loads(
     tangential_force = stem_force * push.side
     idle_force = pressed_along = np.zeros(theta.size)
     if squeeze is not None:
-        forces, tracks = squeeze.forces(axial_force), _both_carried(pitch, system, theta)
+        forces = squeeze.forces(axial_force)
         along, across = (
             sum(sign * force * np.asarray(getattr(each.slide, name))
                 for sign, force, each in zip((1.0, -1.0), forces, tracks, strict=True))
@@ -910,7 +909,11 @@ def sides_of(
     """Side load of each track over the axial force at cam angles (n,), and by how much the second
     is farther from the guides (n,), m.
     """
-    first, second = _both_carried(pitch, system, theta)
+    return _sides(*_both_carried(pitch, system, theta))
+
+
+def _sides(first: Carried, second: Carried) -> tuple[tuple[Array, Array], Array]:
+    """`sides_of` both tracks by their contacts."""
     return (first.push.side, second.push.side), np.asarray(second.reach)
 
 
