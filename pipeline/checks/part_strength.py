@@ -28,7 +28,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check, of_key
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, force_over, normal_force
-from camwright.pipeline.checks.extremes import Measure, cycle_of, worst_case
+from camwright.pipeline.checks.extremes import Measure, cam_of, cycle_of, worst_case
 from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
@@ -181,8 +181,8 @@ def _with_card_of_pin(demand: Demand, solution: Solution) -> Demand:
     part="pin",
     kept_as="normal force at the bending fatigue of the roller pin",
     formula="s_W (1 - max(s_m, 0)/R_m)/s_a >= S; s_a, s_m: amplitude and mean of the bending stress"
-    " of a fibre over a turn, s_W: fatigue strength in bending, R_m: tensile strength, S:"
-    " limits.pin_fatigue_safety; worst fibre and load case.",
+    " of a fibre over a turn, of two discs of either pin, s_W: fatigue strength in bending, R_m:"
+    " tensile strength, S: limits.pin_fatigue_safety; worst fibre and load case.",
     symbols={
         **dict.fromkeys(("s_a", "s_m"), f"{STATED} [MPa]"),
         "s_W": "roller.pin.material.fatigue_bending",
@@ -207,7 +207,7 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     along, across = np.cos(uniform_turn(_PIN_FIBRES)), np.sin(uniform_turn(_PIN_FIBRES))
 
     def of_fibres(cycle: Cycle) -> tuple[Array, Array]:
-        """Amplitude and mean of the stress, Pa."""
+        """Amplitude and mean of the stress, Pa, of the fibres of each pin."""
         loads = cycle.loads
         greatest = roller.pin_stress(loads.normal_force, cycle.pin_couple)
         per_newton = np.divide(
@@ -216,7 +216,12 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
             out=np.zeros_like(loads.normal_force),
             where=loads.normal_force > 0.0,
         )
-        force = np.outer(loads.axial_force, along) + np.outer(loads.tangential_force, across)
+        forces = [(loads.axial_force, loads.tangential_force)]
+        if loads.second is not None and loads.second.own_disc:  # each roller on a pin of its own
+            bodies = cam_of(solution, cycle).on_bodies
+            turned = [(each.normal, each.motion.pressure_angle) for each in bodies]
+            forces = [(force * np.cos(at), force * np.sin(at)) for force, at in turned]
+        force = np.hstack([np.outer(x, along) + np.outer(y, across) for x, y in forces])
         stress = per_newton[:, None] * force
         high, low = stress.max(axis=0), stress.min(axis=0)
         return 0.5 * (high - low), 0.5 * (high + low)

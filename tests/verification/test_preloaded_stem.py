@@ -303,6 +303,29 @@ def test_bearings_of_both_rollers_by_the_forces_and_speed_of_each():
     )
 
 
+def test_the_pin_of_each_roller_bends_under_the_force_of_its_own_contact():
+    """Goodman's line of the fibres of either pin by the forces of the contacts in fixed axes.
+
+    Both side loads and the axial force of both on one pin have 1.9 times the amplitude.
+    """
+    trial = preview_case(uneven(), corners=False)
+    (check,) = (each for each in trial.checks if each.id == "roller_pin_fatigue")
+    (cycle,) = (each for each in trial.cycles if each.load_case == check.load_case)
+    card, pin = cycle.machine.roller.pin.material, cycle.machine.roller.pin
+    track = cycle.machine.cam.second.track(cycle.contour.pitch)
+    discs, used = ((cycle.contour, 0.0), (track.contour, track.turn)), []
+    per_newton = cycle.parts.pin_stress / cycle.loads.normal_force
+    for size, (disc, turn) in zip(normals(cycle.loads), discs, strict=True):
+        _, (across, along) = unit(disc, cycle.theta, turn)
+        for fibre in np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False):
+            stress = per_newton * size * (along * np.cos(fibre) + across * np.sin(fibre))
+            high, low = stress.max(), stress.min()
+            mean = max(0.5 * (high + low), 0.0)
+            used.append(0.5 * (high - low) / (1.0 - mean / card.tensile_strength))
+    assert pin.mounting == "overhung"
+    assert check.demand == pytest.approx(card.fatigue_bending / max(used), rel=3e-4)
+
+
 @pytest.mark.slow
 def test_every_sheet_of_a_run_agrees(tmp_path):
     """The jam index over the sum of both forces, life and fit without a spring."""
