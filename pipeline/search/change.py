@@ -51,8 +51,14 @@ class Change:
         return ", ".join(f"{key}: {value}" for key, value in self.values)
 
     def is_numbers_of(self, case: Case) -> bool:
-        """Whether all values are numbers that replace numbers of a case."""
-        return not any(key in PARTS or value_of(case, key) is None for key, _ in self.values)
+        """Whether all values are numbers that replace numbers of a case.
+
+        Those of a material are not: its bodies, which name it, have them by reading the case.
+        """
+        return not any(
+            key in PARTS or key.startswith("materials.") or value_of(case, key) is None
+            for key, _ in self.values
+        )
 
     def applied(self, case: Case, folder: Path | None) -> Case:
         """A case with the values, read and checked as a case file.

@@ -262,3 +262,11 @@ def test_numbers_are_printed_without_an_exponent() -> None:
     assert without_exponent(2901.9, "rpm") == "27710 rpm"
     assert without_exponent(0.7085, "", 3) == "0.709"
     assert PARTS == (BEARING, CAM_MATERIAL, BUSH_A, "guides.b", BUSH_PIVOT)
+
+
+def test_a_number_of_a_material_reaches_the_bodies_that_name_it() -> None:
+    """A quick judgement reads such a case anew; put in place it ended in an error of the program."""
+    case = read_case(GX120)
+    depth = f"materials.{case.cam.material.name}.case_depth"
+    changed = Judge(case, {}).case(Change(((depth, "2 mm"),)), quick=True)
+    assert changed.cam.material.case_depth == pytest.approx(2e-3)
