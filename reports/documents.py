@@ -456,8 +456,8 @@ def _groove_note(record: Record) -> str:
     if "steps" in record:
         rollers = "rollers"
         relieved = (
-            "the walls opposite to the rollers in contour_ and cutter_inner_relief.csv and "
-            "_outer_relief.csv; "
+            "the walls without a roller in contour_inner_relief.csv and contour_outer_relief.csv, "
+            "paths of the cutter in cutter_inner_relief.csv and cutter_outer_relief.csv; "
         )
     return (
         f"Groove: the contour is its inner wall; outer wall in contour_outer.csv, inspection of "

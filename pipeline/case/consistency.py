@@ -354,6 +354,7 @@ def _conjugate(case: Case, second: CamConjugate) -> None:
         states one of the other kind of follower.
     """
     pair, arm = 'cam.closure = "conjugate"', case.follower.arm is not None
+    kind = 'follower.kind = "oscillating"' if arm else "a stem"
     if case.roller_given is None or case.rocker is not None:
         limit = f'"roller", or "oscillating" with a roller, with {pair}'
         raise InputError("follower.kind", case.follower.kind, limit)
@@ -363,13 +364,14 @@ def _conjugate(case: Case, second: CamConjugate) -> None:
         limit += ", or cam.conjugate.interference in its place"
         raise InputError("cam.conjugate.clearance", beside, limit)
     of_stem, of_arm = ("distance",), ("arm_length", "arm_angle")
+    for key in of_stem if arm else of_arm:
+        if getattr(second, key) is not None:
+            place = ", ".join(of_arm if arm else of_stem)
+            limit = f"left out with {kind}, which has {place} in its place"
+            raise InputError(f"cam.conjugate.{key}", text_of(case, f"cam.conjugate.{key}"), limit)
     for key in of_arm if arm else of_stem:
         if getattr(second, key) is None:
-            raise InputError(f"cam.conjugate.{key}", "missing", f"given with {pair}")
-    for key in of_stem if arm else of_arm:
-        if (stated := getattr(second, key)) is not None:
-            limit = f"left out, of {'a stem' if arm else 'an arm'}"
-            raise InputError(f"cam.conjugate.{key}", f"{stated:g}", limit)
+            raise InputError(f"cam.conjugate.{key}", "missing", f"given with {pair} and {kind}")
 
 
 def _discs() -> Iterator[Rule]:

@@ -86,7 +86,7 @@ def check_text(one: Declaration) -> CheckText:
         decision=f"{decides}. {sentence(one.reason)}",
         load_end=_LOAD_END[one.rests_on],
         depth=depth,
-        rests_on=one.values,
+        rests_on=tuple(dict.fromkeys(one.values)),
     )
 
 

@@ -291,7 +291,7 @@ def _listed(row: Mapping[str, Any], titles: Iterable[tuple[str, tuple[str, ...],
     """
     parts = []
     for title, keys, unit in titles:
-        known = [f"{row[key]:.5g}" for key in keys if row[key] is not None]
+        known = [f"{row[key] + 0.0:.5g}" for key in keys if row[key] is not None]  # no -0
         parts += [f"{title} {' to '.join(known)} {unit}"] if known else []
     return ", ".join(parts)
 

@@ -7,9 +7,10 @@ from check_tools import BY_ID
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.keys import case_keys, keys_at
+from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.commands.explain_command import WIDTH, explain
 from camwright.pipeline.results.check_report import sentence
-from camwright.pipeline.results.check_text import checks_with, program_sources
+from camwright.pipeline.results.check_text import check_text, checks_with, program_sources
 
 
 def explained(capsys: pytest.CaptureFixture[str], *words: str) -> str:
@@ -53,6 +54,9 @@ def test_a_check_has_formula_limit_source_load_cases_and_what_it_rests_on(capsys
     for words in (one.formula, one.method, one.load_cases, "limits.jam_index, default 0.5"):
         assert words.rstrip(".") in text
     assert "rests on spring.rate, spring.preload" in text
+    for each in DECLARED.values():
+        names = check_text(each).rests_on
+        assert len(names) == len(set(names)), each.id
 
 
 def test_a_table_lists_its_keys_and_tables(capsys):

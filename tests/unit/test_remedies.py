@@ -265,7 +265,7 @@ def test_numbers_are_printed_without_an_exponent() -> None:
 
 
 def test_a_number_of_a_material_reaches_the_bodies_that_name_it() -> None:
-    """A quick judgement reads such a case anew; put in place it ended in an error of the program."""
+    """A quick judgement reads such a case anew: in place no body would see the number."""
     case = read_case(GX120)
     depth = f"materials.{case.cam.material.name}.case_depth"
     changed = Judge(case, {}).case(Change(((depth, "2 mm"),)), quick=True)

@@ -245,12 +245,12 @@ def test_a_failure_without_a_remedy_is_followed_by_the_command_that_seeks_one() 
 def test_figures_of_a_load_case_without_loads_are_left_out() -> None:
     row = {
         "load_case": "idle", "speed_rpm": 600.0, "cam_speed_rpm": 300.0, "normal_force_min_N": -3.0,
-        "normal_force_max_N": None, "drive_torque_min_Nm": None, "drive_torque_max_Nm": None,
+        "normal_force_max_N": None, "drive_torque_min_Nm": -0.0, "drive_torque_max_Nm": None,
         "p0_hertz_max_MPa": None, "half_width_max_mm": None,
     }  # fmt: skip
     cam = {"lift_max_mm": 20.0, "pressure_angle_max_deg": 23.2333, "convex_radius_min_mm": None,
            "cam_radius_max_mm": 60.0}  # fmt: skip
     assert figure_lines(cam | {"load_cases": [row]}) == [
         "figures: lift 20 mm, pressure angle 23.233 deg, cam radius 60 mm",
-        "figures of idle at 600 rpm, cam 300 rpm: contact force -3 N",
+        "figures of idle at 600 rpm, cam 300 rpm: contact force -3 N, torque on the cam 0 N m",
     ]
