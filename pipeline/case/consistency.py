@@ -311,12 +311,10 @@ def _stores(case: Case, stated_as: str) -> None:
         limit = "> 0 without [lift]: the lift of a spring that pulls needs a force linear in it"
         raise InputError(key, text_of(case, key), limit)
     if case.smoothing.kind == "constrained" and (
-        (case.cam.groove is not None and case.cam.second is not None)
-        or not (case.cam.clearance > 0.0 and case.spring.preload > 0.0)
+        case.cam.on_pin is not None or not (case.cam.clearance > 0.0 and case.spring.preload > 0.0)
     ):
         limit = f"a filter with {stated_as}: it is done for a groove of one roller, for discs and"
-        limit += " for a yoke, with a clearance and a"
-        limit += " spring.preload > 0 N"
+        limit += " for a yoke, with a clearance and a spring.preload > 0 N"
         raise InputError("smoothing.kind", "constrained", limit)
 
 

@@ -152,8 +152,8 @@ def _on_points(demand: Demand, solution: Solution) -> Demand:
     tier=Tier.SCREENING,
     part="guides",
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise; R: sum of the pushes on both sides"
-    " of a guide, mu: its nominal friction, F_a: axial force of the cam, of preloaded"
-    " discs that of both, j: limits.jam_index.",
+    " of a guide, mu: its nominal friction, F_a: axial force of the cam, of preloaded discs"
+    " that of both, j: limits.jam_index.",
     symbols={
         "mu_A": "guides.a.friction",
         "mu_B": "guides.b.friction",
@@ -211,8 +211,7 @@ def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     part="guides",
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise, at guides.*.friction_max or the"
     " tolerance of friction; mu: that friction, R: sum of the pushes on both sides of a guide under"
-    " it, F_a: axial force of the cam, of preloaded"
-    " discs that of both, j: limits.jam_index.",
+    " it, F_a: axial force of the cam, of preloaded discs that of both, j: limits.jam_index.",
     symbols={
         "mu_A": STATED,
         "mu_B": STATED,

@@ -30,8 +30,7 @@ class WallImpact(NamedTuple):
     """Landing on a wall, with what it does there.
 
     flight; force : greatest normal force, N, of the mass on the stiffness of the follower, NaN
-    without one; pressure : under it, Pa, of Hertz or conforming; loss : energy that it
-    takes, J
+    without one; pressure : under it, Pa, of Hertz or conforming; loss : energy that it takes, J
     """
 
     flight: Landing
@@ -215,8 +214,8 @@ def impacts(machine: Machine, contour: Contour) -> tuple[WallImpact, ...]:
 def landed(machine: Machine, contour: Contour, flown: Flights | None) -> tuple[WallImpact, ...]:
     """What the landings of flights do to their tracks.
 
-    A mass m that lands at v under a force F on a
-    stiffness k is stopped by F + sqrt(F^2 + k m v^2); contact and walls are taken as rigid.
+    A mass m that lands at v under a force F on a stiffness k is stopped by
+    F + sqrt(F^2 + k m v^2); contact and walls are taken as rigid.
     """
     landings = () if flown is None else flown.landings
     ended = [k for k, one in enumerate(landings) if np.isfinite(one.landing)]
