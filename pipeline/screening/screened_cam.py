@@ -171,17 +171,16 @@ class ScreenedCam(CarriedCam):
             supports = block.supports_under(side, np.zeros_like(side), reach * far)
             on_a, on_b = supports.rubbing(loads.force)
             rubs = friction.a * on_a + friction.b * on_b
+            jams = rubs * np.abs(first.side), rubs * np.abs(other.side)
             if settled.all():
                 break
-            jams = rubs * np.abs(first.side), rubs * np.abs(other.side)
             now = PressedGuides(squeeze, jams)(required, direction)
             moved = np.where(settled, 0.0, now - axial)
             axial = axial + moved
             settled |= np.abs(moved) <= _FRICTION_SETTLED * loads.force
         factor = np.where(settled, supports.factor, np.nan)
-        jam = driving((rubs * np.abs(first.side), rubs * np.abs(other.side)), direction)
         rubbing = OfGuides(on_a * factor, on_b * factor)
-        return PressedStem(axial, loads, supports, rubbing, jam)
+        return PressedStem(axial, loads, supports, rubbing, driving(jams, direction))
 
     @cached_property
     def wall(self) -> Array:
