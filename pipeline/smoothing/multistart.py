@@ -159,8 +159,8 @@ def explored(problem: Problem, count: int) -> Explored:
         first = replace(problem, effort=problem.effort // 2)
     designs, resolution = resolved(problem, continued(first, start))
     fine = replace(problem, coefficients=designs[-1].coefficients.size)
-    size = float(np.abs(Search(coarse).exact).max())
-    others = [continued(fine, approached(_random(coarse, size, random))) for _ in range(count - 1)]
+    exact = Search(coarse).exact
+    others = [continued(fine, approached(_random(coarse, exact, random))) for _ in range(count - 1)]
     alike = [designs[-1], *others]
     ripples = tuple(each.ripple if each.feasible else None for each in alike)
     best = _best([*alike, *designs]) or min(alike, key=lambda each: each.violation)
@@ -208,7 +208,7 @@ def _best(designs: Sequence[Design]) -> Design | None:
     return min(feasible, key=lambda each: each.objective) if feasible else None
 
 
-def _random(problem: Problem, size: float, random: np.random.Generator) -> Problem:
+def _random(problem: Problem, exact: Array, random: np.random.Generator) -> Problem:
     """Problem whose search starts from a random smooth energy, a Fourier series of random phases
     and amplitudes falling with 1/order^2, and from random values of the free variables within their
     ranges.
@@ -216,10 +216,11 @@ def _random(problem: Problem, size: float, random: np.random.Generator) -> Probl
     Parameters
     ----------
     problem : Problem    whose start is replaced
-    size : float         order of magnitude of the energy, J: its range is 0.3 to 1.2 of it
+    exact : array        coefficients that balance the torque; the range of the energy is 0.3 to 1.2
+                         of the greatest of them
     random : Generator   of the random numbers
     """
-    count = problem.coefficients
+    count, size = problem.coefficients, float(np.abs(exact).max())
     order = np.arange(1, count // 4)
     theta = uniform_turn(count)
     phase = random.uniform(0.0, 2.0 * np.pi, order.size)
@@ -232,8 +233,8 @@ def _random(problem: Problem, size: float, random: np.random.Generator) -> Probl
     for name, (least, greatest) in problem.freed.items():
         variables = variables.with_value(name, float(random.uniform(least, greatest)))
     if variables.of_lift:  # a lift of the other sign would have to pass none
-        waves = Search(problem).exact + _OF_EXACT * energy
-        return replace(problem, seed=of_constant_breadth(waves), variables=variables)
+        seed = of_constant_breadth(exact + _OF_EXACT * energy)
+        return replace(problem, seed=seed, variables=variables)
     return replace(problem, seed=readonly(energy), variables=variables)
 
 
