@@ -252,7 +252,13 @@ class RoundMotion(ABC):
 
     @cached_property
     def contact_point(self) -> tuple[Array, Array]:
-        inset = self.size / self.path_speed
+        return self.inside(self.size)
+
+    def inside(self, distance: Value) -> tuple[Array, Array]:
+        """Point at a distance, m, from the path towards the cam, below zero away from it, along and
+        across the travel, m.
+        """
+        inset = distance / self.path_speed
         return self.height * (1.0 - inset), self.travel_offset + inset * self.along
 
     @property

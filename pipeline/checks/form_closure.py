@@ -138,8 +138,9 @@ def _of_wall(demand: Demand, solution: Solution) -> Demand:
     needs="roller",
     closed_by="groove",
     formula="max(6 0.509 N/(R - |P|)^2) <= 2/((1/f + 1/R_m) S) where the outer wall carries; N:"
-    " normal force, R: cam.groove.outer_radius, P: point of the outer wall, f, R_m: fatigue limit"
-    " in bending and tensile strength of the cam, S: limits.fatigue_safety",
+    " normal force, R: cam.groove.outer_radius, P: point of the outer wall, of two rollers that of"
+    " the widest step at or below the second, f, R_m: fatigue limit in bending and tensile strength"
+    " of the cam, S: limits.fatigue_safety",
     symbols={
         "N": "normal_force",
         "R": "cam.groove.outer_radius",
@@ -155,7 +156,11 @@ def _of_wall(demand: Demand, solution: Solution) -> Demand:
 ).measured("angles", allowed=_wall_allowed, remark=_of_wall, deviation=0.02)
 def groove_wall(cam: LoadedCam) -> Array:
     """Bending stress at the root of the rim, Pa; infinite without a rim, 0 on the inner wall."""
-    thick = cam.numbers["cam.groove.outer_radius"] - cam.motion.contour_radius
+    numbers, path = cam.numbers, round_of(cam.motion)
+    second, point = numbers.known_case.cam.on_pin, path.contact_point
+    if second is not None:
+        point = path.inside(-numbers.of_part(second).rim_distance(numbers["roller.radius"]))
+    thick = numbers["cam.groove.outer_radius"] - np.sqrt(point[0] ** 2 + point[1] ** 2)
     left = np.where(thick > 0.0, thick, np.nan)
     stress = np.where(thick > 0.0, 6.0 * PLATE_MOMENT * cam.normal / left**2, np.inf)
     return np.where(cam.wall < 0.0, stress, 0.0 * cam.normal)

@@ -194,6 +194,15 @@ class GrooveRoller(Part):
         """Second roller on the path of the first."""
         return CoaxialRoller(self.radius)
 
+    def rim_distance(self, radius: Value) -> Value:
+        """Distance, m, of the outer wall from the path where the rim that bears it is thinnest.
+
+        At the face it presses above the relieved wall of the first roller, of a radius, m, which
+        bears the rim at the floor; below, that of the larger first roller is above it, unloaded.
+        """
+        relieved = np.maximum(self.radius, radius + self.relief)
+        return np.where(self.radius > radius, relieved, self.radius)
+
     def beyond(self, radius: Value) -> Value:
         """Distance by which it is farther into the groove than the first roller, of a radius, m."""
         return np.where(self.radius > radius, -self.spacing, self.spacing)

@@ -99,6 +99,17 @@ def test_a_roller_in_a_groove_passes_certified(tmp_path, name):
 
 
 @pytest.mark.slow
+def test_a_groove_of_two_steps_passes_certified(tmp_path):
+    """Each roller carries on its own wall, by finite elements as by Hertz."""
+    case = read_case(CASES.parent / "tests" / "data" / "stepped_groove.toml")
+    summary = run_case(case, tmp_path / "run", positions=180, progress=Silent()).summary
+    assert summary["verdict"] == "pass", summary["binding"]
+    final = read_run(tmp_path / "run").final
+    assert set(np.unique(final.cycle["wall"])) == {-1.0, 1.0}
+    assert np.abs(final.cycle["p0_difference_percent"]).max() < 0.1
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["transfer-conjugate", "pump-yoke"])
 def test_two_tracks_pass_certified(tmp_path, name):
     """Both discs of a pair, both faces of a yoke carry; finite elements agree with Hertz."""

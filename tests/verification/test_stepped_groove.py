@@ -22,6 +22,7 @@ from camwright.geometry.second_track import CoaxialRoller
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks.form_closure import PLATE_MOMENT
 from camwright.pipeline.checks.tolerance_corners import corners_of
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
@@ -319,6 +320,24 @@ def test_own_tolerance_of_the_second_roller_at_the_corners():
     plain = corners_of(parse_case(text.replace('roller_tolerance = "5 um"', "")))
     assert "roller radius low" not in {each.name for each in plain}
     assert [corners["roller radius low"].rollers] == [-3e-6]
+
+
+@pytest.mark.parametrize(("radius", "at"), [(0.021, 0.021), (0.0236, 0.0240), (0.0246, 0.0246)])
+def test_the_rim_is_judged_where_it_is_thinnest_below_the_second_roller(radius, at):
+    """Of a second roller at the face the relieved wall below it bears the rim at the floor; one
+    below has the relieved wall above it, unloaded. Points of both walls, 0.509 F, 1e-9.
+    """
+    text = FILE.read_text(encoding="utf-8")
+    text = text.replace('radius = "21 mm"', f'radius = "{radius} m"', 1)
+    whole = preview_case(parse_case(text), corners=False)
+    stress = 0.0
+    for cycle in whole.cycles:
+        path, loads = cycle.contour.pitch, cycle.loads
+        wall = np.hypot(*(path.points(loads.theta) + at * path.normal(loads.theta)))
+        pulled = np.where(loads.axial_force < 0.0, loads.normal_force, 0.0)
+        stress = max(stress, (6.0 * PLATE_MOMENT * pulled / (0.125 - wall) ** 2).max())
+    (judged,) = (each for each in whole.checks if each.id == "groove_wall")
+    assert judged.demand == pytest.approx(stress, rel=1e-9)
 
 
 # --- the body ---------------------------------------------------------------------------------
