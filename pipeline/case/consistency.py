@@ -364,8 +364,8 @@ def _conjugate(case: Case, second: CamConjugate) -> None:
     of_stem, of_arm = ("distance",), ("arm_length", "arm_angle")
     for key in of_stem if arm else of_arm:
         if getattr(second, key) is not None:
-            place = ", ".join(of_arm if arm else of_stem)
-            limit = f"left out with {kind}, which has {place} in its place"
+            others = ", ".join(of_arm if arm else of_stem)
+            limit = f"left out with {kind}, which has {others} in its place"
             raise InputError(f"cam.conjugate.{key}", text_of(case, f"cam.conjugate.{key}"), limit)
     for key in of_arm if arm else of_stem:
         if getattr(second, key) is None:
