@@ -293,16 +293,32 @@ def _by_track(
     material: ReportMaterial, view: TurnView, stations: int
 ) -> tuple[Array, Array | None] | None:
     """Maximum von Mises stress, MPa, at equal cam angles (stations,) on the first and the second
-    track, 0 where the other one carries; second None of one track, and None without a map.
+    track, 0 where the other one carries, of preloaded discs less in proportion to its pressure;
+    second None of one track, and None without a map.
     """
     greatest = _greatest(material, view, stations)
     rows = material.run.final.cycle.of_load_case(view.load_case)
     if greatest is None or "wall" not in rows:
         return None if greatest is None else (greatest, None)
     angle = np.linspace(0.0, 360.0, stations, endpoint=False)
-    wall = np.sign(np.interp(angle, rows["cam_angle_deg"], rows["wall"], period=360.0))
-    first, second = (np.where(wall == side, greatest, 0.0) for side in (1.0, -1.0))
-    return first, second
+    first, second = shares_of_tracks(rows, angle)
+    return first * greatest, second * greatest
+
+
+def shares_of_tracks(rows: Table, angle: Array) -> tuple[Array, Array]:
+    """Contact pressure of the first and the second track over the greater of both at cam angles
+    (n,), deg: 1 where a track carries alone, and 0 on the other.
+    """
+    at, wall = rows["cam_angle_deg"], rows["wall"]
+    if "idle_p0_hertz_MPa" not in rows:
+        carries = np.sign(np.interp(angle, at, wall, period=360.0))
+        return np.asarray(1.0 * (carries == 1.0)), np.asarray(1.0 * (carries == -1.0))
+    more, less = rows["p0_hertz_MPa"], rows["idle_p0_hertz_MPa"]
+    pressures = np.where(wall > 0.0, more, less), np.where(wall > 0.0, less, more)
+    first, second = (np.interp(angle, at, each, period=360.0) for each in pressures)
+    greater = np.maximum(first, second)
+    divisor = np.where(greater > 0.0, greater, 1.0)
+    return np.asarray(first / divisor), np.asarray(second / divisor)
 
 
 def _greatest(material: ReportMaterial, view: TurnView, stations: int) -> Array | None:

@@ -180,3 +180,19 @@ def test_colours_are_of_the_track_that_carries(material, view, monkeypatch):
     drawn = np.interp(view.angle, at, body["values"][: at.size])
     assert drawn == pytest.approx(second, abs=0.01)
     assert body["words"][0].startswith("second disc, cam 0.0")
+
+
+def test_both_preloaded_discs_are_under_stress():
+    """At two angles of which either disc has the greater pressure once; without a preload one."""
+    rows = {
+        "cam_angle_deg": np.array([0.0, 90.0, 180.0, 270.0]),
+        "wall": np.array([1.0, -1.0, 1.0, -1.0]),
+        "p0_hertz_MPa": np.array([100.0, 120.0, 80.0, 50.0]),
+    }
+    angle = np.array([0.0, 90.0, 180.0])
+    first, second = scene_page.shares_of_tracks(rows, angle)
+    assert (first.tolist(), second.tolist()) == ([1.0, 0.0, 1.0], [0.0, 1.0, 0.0])
+    pressed = rows | {"idle_p0_hertz_MPa": np.array([50.0, 90.0, 100.0, 40.0])}
+    first, second = scene_page.shares_of_tracks(pressed, angle)
+    assert first == pytest.approx([1.0, 0.75, 0.8])
+    assert second == pytest.approx([0.5, 1.0, 1.0])
