@@ -25,6 +25,7 @@ from camwright.pipeline.checks import roller_bearing
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.loaded_cam import TurningRoller
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening import design_screening
@@ -477,8 +478,10 @@ def test_a_design_of_unknown_force_leaves_the_others_their_grease_life() -> None
     normal[1, 0] = np.nan
 
     def greased(rows: slice) -> Array:
-        figures = {"normal": normal[rows], "spin": spin[rows], "spin_mean": spin[rows, :1]}
-        cam: Any = SimpleNamespace(numbers=Numbers({}, case), **figures)
+        roller = TurningRoller(normal[rows], spin[rows], spin[rows, :1])
+        cam: Any = SimpleNamespace(
+            numbers=Numbers({}, case), normal=normal[rows], rollers=(roller,)
+        )
         return roller_bearing.greased(cam)
 
     (alone,) = greased(slice(1))
