@@ -35,6 +35,7 @@ from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.certificate_angles import Position, begun
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.preview import smoothing_record
 from camwright.pipeline.records.run_summary import StatedVerdict
 from camwright.pipeline.results import check_records, run_reader, signoff
@@ -83,6 +84,7 @@ _OF_THE_TRIAL = ("why", "synthesis", "prices")
 _LAST = (signoff.NAME, signoff.SIGNATURES)
 _HASHES = "mesh.sha256"
 _NEGLIGIBLE = 1e-3
+_LOADED = 0.01  # of the greatest contact pressure, at a drawn angle
 _ELSEWHERE = "rests on more than the run holds and cannot be made again; make it anew"
 _LISTED = 5
 """Differences of a record that are listed."""
@@ -390,11 +392,7 @@ def _drawn_angles(
     worst = tuple(point for point in trial.certificate if not point.order_from)
     if not worst:
         return ()
-    loaded = [
-        Position(number, int(k))
-        for number, cycle in enumerate(trial.cycles)
-        for k in np.flatnonzero(np.nan_to_num(cycle.contact.p0) > 0)
-    ]
+    loaded = loaded_positions(trial.cycles)
     order = np.random.default_rng(seed).permutation(len(loaded))[:count]
     chosen = [loaded[k] for k in sorted(order)]
     progress.stage("drawn angles")
@@ -404,6 +402,20 @@ def _drawn_angles(
         _angle(run, trial, at.case, at.index, point)
         for at, point in zip(chosen, points, strict=True)
     )
+
+
+def loaded_positions(cycles: Sequence[Cycle]) -> list[Position]:
+    """Positions at which a contact has more than `_LOADED` of the greatest pressure.
+
+    A cam that pulls has hardly any force in its dwells and at standstill: no mesh resolves it.
+    """
+    pressures = [np.nan_to_num(cycle.contact.p0) for cycle in cycles]
+    least = _LOADED * max((float(each.max()) for each in pressures), default=0.0)
+    return [
+        Position(number, int(k))
+        for number, pressure in enumerate(pressures)
+        for k in np.flatnonzero(pressure > least)
+    ]
 
 
 def _angle(run: Run, trial: Trial, number: int, k: int, point: CertificatePoint) -> Angle:

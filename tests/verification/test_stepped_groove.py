@@ -32,6 +32,7 @@ from camwright.pipeline.cycle.cycle import turn_of_line
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.follower.follower_stiffness import pin_compliance
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.recomputation import loaded_positions
 
 FILE = Path(__file__).parents[1] / "data" / "stepped_groove.toml"
 
@@ -338,6 +339,19 @@ def test_the_rim_is_judged_where_it_is_thinnest_below_the_second_roller(radius, 
         stress = max(stress, (6.0 * PLATE_MOMENT * pulled / (0.125 - wall) ** 2).max())
     (judged,) = (each for each in whole.checks if each.id == "groove_wall")
     assert judged.demand == pytest.approx(stress, rel=1e-9)
+
+
+def test_a_recomputation_draws_no_angle_without_a_load():
+    """Of all three load cases; the force is 1e-13 of the greatest in the dwells at standstill."""
+    cycles = trial().cycles
+    drawn = {(each.case, each.index) for each in loaded_positions(cycles)}
+    force = [each.contact.line_load for each in cycles]
+    greatest = max(each.max() for each in force)
+    for number, loads in enumerate(force):
+        for k in np.flatnonzero(loads > 1e-3 * greatest):
+            assert (number, int(k)) in drawn
+        assert not {(number, int(k)) for k in np.flatnonzero(loads < 1e-6 * greatest)} & drawn
+    assert min(each.min() for each in force) < 1e-9 * greatest
 
 
 # --- the body ---------------------------------------------------------------------------------
