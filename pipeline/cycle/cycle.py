@@ -71,7 +71,7 @@ CONTOUR_RADIUS = Column("contour_radius_of_curvature", "mm", "Radius of curvatur
 BETWEEN = 8  # angles of the closed forms of the forces, over those at which guides are solved
 _ALONG = (
     *("spring_force", "applied_force", "inertia_force", "viscous_force"),
-    *("normal_force", "lift_slope", "jam_index"),
+    *("normal_force", "lift_slope", "jam_index", "driving_jam", "stem_force"),
 )
 _OF_CLEARANCE = ("flights", "impacts")
 """Results that change with the clearance between two tracks."""

@@ -42,9 +42,9 @@ def test_a_load_case_that_locks_is_not_certified(trial):
     (first, *_) = length_loads(cycles, [])
     number = next(n for n, cycle in enumerate(cycles) if cycle.load_case == first.load_case)
     turn = cycles[number].turn
-    index = turn.loads.jam_index.copy()
+    index = turn.loads.driving_jam.copy()
     index[np.argmax(turn.loads.lift_slope)] = 1.0
-    jammed = replace(turn, loads=replace(turn.loads, jam_index=index))
+    jammed = replace(turn, loads=replace(turn.loads, driving_jam=index))
     cycles[number] = replace(cycles[number], turn=jammed)
     assert cycles[number].end is not None
     assert first.load_case not in {load.load_case for load in length_loads(cycles, [])}

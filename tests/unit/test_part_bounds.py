@@ -21,7 +21,13 @@ from camwright.pipeline.case.lift_section import CamLiftPoint
 from camwright.pipeline.case.section import section_of
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.contact.axial_shape import AxialCrown
-from camwright.pipeline.contact.cam_body import BalanceHole, CamConjugate, CamGroove, CamYoke
+from camwright.pipeline.contact.cam_body import (
+    BalanceHole,
+    CamConjugate,
+    CamGroove,
+    CamYoke,
+    GrooveRoller,
+)
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.engine.cylinder import CylinderEngine, ExhaustLiftPoint
 from camwright.pipeline.engine.engine_torque import TorqueTable
@@ -114,6 +120,7 @@ def every_part() -> dict[type[Part], Part]:
         Pivot(needle_bearing=needles),
         BalanceHole(),
         CamGroove(clearance=2e-5, depth=0.012, outer_radius=0.09),
+        GrooveRoller(radius=0.021, spacing=0.0185, step_depth=0.0185, relief=5e-4),
         CamConjugate(roller_radius=0.015, distance=0.12, clearance=2e-5, spacing=0.02),
         CamYoke(clearance=5e-5),
         ExtensionSpring(

@@ -407,7 +407,7 @@ class _SizeSearch:
             FACE: "sized: travel of the contact and its half-width",
             RATE: f"sized: {spring.rate_by}",
             PRELOAD: f"sized: {spring.preload_by}",
-            **dict.fromkeys(PLACES, "sized: smallest second disc, as the first one grows"),
+            **dict.fromkeys(PLACES, "sized: the second disc grows as the first one"),
             SECOND_ROLLER: "sized: as the first roller",
         }
         return {key: words[key] for key in self.opened.gaps}
