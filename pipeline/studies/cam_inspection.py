@@ -75,6 +75,8 @@ def read_measured(path: Path, contour: Contour) -> Array:
     for pair in (*_PLACES, *_POLAR):
         if set(text.header).issuperset(pair):
             first, second = text.numbers([text.header.index(name) for name in pair], gaps=True).T
+            if not first.size:
+                raise InputError(f"{text.name}, {', '.join(pair)}", "empty", "measured in a row")
             if pair in _PLACES:
                 return np.stack([first, second]) * units.factor("mm")
             turned = np.radians(first)

@@ -102,3 +102,11 @@ def test_a_file_of_columns_names_line_and_column(content: str, named: str, tmp_p
     if "nothing" not in named:  # a row that was not measured
         with pytest.raises(CamError, match=measured):
             read_measured(path, ROUND)
+
+
+def test_a_sheet_without_a_measured_row_names_its_empty_columns(tmp_path: Path) -> None:
+    """As `camwright inspect` takes the sheet of a run before anybody has filled it."""
+    sheet = tmp_path / "sheet.csv"
+    sheet.write_text("measured_x_mm,measured_y_mm\n" + ",\n" * 20, encoding="utf-8")
+    with pytest.raises(CamError, match=r"measured_x_mm, measured_y_mm = empty, must be measured"):
+        read_measured(sheet, ROUND)
