@@ -18,6 +18,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.hand_check.hand_sheet import SheetRun
+from camwright.pipeline.results.file_differences import Origin, classes_of
 from camwright.pipeline.results.workshop_files import measured_surface, outline_of, write_workshop
 from camwright.pipeline.run import run_case
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of
@@ -60,6 +61,12 @@ def test_walls_and_paths_of_the_cutter(workshop, end):
     aside = ENDS[end] - 21.0 * side
     assert centre == pytest.approx(path + aside * normal, abs=1e-6)
     assert (workshop / f"inspection{end}.csv").exists() == (end in ("", "_outer"))
+
+
+def test_every_file_is_of_one_class_that_a_recomputation_compares(workshop):
+    for file in workshop.iterdir():
+        (of,) = classes_of(f"workshop/{file.name}", 1)
+        assert of.origin is (Origin.DRAWN if file.suffix in {".pdf", ".xlsx"} else Origin.SOLVED)
 
 
 def volume_of(path):
