@@ -88,13 +88,16 @@ def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> 
     result = yield
     if nextitem is None or nextitem.path != item.path:
         _clear_caches()
-        if _memory() > MOST:
-            _return_memory()
+        if _memory() > item.config.stash.get(_KEPT, GROWTH) + GROWTH:
+            item.config.stash[_KEPT] = _memory_returned()
     return result
 
 
-MOST = 1e9
-"""Bytes of a test process above which it searches for cycles and returns what glibc keeps."""
+GROWTH = 5e8
+"""Bytes by which a test process grows before it searches for cycles, a second or more, and returns
+what glibc keeps."""
+_KEPT = pytest.StashKey[float]()
+"""Memory after it last did so."""
 
 
 def _clear_caches() -> None:
@@ -116,11 +119,13 @@ def _memory() -> float:
     return float(pages.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-def _return_memory() -> None:
+def _memory_returned() -> float:
+    """Resident memory, bytes, after cycles are collected and free memory is returned."""
     gc.collect()
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:
         trim(0)
+    return _memory()
 
 
 DIED = 70
