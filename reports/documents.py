@@ -15,7 +15,7 @@ from camwright.pipeline.base.fits import size_of
 from camwright.pipeline.base.source import source_in
 from camwright.pipeline.base.spreadsheets import SUFFIX, Excerpt, spreadsheet
 from camwright.pipeline.base.tables import CAM_ANGLE
-from camwright.pipeline.base.units import celsius, parse
+from camwright.pipeline.base.units import celsius, parse, rounded
 from camwright.pipeline.base.worker_processes import Crew, PendingCall
 from camwright.pipeline.records.check_record import CheckRecord
 from camwright.pipeline.results.check_records import RecordedCheck, of_records
@@ -207,7 +207,8 @@ def _facts(material: ReportMaterial) -> Iterator[tuple[str, str]]:
 def _lubricant(case: Record) -> str:
     """Viscosity of the oil with its source and lubrication of the roller bearing, in words."""
     oil = case.get("lubricant", {})
-    parts = [*filter(None, (str(oil.get("viscosity", "")), str(source_in(oil.get("source")))))]
+    viscosity = rounded(str(oil.get("viscosity", "")))
+    parts = [*filter(None, (viscosity, str(source_in(oil.get("source")))))]
     bearing = case.get("roller", {}).get("bearing", {}).get("lubrication")
     parts = [*([f"roller bearing: {words(str(bearing))}"] if bearing else []), *parts]
     return ", ".join(parts) or "not stated"

@@ -90,6 +90,15 @@ def test_entries_left_out_are_fields_to_fill_and_bytes_repeat(tmp_path: Path) ->
     assert dict(stated.block)["Date"] == "2026-03-02"
 
 
+def test_a_viscosity_of_an_oil_card_is_printed_to_four_digits(tmp_path: Path) -> None:
+    """Interpolated to the temperature of the contact, it has as many digits as a number can."""
+    folder = report_fixture.write_run(tmp_path / "run", 36, field=False)
+    oil = {"viscosity": "244.02473435384217 mPa s", "source": "a card"}
+    material = with_document(read_material(folder), lubricant=oil)
+    facts = dict(documents.sheet_content(material).facts)
+    assert facts["Lubricant"].endswith("244 mPa s, a card")
+
+
 def test_a_source_to_be_confirmed_is_printed_as_such(tmp_path: Path) -> None:
     """In words wherever a sheet names it, never as the table of the case file."""
     folder = report_fixture.write_run(tmp_path / "run", 36, field=False)
