@@ -175,9 +175,9 @@ class ScreenedCam(CarriedCam):
             if settled.all():
                 break
             now = PressedGuides(squeeze, jams)(required, direction)
-            moved = np.where(settled, 0.0, now - axial)
-            axial = axial + moved
-            settled |= np.abs(moved) <= _FRICTION_SETTLED * loads.force
+            change = np.where(settled, 0.0, now - axial)
+            axial = axial + change
+            settled |= np.abs(change) <= _FRICTION_SETTLED * loads.force
         factor = np.where(settled, supports.factor, np.nan)
         rubbing = OfGuides(on_a * factor, on_b * factor)
         return PressedStem(axial, loads, supports, rubbing, driving(jams, direction))

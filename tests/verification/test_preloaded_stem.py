@@ -158,8 +158,8 @@ def test_the_preload_of_stated_compliances():
     """P = i/(cos alpha_2 (C_1 + C_2)), at rest over a dwell without an axial force."""
     machine, contour, track = pressed("uneven")
     theta = uniform_turn(60)
-    given = DiscPreload(15e-6, Compliances(20e-9, 32e-9))
-    squeeze = replace(machine.system, preload=given).squeezed(contour.pitch, theta)
+    preload = DiscPreload(15e-6, Compliances(20e-9, 32e-9))
+    squeeze = replace(machine.system, preload=preload).squeezed(contour.pitch, theta)
     angle = track.contour.pitch.pressure_angle(theta + np.pi)
     assert squeeze.preload == pytest.approx(15e-6 / np.cos(angle) / 52e-9, rel=1e-6)
     assert squeeze.share == pytest.approx(32.0 / 52.0, rel=1e-12)
@@ -177,26 +177,26 @@ def test_compliances_of_the_rollers_by_their_parts():
     assert stated == pytest.approx((25e-9, 25e-9), rel=1e-12)
 
 
-@pytest.mark.parametrize("preload", [40e-9, 4e-6, 20e-6])
-def test_both_rollers_are_springs_that_only_push(preload):
+@pytest.mark.parametrize("interference", [40e-9, 4e-6, 20e-6])
+def test_both_rollers_are_springs_that_only_push(interference):
     """The place of the stem between them by bisection; under little preload one is without load."""
     machine, contour, _ = pressed("uneven")
-    given = replace(machine.system.preload, interference=preload)
-    system, theta = replace(machine.system, preload=given), uniform_turn(120)
+    preload = replace(machine.system.preload, interference=interference)
+    system, theta = replace(machine.system, preload=preload), uniform_turn(120)
     loads = follower_loads(contour.pitch, system, 90.0, theta)
     (near, far), angle = machine.roller_compliances, pressed("uneven")[2].contour.pitch
     angle = angle.pressure_angle(theta + np.pi)
     low, high = np.full(120, -1e-3), np.full(120, 1e-3)
     for _ in range(90):
         y = 0.5 * (low + high)
-        pushed, pulled = np.maximum(-y, 0.0) / near, preload / np.cos(angle) + y
+        pushed, pulled = np.maximum(-y, 0.0) / near, interference / np.cos(angle) + y
         pulled = np.maximum(pulled, 0.0) / far
         over = pushed - pulled > loads.axial_force
         low, high = np.where(over, y, low), np.where(over, high, y)
     first, second = normals(loads)
     assert first * np.cos(contour.pitch.pressure_angle(theta)) == pytest.approx(pushed, rel=1e-6)
     assert second * np.cos(angle) == pytest.approx(pulled, rel=1e-6, abs=1e-6)
-    assert (pulled.min() > 0.0) == (pushed.min() > 0.0) == (preload > 10e-6)
+    assert (pulled.min() > 0.0) == (pushed.min() > 0.0) == (interference > 10e-6)
 
 
 @pytest.mark.parametrize("name", ["feeder", "uneven"])

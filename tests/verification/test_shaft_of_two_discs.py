@@ -71,8 +71,8 @@ def test_the_line_of_contact_yields_with_the_shaft_at_its_own_disc():
     cycle = solved("preloaded_arm").cycles[0]
     shaft = replace(cycle.machine.camshaft, bearing_spacing=0.06)
     machine = replace(cycle.machine, camshaft=shaft)
-    moved = replace(cycle, turn=replace(cycle.turn, machine=machine))
-    pulls, line = cycle.loads.wall < 0.0, turn_of_line(moved)
+    overhung = replace(cycle, turn=replace(cycle.turn, machine=machine))
+    pulls, line = cycle.loads.wall < 0.0, turn_of_line(overhung)
     beam = flexibility(shaft, (0.035, 0.075))
     wanted = np.where(pulls, beam[3, 3], beam[2, 2])
     np.testing.assert_allclose(line.shaft_compliance, wanted, rtol=1e-9)

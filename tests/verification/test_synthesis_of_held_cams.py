@@ -88,10 +88,10 @@ def test_every_derivative_is_that_of_a_complex_step_through_the_cam(pair):
     assert state.pointwise["undercut"].shape == (discs, state.grid.theta.size)
     step = np.random.default_rng(3).normal(size=search.size)
     tiny = 1e-30j
-    moved = state.coefficients + tiny * search.scale * step
+    stepped = state.coefficients + tiny * search.scale * step
     summit = search.summit(state)
-    top = lift_jet(search._peaks(state.coefficients).energy(moved), state.variables).lift[0]
-    jet = lift_jet(state.grid.energy(moved), state.variables)
+    top = lift_jet(search._peaks(state.coefficients).energy(stepped), state.variables).lift[0]
+    jet = lift_jet(state.grid.energy(stepped), state.variables)
     ratings, variables = search.problem.ratings, state.variables
     cam = loaded(jet, top, variables, ratings, state.stack)
     uses = {**shape_utilisations(jet, variables, ratings, highest=top), **utilisations_of(cam)}
@@ -213,7 +213,7 @@ def test_a_nonlinear_program_on_the_finished_discs_finds_the_same_ripple(pair):
     there, whole_of = unknowns(pair, there)
     scale, away = np.abs(there).max(), np.random.default_rng(5).normal(size=there.size)
     start = there / scale
-    found = minimize(
+    optimum = minimize(
         lambda x: own.at(whole_of(scale * x))[0],
         start + 0.02 * away,
         method="SLSQP",
@@ -221,9 +221,9 @@ def test_a_nonlinear_program_on_the_finished_discs_finds_the_same_ripple(pair):
         constraints={"type": "ineq", "fun": lambda x: own.at(whole_of(scale * x))[1]},
         options={"maxiter": 200, "ftol": 1e-9, "eps": 1e-6},
     )
-    print(f"{pair[0]}: {design.ripple:.6f}, SLSQP {found.fun:.6f} in {found.nit} steps")
-    assert found.success and np.abs(found.x - start).max() < 0.1, found.message
-    assert found.fun == pytest.approx(design.ripple, rel=1e-3)
+    print(f"{pair[0]}: {design.ripple:.6f}, SLSQP {optimum.fun:.6f} in {optimum.nit} steps")
+    assert optimum.success and np.abs(optimum.x - start).max() < 0.1, optimum.message
+    assert optimum.fun == pytest.approx(design.ripple, rel=1e-3)
 
 
 @pytest.mark.slow
