@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +13,13 @@ from scipy.integrate import solve_ivp
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.follower.crossover import Landing
 from camwright.pipeline.follower.friction_coupling import guided_loads
+from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial
 
 FORCES = ("axial_force", "normal_force", "cam_torque", "friction_force_a", "reaction_a")
@@ -26,6 +29,27 @@ def running_in(trial: Trial) -> tuple[Cycle, Machine]:
     """Cycle and machine of the load case "running"."""
     (cycle,) = (each for each in trial.cycles if each.load_case == "running")
     return cycle, cycle.machine
+
+
+@dataclass(frozen=True)
+class PreviewedFile:
+    """Case file with its preview without tolerance corners, made once."""
+
+    file: Path
+
+    @cached_property
+    def trial(self) -> Trial:
+        """The preview."""
+        return preview_case(read_case(self.file), corners=False)
+
+    @property
+    def running(self) -> tuple[Cycle, Machine]:
+        """Cycle and machine of the load case "running"."""
+        return running_in(self.trial)
+
+    def check(self, name: str) -> Check:
+        """The check of this id."""
+        return next(each for each in self.trial.checks if each.id == name)
 
 
 def ids_where_all_pass(trial: Trial) -> set[str]:

@@ -5,18 +5,17 @@ The case is that of cases/motions/feeder-groove.toml: two strokes a turn, no spr
 
 import re
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 import pytest
 from held_cams import (
+    PreviewedFile,
     assert_as_closed_by_a_strong_spring,
     assert_refused,
     ids_where_all_pass,
     landing_of,
-    running_in,
     turned_by_friction,
 )
 from scipy.integrate import quad, solve_ivp
@@ -42,31 +41,18 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.run import run_case
 
 FILE = Path(__file__).parents[2] / "cases" / "motions" / "feeder-groove.toml"
-
-
-@cache
-def trial():
-    return preview_case(read_case(FILE), corners=False)
-
-
-def running():
-    """Cycle and machine of the load case of the file."""
-    return running_in(trial())
-
-
-def demand(name):
-    return next(each for each in trial().checks if each.id == name)
+GROOVE = PreviewedFile(FILE)
 
 
 # --- forces -----------------------------------------------------------------------------------
 def test_a_strong_spring_makes_the_groove_a_spring_closed_cam():
-    assert_as_closed_by_a_strong_spring(*running())
+    assert_as_closed_by_a_strong_spring(*GROOVE.running)
 
 
 @pytest.mark.parametrize("speed", [10.0, 40.0])
 def test_forces_by_the_equilibrium_of_the_stem(speed):
     """F_a = F + sign(v) (mu_A |A| + mu_B |B|) by iteration, of either sign; point supports."""
-    cycle, machine = running()
+    cycle, machine = GROOVE.running
     theta, path, system = uniform_turn(180), cycle.contour.pitch, machine.system
     loads = follower_loads(path, system, speed, theta)
     s, s1, s2 = path.lift.derivatives(theta, 2)
@@ -88,7 +74,7 @@ def test_forces_by_the_equilibrium_of_the_stem(speed):
 
 def test_the_cam_pays_for_friction_alone():
     """Work of the cam over a turn is the loss in the guides: 1e-6 of the work on the rises."""
-    cycle, _ = running()
+    cycle, _ = GROOVE.running
     loads = cycle.loads
     rubbed = loads.friction_force * np.abs(loads.lift_slope)
     work, lost = (turn_integral(loads.theta, each) for each in (loads.cam_torque, rubbed))
@@ -99,7 +85,7 @@ def test_the_cam_pays_for_friction_alone():
 
 def test_without_clearance_and_compliance_the_wall_is_the_sign_of_the_force():
     """A clearance of a nanometre: the walls are changed where the rigid force changes its sign."""
-    cycle, machine = running()
+    cycle, machine = GROOVE.running
     narrow = replace(machine.cam.groove, clearance=1e-9)
     cam = replace(machine.cam, groove=narrow)
     landings = flights(replace(machine, cam=cam, restitution=0.0), cycle.contour).landings
@@ -116,7 +102,7 @@ def test_without_clearance_and_compliance_the_wall_is_the_sign_of_the_force():
 # --- contact ----------------------------------------------------------------------------------
 def test_contact_on_both_walls_by_their_radii():
     """Half-planes of the radii of roller and wall, convex inside, concave outside; Hertz (1882)."""
-    cycle, machine = running()
+    cycle, machine = GROOVE.running
     loads, path = cycle.loads, cycle.contour.pitch
     roller, pulled = machine.roller.radius, loads.axial_force < 0.0
     middle = path.radius_of_curvature(loads.theta)
@@ -130,7 +116,7 @@ def test_contact_on_both_walls_by_their_radii():
 
 def pressed(factor):
     """Contact of the load case under a multiple of its forces, by preview."""
-    cycle, _ = running()
+    cycle, _ = GROOVE.running
     force = factor * cycle.loads.normal_force
     return cycle, closed_form_history(cycle.pair, cycle.theta, force)
 
@@ -254,7 +240,7 @@ def test_the_sheets_of_a_run_have_the_conforming_contact(tmp_path):
 
 def test_the_roller_turns_the_other_way_on_the_outer_wall():
     """By the velocity of the roller's surface: that of the wall at the contact, in the plane."""
-    cycle, machine = running()
+    cycle, machine = GROOVE.running
     theta, speed = cycle.theta, machine.cam_speed
     spin, step = cycle.parts.roller_spin, 1e-6
     path, roller = cycle.contour.pitch, machine.roller.radius
@@ -272,25 +258,25 @@ def test_the_roller_turns_the_other_way_on_the_outer_wall():
 # --- checks -----------------------------------------------------------------------------------
 def test_walls_by_points_and_distances():
     """outer_undercut, outer_second_contact, groove_radius, groove_clearance without curvature."""
-    contour, machine = trial().contour, trial().solution.machine
+    contour, machine = GROOVE.trial.contour, GROOVE.trial.solution.machine
     theta, roller = uniform_turn(7200), machine.roller.radius
     wall = contour.pitch.points(theta) + roller * contour.pitch.normal(theta)
     lengths = (
         np.hypot(*np.diff(each, append=each[:, :1])) for each in (wall, contour.pitch.points(theta))
     )
     outer, middle = lengths
-    assert demand("outer_undercut").demand == pytest.approx((outer / middle).min(), rel=1e-4)
+    assert GROOVE.check("outer_undercut").demand == pytest.approx((outer / middle).min(), rel=1e-4)
     centres = contour.pitch.points(theta[::20])
     away = np.hypot(*(wall[:, :, None] - centres[:, None, :])).min(axis=0)
     assert away.min() > (1.0 - 1e-6) * roller
-    assert demand("outer_second_contact").demand == 0.0
-    assert demand("groove_radius").demand == 0.125
-    assert demand("groove_clearance").demand == pytest.approx(8.0 / 20.0)
+    assert GROOVE.check("outer_second_contact").demand == 0.0
+    assert GROOVE.check("groove_radius").demand == 0.125
+    assert GROOVE.check("groove_clearance").demand == pytest.approx(8.0 / 20.0)
 
 
 def test_landings_by_an_adaptive_integrator():
     """landing_speed and landing_pressure of the fastest load case."""
-    cycle = max(trial().cycles, key=lambda each: each.cam_speed)
+    cycle = max(GROOVE.trial.cycles, key=lambda each: each.cam_speed)
     machine, path = cycle.machine, cycle.contour.pitch
     speed, worst = cycle.cam_speed, max(cycle.impacts, key=lambda each: each.flight.speed)
 
@@ -302,7 +288,7 @@ def test_landings_by_an_adaptive_integrator():
     theta, against = landing_of(
         worst.flight, lambda theta: speed**2 * path.lift(theta, 2), gap, speed
     )
-    assert demand("landing_speed").demand == pytest.approx(against, rel=1e-4)
+    assert GROOVE.check("landing_speed").demand == pytest.approx(against, rel=1e-4)
     # the mass on its stiffness from the landing on, under a force that stays
     pressed = abs(machine.mass * speed**2 * float(path.lift(theta, 2)))
     stiffness, mass = machine.axial_stiffness, machine.mass
@@ -322,7 +308,7 @@ def test_landings_by_an_adaptive_integrator():
     pressure = np.sqrt(force * machine.contact_modulus / (np.pi * machine.contact_width * radius))
     assert worst.pressure == pytest.approx(float(pressure), rel=1e-3)
     greatest = max(each.pressure for each in cycle.impacts)
-    assert demand("landing_pressure").demand == pytest.approx(greatest)
+    assert GROOVE.check("landing_pressure").demand == pytest.approx(greatest)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.3, None, 0.99])
@@ -331,12 +317,12 @@ def test_energy_of_a_turn_with_landings(restitution):
 
     At 0.99 the roller does not come to rest within a turn.
     """
-    cycle, machine = running()
+    cycle, machine = GROOVE.running
     spring = replace(machine.spring, rate=2e3, preload=20.0)
     machine = replace(machine, spring=spring, viscous_damping=5.0, restitution=restitution)
     energy = flights(machine, cycle.contour).energy
     assert energy.left < 1e-6
-    assert demand("landing_balance").demand < 1e-6
+    assert GROOVE.check("landing_balance").demand < 1e-6
     assert energy.lost > 1e-4 * energy.exchanged
     assert (energy.gained == 0.0) == (restitution != 0.99)
 
@@ -353,7 +339,7 @@ def test_energy_of_landings_where_the_acceleration_jumps():
 
 def test_the_energy_of_the_landings_by_an_integrator_of_events():
     """Loss of a turn within 1e-3 of a stem that is integrated between stops, in fixed axes."""
-    cycle, machine = running()
+    cycle, machine = GROOVE.running
     path, speed, share = cycle.contour.pitch, machine.cam_speed, 0.3
     history = flights(replace(machine, restitution=share), cycle.contour)
 
@@ -385,7 +371,7 @@ def test_the_slip_of_the_roller_by_its_own_equation():
     Slip, heat of a turn and temperature within 2 %: a force changes little in half a degree.
     """
     cycle, machine = max(
-        ((each, each.machine) for each in trial().cycles), key=lambda each: each[0].cam_speed
+        ((each, each.machine) for each in GROOVE.trial.cycles), key=lambda each: each[0].cam_speed
     )
     roller, theta, fine = machine.roller, cycle.theta, uniform_turn(20 * cycle.theta.size)
     loads, path = cycle.loads, cycle.contour.pitch
@@ -401,7 +387,7 @@ def test_the_slip_of_the_roller_by_its_own_equation():
     mass = roller.rotor_inertia / roller.radius**2
     surface = turned_by_friction(wall * pace, limit, mass, step)  # positive on the inner wall
     slip = wall * pace - surface
-    assert demand("crossover_slip").demand == pytest.approx(np.abs(slip).max(), rel=0.02)
+    assert GROOVE.check("crossover_slip").demand == pytest.approx(np.abs(slip).max(), rel=0.02)
     assert np.abs(slip).max() < 0.99 * 2.0 * pace[1:][np.diff(wall) != 0.0].max()
     heat = limit * np.abs(slip) * (np.abs(slip) > 1e-9)
     assert heat.sum() * step == pytest.approx(cycle.rolling.contact.loss, rel=0.02)
@@ -415,12 +401,12 @@ def test_the_slip_of_the_roller_by_its_own_equation():
     carried = taken[0] * np.sqrt(along) + taken[1] * np.sqrt(np.abs(along - wall * slip))
     flash = 1.11 * heat / machine.contact_width / (carried * np.sqrt(2.0 * half))
     hot = machine.lubricant.temperature - 273.15 + 0.47 * 1.2 * flash.mean() + flash.max()
-    assert demand("slip_temperature").demand == pytest.approx(hot, rel=0.02)
+    assert GROOVE.check("slip_temperature").demand == pytest.approx(hot, rel=0.02)
 
 
 def test_the_sweep_over_the_speeds_has_the_forces_of_both_walls():
     """At the speed of a load case it is the cycle: no force below zero, torque of both walls."""
-    cycle, machine = running()
+    cycle, machine = GROOVE.running
     sweep = speed_sweep(machine, cycle.contour, cycle.loads.rubbing, [machine.crank_speed])
     assert sweep.contact_force_min.min() >= 0.0
     most = cycle.loads.normal_force.max()
@@ -450,19 +436,19 @@ def test_the_rim_is_a_cantilever_plate():
 
     moment = quad(root, 1e-4, 60.0, limit=400)[0] / np.pi
     assert abs(moment) == pytest.approx(PLATE_MOMENT, abs=1e-3)
-    cycle = max(trial().cycles, key=lambda each: each.cam_speed)
+    cycle = max(GROOVE.trial.cycles, key=lambda each: each.cam_speed)
     loads, path = cycle.loads, cycle.contour.pitch
     wall = path.points(loads.theta) + cycle.machine.roller.radius * path.normal(loads.theta)
     thick = 0.125 - np.hypot(*wall)
     pulled = np.where(loads.axial_force < 0.0, loads.normal_force, 0.0)
     stress = (6.0 * PLATE_MOMENT * pulled / thick**2).max()
-    assert demand("groove_wall").demand == pytest.approx(stress, rel=1e-9)
+    assert GROOVE.check("groove_wall").demand == pytest.approx(stress, rel=1e-9)
 
 
 # --- the case ---------------------------------------------------------------------------------
 def test_the_case_passes_by_check():
     """No check of the design fails or lacks data; one track, and no check of a closing force."""
-    made = ids_where_all_pass(trial())
+    made = ids_where_all_pass(GROOVE.trial)
     assert not made & {"jump", "contact_force_margin", "spring_travel", "traction_demand"}
     assert {"groove_wall", "landing_speed", "outer_undercut"} <= made
 

@@ -4,17 +4,16 @@ The case is tests/data/stepped_groove.toml: the smaller second roller runs on th
 """
 
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from held_cams import (
     FORCES,
+    PreviewedFile,
     assert_as_closed_by_a_strong_spring,
     assert_refused,
     ids_where_all_pass,
-    running_in,
 )
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
@@ -35,20 +34,7 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.recomputation import loaded_positions
 
 FILE = Path(__file__).parents[1] / "data" / "stepped_groove.toml"
-
-
-@cache
-def trial():
-    return preview_case(read_case(FILE), corners=False)
-
-
-def running():
-    """Cycle and machine of the load case of the file."""
-    return running_in(trial())
-
-
-def demand(name):
-    return next(each for each in trial().checks if each.id == name)
+STEPPED = PreviewedFile(FILE)
 
 
 def with_second(machine, second):
@@ -60,7 +46,7 @@ def with_second(machine, second):
 # --- the limit of one roller ------------------------------------------------------------------
 def test_two_equal_rollers_are_one_roller():
     """Forces and pressures of the groove of one roller, 1e-9; its spin differs alone."""
-    cycle, machine = running()
+    cycle, machine = STEPPED.running
     second = replace(machine.cam.groove.second, radius=machine.roller.radius)
     theta, path = cycle.theta, cycle.contour.pitch
     one, two = with_second(machine, None), with_second(machine, second)
@@ -89,7 +75,7 @@ def test_two_equal_rollers_of_an_arm_are_one_roller():
     case = read_case(FILE.with_name("groove_arm.toml"))
     one = machines(case)[0]
     path = case.contour(given_lift(case)).pitch
-    second = replace(running()[1].cam.groove.second, radius=one.roller.radius)
+    second = replace(STEPPED.running[1].cam.groove.second, radius=one.roller.radius)
     loads = [
         follower_loads(path, each.system, one.cam_speed, uniform_turn(720))
         for each in (one, with_second(one, second))
@@ -102,13 +88,13 @@ def test_two_equal_rollers_of_an_arm_are_one_roller():
 
 
 def test_a_strong_spring_makes_it_a_spring_closed_cam():
-    assert_as_closed_by_a_strong_spring(*running())
+    assert_as_closed_by_a_strong_spring(*STEPPED.running)
 
 
 # --- statics ----------------------------------------------------------------------------------
 def test_forces_by_the_equilibrium_of_the_stem():
     """Contact force along the normal of the wall that carries, two guides, friction: 1e-8."""
-    cycle, machine = running()
+    cycle, machine = STEPPED.running
     theta, path, system = uniform_turn(180), cycle.contour.pitch, machine.system
     loads = follower_loads(path, system, machine.cam_speed, theta)
     s, s1, s2 = path.lift.derivatives(theta, 2)
@@ -137,7 +123,7 @@ def test_forces_by_the_equilibrium_of_the_stem():
 # --- walls, contact and spin ------------------------------------------------------------------
 def test_each_wall_is_parallel_to_the_path_at_the_radius_of_its_roller():
     """Least distance of the path from points of each wall: the radius of its roller, 1e-9 m."""
-    cycle, machine = running()
+    cycle, machine = STEPPED.running
     track = machine.cam.second.track(cycle.contour.pitch)
     theta = uniform_turn(96)
     for wall, roller in ((cycle.contour, machine.roller.radius), (track.contour, 0.021)):
@@ -149,7 +135,7 @@ def test_each_wall_is_parallel_to_the_path_at_the_radius_of_its_roller():
 
 def test_contact_on_each_wall_by_its_roller():
     """Half-planes of the radii of each roller and its wall; Hertz (1882)."""
-    cycle, machine = running()
+    cycle, machine = STEPPED.running
     loads, path = cycle.loads, cycle.contour.pitch
     pulled = loads.axial_force < 0.0
     roller, middle = np.where(pulled, 0.021, 0.0235), path.radius_of_curvature(loads.theta)
@@ -159,12 +145,12 @@ def test_contact_on_each_wall_by_its_roller():
     assert cycle.contact.p0 == pytest.approx(pressure, rel=1e-9, abs=1.0)
     assert pulled.any() and not pulled.all()
     factor = (1.0 + 0.021 / middle).min()
-    assert demand("outer_undercut").demand == pytest.approx(factor, rel=1e-3)
+    assert STEPPED.check("outer_undercut").demand == pytest.approx(factor, rel=1e-3)
 
 
 def test_the_outer_wall_conforms_to_its_own_roller_under_great_loads():
     """Persson's closed form at its angle, radii of the second roller and its wall; 1e-6."""
-    cycle, _ = running()
+    cycle, _ = STEPPED.running
     contact = closed_form_history(cycle.pair, cycle.theta, 400.0 * cycle.loads.normal_force)
     middle = cycle.contour.pitch.radius_of_curvature(cycle.theta)
     outer = contact.conforming & (cycle.loads.axial_force < 0.0)
@@ -179,7 +165,7 @@ def test_the_outer_wall_conforms_to_its_own_roller_under_great_loads():
 
 def test_no_roller_changes_its_spin():
     """Each turns one way by the surface of its wall, and slips little where it begins to carry."""
-    cycle, machine = running()
+    cycle, machine = STEPPED.running
     theta, path, speed = cycle.theta, cycle.contour.pitch, machine.cam_speed
     pulled = cycle.loads.axial_force < 0.0
     pace = np.hypot(*(path.points(theta + 1e-5) - path.points(theta - 1e-5))) / 2e-5
@@ -191,7 +177,7 @@ def test_no_roller_changes_its_spin():
 
 def test_landings_press_the_wall_of_each_roller():
     """The force of a landing on the relative radius of its own roller and wall."""
-    cycle, machine = running()
+    cycle, machine = STEPPED.running
     for one in cycle.impacts:
         outer, at = one.flight.wall < 0.0, np.array([one.flight.landing])
         middle = float(cycle.contour.pitch.radius_of_curvature(at)[0])
@@ -204,20 +190,22 @@ def test_landings_press_the_wall_of_each_roller():
 
 def test_the_pin_under_the_force_of_each_roller_at_its_place():
     """Beam held at the cheek: M = N l of the first, N (l + a) of the deeper second roller."""
-    cycle, machine = running()
+    cycle, machine = STEPPED.running
     pin, loads = machine.roller.pin, cycle.loads
     place = np.where(loads.axial_force < 0.0, pin.span + 0.018, pin.span)
     moment = loads.normal_force * place + cycle.follower_moment
     stress = 32.0 * moment / (np.pi * pin.diameter**3)
     assert cycle.parts.pin_stress == pytest.approx(stress, rel=1e-12)
-    fast = max(trial().cycles, key=lambda each: each.cam_speed)
-    assert demand("roller_pin").demand == pytest.approx(fast.parts.pin_stress.max(), rel=1e-2)
+    fast = max(STEPPED.trial.cycles, key=lambda each: each.cam_speed)
+    assert STEPPED.check("roller_pin").demand == pytest.approx(
+        fast.parts.pin_stress.max(), rel=1e-2
+    )
     over = fast.loads.normal_force * np.where(
         fast.loads.axial_force < 0.0, pin.span + 0.018, pin.span
     )
     edge = 6.0 * (over + fast.follower_moment) + 4.0 * 0.010 * fast.loads.normal_force
     pressure = (edge / (pin.diameter * 0.010**2)).max()
-    assert demand("cheek_pressure").demand == pytest.approx(pressure, rel=1e-2)
+    assert STEPPED.check("cheek_pressure").demand == pytest.approx(pressure, rel=1e-2)
     # with the larger roller second, at the face, the first is the deeper one
     second = replace(machine.cam.groove.second, radius=0.026)
     assert second.beyond(machine.roller.radius) == -0.018
@@ -240,7 +228,7 @@ def test_the_bearing_of_each_roller_by_its_own_forces():
     ring by its greatest force, 1e-9: 0.8 % less on the outer wall.
     """
     lives, most = [], np.zeros(2)
-    for cycle in trial().cycles:
+    for cycle in STEPPED.trial.cycles:
         pace = np.hypot(*cycle.contour.pitch.velocity(cycle.theta))
         pulled, force = cycle.loads.axial_force < 0.0, cycle.loads.normal_force
         spins = (pace / 0.0235 - 1.0, ~pulled), (pace / 0.021 + 1.0, pulled)
@@ -252,19 +240,19 @@ def test_the_bearing_of_each_roller_by_its_own_forces():
         lives.append([FULL_TURN * 1e6 / each for each in damage])
         most = np.maximum(most, (force[~pulled].max(), force[pulled].max()))
     first, second = np.min(lives, axis=0)
-    assert demand("roller_life").demand == pytest.approx(first, rel=1e-6)
-    assert demand("second_roller_life").demand == pytest.approx(second, rel=1e-6)
+    assert STEPPED.check("roller_life").demand == pytest.approx(first, rel=1e-6)
+    assert STEPPED.check("second_roller_life").demand == pytest.approx(second, rel=1e-6)
     bearing = cycle.machine.roller.bearing
     for names, force in zip(OF_BEARINGS, most, strict=True):
         of_bearing = bearing.C0 / force, force / bearing.C, force, force
         for name, by_hand in zip(names, of_bearing, strict=True):
-            assert demand(name).demand == pytest.approx(by_hand, rel=1e-9), name
+            assert STEPPED.check(name).demand == pytest.approx(by_hand, rel=1e-9), name
     assert most[1] < 0.995 * most[0]
 
 
 def test_the_second_roller_stands_on_its_own_pin():
     """Its blow is stopped on a pin longer by the spacing: a cantilever, span cubed."""
-    _, machine = running()
+    _, machine = STEPPED.running
     first, second = machine.track_stiffnesses
     pin = machine.roller.pin
     longer = replace(pin, span=pin.span + 0.018)
@@ -278,7 +266,7 @@ def test_the_stem_in_its_guides_under_the_couple_of_the_second_roller():
     """F a across the plane of the cam, by the equilibrium of the guides 132 mm apart; it turns the
     line of contact, too.
     """
-    cycle, _ = running()
+    cycle, _ = STEPPED.running
     turn, loads, guides = turn_of_line(cycle), cycle.loads, cycle.sideways
     couple = np.where(loads.axial_force < 0.0, 0.018 * loads.normal_force, 0.0)
     assert turn.tilt.twist == pytest.approx(couple * turn.tilt_compliance)
@@ -300,7 +288,7 @@ def test_own_tolerance_of_the_second_roller_at_the_corners():
     text = FILE.read_text(encoding="utf-8")
     text = text.replace('relief = "0.5 mm"', 'relief = "0.5 mm"\nroller_tolerance = "5 um"')
     case = parse_case(text.replace("[cam.groove]\n", '[cam.groove]\nroller_tolerance = "3 um"\n'))
-    cycle, machine = running()
+    cycle, machine = STEPPED.running
     path, theta = cycle.contour.pitch, uniform_turn(24)
     clearance, normal = machine.cam.clearance, path.normal(theta)
 
@@ -343,7 +331,7 @@ def test_the_rim_is_judged_where_it_is_thinnest_below_the_second_roller(radius, 
 
 def test_a_recomputation_draws_no_angle_without_a_load():
     """Of all three load cases; the force is 1e-13 of the greatest in the dwells at standstill."""
-    cycles = trial().cycles
+    cycles = STEPPED.trial.cycles
     drawn = {(each.case, each.index) for each in loaded_positions(cycles)}
     force = [each.contact.line_load for each in cycles]
     greatest = max(each.max() for each in force)
@@ -357,7 +345,7 @@ def test_a_recomputation_draws_no_angle_without_a_load():
 # --- the body ---------------------------------------------------------------------------------
 def test_mass_of_the_disc_by_the_volume_of_both_steps():
     """Chords of both walls of each step; 7200 chords miss 1e-6 of an area."""
-    cycle, machine = running()
+    cycle, machine = STEPPED.running
     cam, path, theta = machine.cam, cycle.contour.pitch, uniform_turn(7200)
     steps = ((0.018, 0.0235 + 1e-5, 0.0235 + 5e-4), (0.018, 0.021 + 5e-4, 0.021 + 1e-5))
     volume = np.pi * 0.125**2 * cam.width
@@ -379,7 +367,7 @@ def test_mass_of_the_disc_by_the_volume_of_both_steps():
 # --- the case ---------------------------------------------------------------------------------
 def test_the_case_passes_by_check():
     of_others = {"second_track_gap", "second_disc_gap", "yoke_breadth", "cam_radius"}
-    assert not of_others & ids_where_all_pass(trial())
+    assert not of_others & ids_where_all_pass(STEPPED.trial)
 
 
 SECOND = "cam.groove.second"
