@@ -146,8 +146,9 @@ class Section(BaseModel):
                 for each in error.errors(include_url=False)
                 if each["type"] != "missing"
             ]
-        except InputError:  # of values that contradict one another: the unknown key may be one
-            pass
+        except InputError as error:  # by a rule of a table below, which reads its own keys alone
+            limit = refusal(error.limit, field=error.field, value=str(error.value))
+            unknown.append({"type": limit, "input": table})
         raise ValidationError.from_exception_data(cls.__name__, unknown)
 
 

@@ -182,6 +182,15 @@ def test_an_unknown_key_hides_no_wrong_value_of_its_table() -> None:
     assert second == "spring.rate = -1 kN/m, must be > 0 and <= 1e+06 kN/m"
 
 
+def test_an_unknown_table_hides_no_contradiction_in_another() -> None:
+    text = changed("[scope]", "[scoop]\n[scope]").replace('reason = "C24', '# reason = "C24')
+    with pytest.raises(SeveralInputsError) as error:
+        parse_case(text)
+    first, second = error.value.lines
+    assert first == "scoop = unknown key, must be a known key; did you mean scope?"
+    assert second == "scope.reason = missing, must be given with scope.not_covered"
+
+
 def test_every_refusal_is_listed_up_to_a_bound() -> None:
     keys = "".join(f"unknown_{k} = 1\n" for k in range(20))
     text = changed('"24.2 kN/m"', '"-1 kN/m"').replace("[cam]\n", f"[cam]\n{keys}")
