@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import InputError
+from camwright.meshes.gmsh_mesher import session
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Check
@@ -66,6 +67,15 @@ def assert_refused(file: Path, old: str, new: str, message: str) -> None:
     with pytest.raises(InputError) as error:
         parse_case(text.replace(old, new, 1))
     assert str(error.value).startswith(message)
+
+
+def volume_of(path: Path) -> float:
+    """Volume, m3, of the only solid of a STEP file, by OpenCASCADE."""
+    with session() as gmsh:
+        gmsh.model.occ.importShapes(str(path))
+        gmsh.model.occ.synchronize()
+        ((_, solid),) = gmsh.model.getEntities(3)
+        return 1e-9 * float(gmsh.model.occ.getMass(3, solid))
 
 
 def assert_as_closed_by_a_strong_spring(cycle: Cycle, machine: Machine) -> None:

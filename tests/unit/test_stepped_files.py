@@ -8,10 +8,10 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from held_cams import volume_of
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.meshes import step_solid
-from camwright.meshes.gmsh_mesher import session
 from camwright.meshes.step_solid import write_step
 from camwright.meshes.step_text import PartTitle
 from camwright.pipeline.case.case_file import read_case
@@ -67,14 +67,6 @@ def test_every_file_is_of_one_class_that_a_recomputation_compares(workshop):
     for file in workshop.iterdir():
         (of,) = classes_of(f"workshop/{file.name}", 1)
         assert of.origin is (Origin.DRAWN if file.suffix in {".pdf", ".xlsx"} else Origin.SOLVED)
-
-
-def volume_of(path):
-    with session() as gmsh:
-        gmsh.model.occ.importShapes(str(path))
-        gmsh.model.occ.synchronize()
-        ((_, solid),) = gmsh.model.getEntities(3)
-        return 1e-9 * gmsh.model.occ.getMass(3, solid)
 
 
 def closed_form(case, contour):
