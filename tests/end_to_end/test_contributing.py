@@ -192,16 +192,21 @@ print(json.dumps({**said, "previewed": in_unit(previewed.demand, previewed.unit)
 
 @pytest.fixture(scope="module")
 def used(program: Path, tmp_path_factory: pytest.TempPathFactory) -> SimpleNamespace:
-    """What the copy says of the check in a run, a screening and `explain`, and the page."""
+    """What the copy says of the check in a run, a screening and `explain`, and the page.
+
+    Two trials from one starting point: the limit is kept by each synthesis, from any start.
+    """
     folder = tmp_path_factory.mktemp("used")
     limits = f'[limits]\nlift_jerk = "{LIMIT:g} mm/rad^3"\n'
     drawn = small_machine("demo").replace("[limits]\n", limits)
     (folder / "drawn.toml").write_text(drawn, encoding="utf-8")
     text = re.sub(
         r'(?m)^kind = "moving_average"\npoints = .*\nspacing = .*$',
-        'kind = "constrained"',
+        'kind = "constrained"\nstarts = 1',
         small_machine("demo"),
     )
+    assert "max_trials = 3 " in text
+    text = text.replace("max_trials = 3 ", "max_trials = 2 ")
     text = text.replace("torque_reduction = 0.4 ", "torque_reduction = 0.1 ")  # within reach
     text = text.replace("positions = 72 ", "positions = 36 ")
     text = text.replace("[limits]\n", limits)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from made_check import made_check
 
+from camwright.geometry.contour import Contour
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.machine import Corner
@@ -48,6 +49,13 @@ def trial(*changes: tuple[str, str]) -> Trial:
         text = text.replace(old, new)
     case: Case = parse_case(text)
     return solve(case, drawn, tier=Tier.PREVIEW, positions=POSITIONS, corners=False)
+
+
+@cache
+def drawn(machine: str) -> tuple[Case, Contour]:
+    """A shipped case and its cam."""
+    case = read_case(CASES / f"{machine}.toml")
+    return case, preview_case(case, corners=False).contour
 
 
 def checks(made: Trial) -> dict[str, Check]:
@@ -119,16 +127,13 @@ def test_the_line_of_contact_is_not_solved_where_the_loads_end() -> None:
 @pytest.mark.parametrize("machine", ["gx120-redesign", "gx120-flat-face"])
 def test_a_check_judges_the_load_cases_that_it_declares(machine: str, duty: float | None) -> None:
     """A check of known demand is made of one load case alone, but where its words leave it out."""
-    case = read_case(CASES / f"{machine}.toml")
+    case, contour = drawn(machine)
     first, *others = case.load_cases
     states = (first.model_copy(update={"duty": duty}), *(
         each.model_copy(update={"duty": None if duty is None else 0.0}) for each in others
     ))  # fmt: skip
     case = case.model_copy(update={"load_cases": states})
-    solution = solve(
-        case, preview_case(case, corners=False).contour,
-        tier=Tier.PREVIEW, positions=POSITIONS, corners=False,
-    ).solution  # fmt: skip
+    solution = solve(case, contour, tier=Tier.PREVIEW, positions=POSITIONS, corners=False).solution
     apart = {cycle.load_case: lost_loads._in(solution, {cycle.load_case})
              for cycle in solution.cycles}  # fmt: skip
     tried = 0
