@@ -6,8 +6,9 @@ duty of the load cases; without one that in the worst load case, run all the tim
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ import scipy
 from camwright.geometry.arrays import FULL_TURN, Array, Value, Values
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
+from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import factor, shown
 from camwright.pipeline.case.limits import (
@@ -36,6 +38,7 @@ from camwright.pipeline.checks.check import (
     BY_DUTY,
     LASTING,
     STATED,
+    ClosedBy,
     Declaration,
     Demand,
     Kept,
@@ -75,7 +78,7 @@ FASTEST = 1e7  # rpm, of any roller
 MILLION_TURNS = RATED_REVOLUTIONS * FULL_TURN  # rad
 _LEAST_FORCE = 1.0  # N, of a force that damages a bearing
 _AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
-_RATING, _STATIC = "roller.bearing.C", "roller.bearing.C0"
+_RATING = "roller.bearing.C"
 _VISCOSITY, _CIRCLE = "roller.bearing.viscosity", "roller.bearing.pitch_diameter"
 _SURGED = (
     "normal_force + spring_surge_force/((1 - sign(follower_velocity) jam_index)"
@@ -95,8 +98,6 @@ _CUBE_MEAN = _cube_mean(_RATING, _SURGED)
 _PRESSED = "cam.conjugate.interference None"
 _ALONE = {"?": f"cam.groove.second.radius None; {_PRESSED}"}
 """Symbols of a formula that holds for one roller on all tracks."""
-_SECOND, _SECOND_STATIC = "cam.groove.second.C", "cam.groove.second.C0"
-_OWN = ", of two rollers in a groove that of the inner wall"
 
 
 def _with_card(demand: Demand, solution: Solution) -> Demand:
@@ -107,9 +108,9 @@ def _card(bearing: Bearing) -> tuple[str]:
     return (f"{bearing.name}: {bearing.source}".rstrip(": "),)
 
 
-def _life(worst: Value, numbers: Numbers) -> Value:
-    """L10 (...), s, of a mean N^3 |n|."""
-    return rating_over(_cube(numbers), worst, np.inf)
+def _life(worst: Value, numbers: Numbers, rating: str = _RATING) -> Value:
+    """L10 (...), s, of a mean N^3 |n|; rating : key of C."""
+    return rating_over(_cube(numbers, rating), worst, np.inf)
 
 
 def _cube(numbers: Numbers, rating: str = _RATING) -> Value:
@@ -304,35 +305,94 @@ def _with_slope(demand: Demand, solution: Solution) -> Demand:
     return replace(demand, note=note, figures=figures, stated={"phi": slope})
 
 
-roller_static = check(
-    ROLLER_STATIC_SAFETY,
-    id=NORMAL_FORCE,
-    title="Static safety factor of the roller bearing",
-    method="static rating over the greatest normal force",
+_of_roller = partial(
+    check,
     lift_can_help=True,
     tier=Tier.SCREENING,
     needs="roller",
     part="roller_bearing",
-    kept_as="static load rating of the roller",
-    formula="C0/N >= S; C0: static rating, N: greatest normal force over all load cases and"
-    f" angles{_OWN}, S: limits.roller_static_safety",
-    symbols={
-        "N": "normal_force",
-        "C0": "roller.bearing.C0",
-    },
-    reason="beyond it the balls dent the raceways",
-    values=(*given.LOADS, "roller.bearing.C0"),
-    levers=(levers.Catalogued(levers.BEARING, "C0", inverse=True), *levers.LOAD),
     page="Roller",
-).measured(
-    "angles",
-    value=lambda worst, numbers: rating_over(numbers[_STATIC], worst, np.nan),
-    bound=lambda limit, numbers: float(numbers[_STATIC]) / limit,
-    needed=(_STATIC,),
-    remark=_with_card,
-    deviation=0.005,
-    kept=Kept(force_over, group=NORMAL_FORCE, unit="N"),
-)(first_force)
+)
+"""Declaration of a check of the bearing that a gentler lift can help."""
+
+
+class _JudgedRoller(NamedTuple):
+    """Roller whose bearing is judged: that in which its checks differ from those of another.
+
+    Parameters
+    ----------
+    name : str           with which the ids of its checks begin
+    table : str          of the case, with its ratings
+    bearing, ring : str  its bearing and the outer ring, in words
+    force : str          greatest normal force on it, in words
+    greatest : str       that over all load cases and angles, in words
+    closed_by : str      closure with such a roller, see `Declaration`
+    first : bool         its bearing is of the catalogue, and the synthesis keeps its limits
+    normal : callable    normal force on it, N
+    """
+
+    name: str
+    table: str
+    bearing: str
+    ring: str
+    force: str
+    greatest: str
+    closed_by: ClosedBy
+    first: bool
+    normal: Measure
+
+    def lever(self, rating: str, *, inverse: bool = False) -> Lever:
+        """Lever of a rating; inverse: the utilisation is inverse to it."""
+        if self.first:
+            return levers.Catalogued(levers.BEARING, rating, inverse=inverse)
+        return levers.one(f"{self.table}.{rating}")
+
+
+_FIRST = _JudgedRoller(
+    *("roller", "roller.bearing", "the roller bearing", "the outer ring", "greatest normal force"),
+    greatest="greatest normal force over all load cases and angles, of two rollers in a groove that"
+    " of the inner wall",
+    closed_by="",
+    first=True,
+    normal=first_force,
+)
+_SECOND = _JudgedRoller(
+    *("second_roller", "cam.groove.second", "the bearing of the second roller"),
+    *("the outer ring of the second roller", "greatest normal force on the outer wall"),
+    greatest="greatest normal force on the outer wall over all load cases and angles",
+    closed_by="rollers",
+    first=False,
+    normal=second_force,
+)
+
+
+def _static_safety(at: _JudgedRoller) -> Declaration:
+    """Static safety factor of a bearing."""
+    key = f"{at.table}.C0"
+    return _of_roller(
+        ROLLER_STATIC_SAFETY,
+        id=f"{at.name}_static",  # of the first NORMAL_FORCE, the group of all these limits
+        title=f"Static safety factor of {at.bearing}",
+        method=f"static rating over the {at.force}",
+        closed_by=at.closed_by,
+        kept_as="static load rating of the roller" if at.first else "",
+        formula=f"C0/N >= S; C0: static rating, N: {at.greatest}, S: limits.roller_static_safety",
+        symbols={"N": "normal_force", "C0": key},
+        reason="beyond it the balls dent the raceways",
+        values=(*given.LOADS, key),
+        levers=(at.lever("C0", inverse=True), *levers.LOAD),
+    ).measured(
+        "angles",
+        value=lambda worst, numbers: rating_over(numbers[key], worst, np.nan),
+        bound=lambda limit, numbers: float(numbers[key]) / limit,
+        needed=(key,),
+        remark=_with_card,
+        deviation=0.005,
+        kept=Kept(force_over, group=NORMAL_FORCE, unit="N") if at.first else None,
+    )(at.normal)
+
+
+roller_static = _static_safety(_FIRST)
 
 
 _AXES = f"limits.{AXIS_PARALLELISM.id}", f"limits.{CAM_RUN_OUT.id}"
@@ -386,166 +446,113 @@ def roller_misalignment(cam: LoadedCam) -> Array:
     return tilt + (numbers.limit(AXIS_PARALLELISM) + run_out + guides)
 
 
-roller_load_share = check(
-    ROLLER_LOAD_SHARE,
-    id="roller_load_share",
-    title="Greatest load over dynamic rating of the roller bearing",
-    method="greatest normal force over the dynamic rating",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    needs="roller",
-    part="roller_bearing",
-    kept_as="share of the dynamic load rating of the roller",
-    formula="N/C <= x; N: greatest normal force over all load cases and"
-    f" angles{_OWN}, C: dynamic rating, x: limits.roller_load_share",
-    symbols={
-        "N": "normal_force",
-        "C": "roller.bearing.C",
-    },
-    reason="beyond it the balls yield in their raceways and no rating life is valid",
-    values=(*given.LOADS, "roller.bearing.C"),
-    levers=(levers.Catalogued(levers.BEARING, "C", inverse=True), *levers.LOAD),
-    page="Roller",
-).measured(
-    "angles",
-    value=lambda worst, numbers: worst / numbers[_RATING],
-    bound=lambda limit, numbers: float(numbers[_RATING]) * limit,
-    needed=(_RATING,),
-    remark=_with_card,
-    deviation=0.005,
-    kept=Kept(group=NORMAL_FORCE),
-)(first_force)
+def _load_share(at: _JudgedRoller) -> Declaration:
+    """Greatest load of a bearing over its dynamic rating."""
+    key = f"{at.table}.C"
+    return _of_roller(
+        ROLLER_LOAD_SHARE,
+        id=f"{at.name}_load_share",
+        title=f"Greatest load over dynamic rating of {at.bearing}",
+        method=f"{at.force} over the dynamic rating",
+        closed_by=at.closed_by,
+        kept_as="share of the dynamic load rating of the roller" if at.first else "",
+        formula=f"N/C <= x; N: {at.greatest}, C: dynamic rating, x: limits.roller_load_share",
+        symbols={"N": "normal_force", "C": key},
+        reason="beyond it the balls yield in their raceways and no rating life is valid",
+        values=(*given.LOADS, key),
+        levers=(at.lever("C", inverse=True), *levers.LOAD),
+    ).measured(
+        "angles",
+        value=lambda worst, numbers: worst / numbers[key],
+        bound=lambda limit, numbers: float(numbers[key]) * limit,
+        needed=(key,),
+        remark=_with_card,
+        deviation=0.005,
+        kept=Kept(group=NORMAL_FORCE) if at.first else None,
+    )(at.normal)
 
 
-second_roller_load_share = check(
-    ROLLER_LOAD_SHARE,
-    id="second_roller_load_share",
-    title="Greatest load over dynamic rating of the bearing of the second roller",
-    method="greatest normal force on the outer wall over the dynamic rating",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    needs="roller",
-    closed_by="rollers",
-    part="roller_bearing",
-    formula="N/C <= x; N: greatest normal force on the outer wall over all load cases and angles,"
-    " C: dynamic rating, x: limits.roller_load_share",
-    symbols={"N": "normal_force", "C": _SECOND},
-    reason="beyond it the balls yield in their raceways and no rating life is valid",
-    values=(*given.LOADS, _SECOND),
-    levers=(levers.one(_SECOND), *levers.LOAD),
-    page="Roller",
-).measured(
-    "angles",
-    value=lambda worst, numbers: worst / numbers[_SECOND],
-    needed=(_SECOND,),
-    remark=_with_card,
-    deviation=0.005,
-)(second_force)
+roller_load_share = _load_share(_FIRST)
+second_roller_load_share = _load_share(_SECOND)
 
 
-roller_life = check(
-    ROLLER_LIFE,
-    id="roller_life",
-    title="L10 rating life of the roller bearing",
+def _rating_life(
+    at: _JudgedRoller,
+    damage: Measure,
+    *,
+    method: str,
+    mean: str,
+    symbols: Mapping[str, str],
+    reason: str,
+    film: tuple[str, ...],
+    remark: Callable[[Demand, Solution], Demand],
+) -> Declaration:
+    """L10 life of a bearing.
+
+    Parameters
+    ----------
+    damage : callable   N^3 |n|, N^3 rad/s
+    mean : str          cube mean of the force, in words
+    film : tuple        keys of which a modified life is made, where the bearing has one
+    """
+    key = f"{at.table}.C"
+    return _of_roller(
+        ROLLER_LIFE,
+        id=f"{at.name}_life",
+        title=f"L10 rating life of {at.bearing}",
+        method=method,
+        closed_by=at.closed_by,
+        kept_as="dynamic load rating of the roller" if at.first else "",
+        formula=f"(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the {mean}, n: its"
+        f" mean speed, L: limits.roller_life. Over the load cases {BY_DUTY}.",
+        symbols=symbols,
+        reason=reason,
+        load_cases=LASTING,
+        values=(*given.LOADS, *given.SURGE, key, *film),
+        levers=(at.lever("C"), *levers.LOAD),
+    ).measured(
+        "life",
+        value=partial(_life, rating=key),
+        bound=lambda limit, numbers: float(_cube(numbers, key)) / limit,
+        needed=(key,),
+        remark=remark,
+        deviation=0.03,
+        bounded="surge",
+        kept=Kept(power=1.0 / BALL_LIFE_EXPONENT, unit="N") if at.first else None,
+    )(damage)
+
+
+roller_life = _rating_life(
+    _FIRST,
+    _damage,
     method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force,"
     " surge of a coil spring included",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    needs="roller",
-    part="roller_bearing",
-    kept_as="dynamic load rating of the roller",
-    formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force over the"
-    " revolutions of the roller, n: its mean speed, L: limits.roller_life. Over the load cases"
-    f" {BY_DUTY}.",
+    mean="normal force over the revolutions of the roller",
     symbols=_CUBE_MEAN | _ALONE,
     reason="the bearing has to last; a clean bearing that lasts longer is not credited",
-    load_cases=LASTING,
-    values=(
-        *given.LOADS,
-        *given.SURGE,
-        "roller.bearing.C",
-        "roller.bearing.fatigue_load_limit",
-        "roller.bearing.viscosity",
-    ),
-    levers=(levers.Catalogued(levers.BEARING, "C"), *levers.LOAD),
-    page="Roller",
-).measured(
-    "life",
-    value=_life,
-    bound=lambda limit, numbers: float(_cube(numbers)) / limit,
-    needed=(_RATING,),
+    film=("roller.bearing.fatigue_load_limit", _VISCOSITY),
     remark=_with_damage,
-    deviation=0.03,
-    bounded="surge",
-    kept=Kept(power=1.0 / BALL_LIFE_EXPONENT, unit="N"),
-)(_damage)
-
-
-second_roller_life = check(
-    ROLLER_LIFE,
-    id="second_roller_life",
-    title="L10 rating life of the bearing of the second roller",
+)
+second_roller_life = _rating_life(
+    _SECOND,
+    _second_damage,
     method="as of roller_life, by the forces of the outer wall alone",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    needs="roller",
-    closed_by="rollers",
-    part="roller_bearing",
-    formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force on the"
-    " outer wall, 0 elsewhere, over the revolutions of the roller that carries, n: its mean speed,"
-    f" L: limits.roller_life. Over the load cases {BY_DUTY}.",
-    symbols=_cube_mean(_SECOND, f"0.5 (1 - wall) ({_SURGED})"),
+    mean="normal force on the outer wall, 0 elsewhere, over the revolutions of the roller that"
+    " carries",
+    symbols=_cube_mean("cam.groove.second.C", f"0.5 (1 - wall) ({_SURGED})"),
     reason="each roller of a groove has its own wall and its own forces",
-    load_cases=LASTING,
-    values=(*given.LOADS, *given.SURGE, _SECOND),
-    levers=(levers.one(_SECOND), *levers.LOAD),
-    page="Roller",
-).measured(
-    "life",
-    value=lambda worst, numbers: rating_over(_cube(numbers, _SECOND), worst, np.inf),
-    needed=(_SECOND,),
+    film=(),
     remark=_with_card,
-    deviation=0.03,
-    bounded="surge",
-)(_second_damage)
+)
+second_roller_static = _static_safety(_SECOND)
 
 
-second_roller_static = check(
-    ROLLER_STATIC_SAFETY,
-    id="second_roller_static",
-    title="Static safety factor of the bearing of the second roller",
-    method="static rating over the greatest normal force on the outer wall",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    needs="roller",
-    closed_by="rollers",
-    part="roller_bearing",
-    formula="C0/N >= S; C0: static rating, N: greatest normal force on the outer wall over all load"
-    " cases and angles, S: limits.roller_static_safety",
-    symbols={"N": "normal_force", "C0": _SECOND_STATIC},
-    reason="beyond it the balls dent the raceways",
-    values=(*given.LOADS, _SECOND_STATIC),
-    levers=(levers.one(_SECOND_STATIC), *levers.LOAD),
-    page="Roller",
-).measured(
-    "angles",
-    value=lambda worst, numbers: rating_over(numbers[_SECOND_STATIC], worst, np.nan),
-    needed=(_SECOND_STATIC,),
-    remark=_with_card,
-    deviation=0.005,
-)(second_force)
-
-
-roller_modified_life = check(
+roller_modified_life = _of_roller(
     ROLLER_LIFE,
     id="roller_modified_life",
     title="Modified rating life of the roller bearing",
     method="a1 a_ISO (C / P)^3 million revolutions, the damage of the positions of a turn added;"
     " infinite at rest",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    needs="roller",
-    part="roller_bearing",
     kept_as="dynamic load rating of the roller at its modified life",
     formula="a1 a_ISO (C/P_m)^3 10^6/n >= L; a1 = 0.05 + 0.95 (ln(1/R)/ln(1/0.9))^(1/1.5): of"
     " the reliability R, limits.roller_reliability, C, P_m, n: as of roller_life, a_ISO: of the"
@@ -576,7 +583,6 @@ roller_modified_life = check(
         levers.one("roller.bearing.viscosity"),
         *levers.LOAD,
     ),
-    page="Roller",
 ).measured(
     "life",
     value=_modified_life,
@@ -595,16 +601,12 @@ roller_modified_life = check(
 )(_modified_damage)
 
 
-@check(
+@_of_roller(
     ROLLER_SPEED_SHARE,
     id="roller_speed",
     title="Maximum roller speed vs. limiting speed",
     unit="rpm",
     method="rolling without slip: w (|dP/dtheta| - r) / r",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    needs="roller",
-    part="roller_bearing",
     kept_as="limiting speed of the roller",
     formula="w |(|P'| - r)/r| <= x n_g; P': pitch curve by cam angle, r: radius of the roller that"
     " carries, negative on the outer wall of a groove, n_g: limiting speed, x:"
@@ -623,7 +625,6 @@ roller_modified_life = check(
         *levers.SPRING,
         *levers.GENTLER,
     ),
-    page="Roller",
 ).measured(
     "angles",
     allowed=of_key("roller.bearing.speed_limit", ROLLER_SPEED_SHARE),
@@ -638,74 +639,39 @@ def roller_speed(cam: LoadedCam) -> Array:
     return _greatest([magnitude(each.spin) for each in cam.rollers])
 
 
-def _outer_ring(
-    name: str, words: str, kept: str, symbol: str, reason: str, key: str
-) -> Declaration:
-    return check(
-        id=name,
-        title=f"Normal force vs. maximum {words} load of the outer ring",
+def _outer_ring(at: _JudgedRoller, name: str, words: str, symbol: str, breaks: str) -> Declaration:
+    """Load of the outer ring of a bearing; name : of the rated load, in id and key."""
+    key = f"{at.table}.{name}_limit"
+    rated = name.replace("_", " ")
+    return _of_roller(
+        id=f"{at.name}_{name}",
+        title=f"Normal force vs. maximum {words} load of {at.ring}",
         unit="N",
         source=Source(f"{symbol} of a track roller", confirmed=True),
-        method="greatest normal force over the turn",
-        lift_can_help=True,
-        tier=Tier.SCREENING,
-        needs="roller",
-        part="roller_bearing",
-        kept_as=f"maximum {kept} load of the roller's outer ring",
-        formula=f"N <= {symbol}; N: greatest normal force over all load cases and angles{_OWN},"
-        f" {symbol}: maximum {words} load of an outer ring without a housing",
-        symbols={"N": "normal_force", symbol: f"roller.bearing.{key}"},
-        reason=reason,
-        values=(*given.LOADS, f"roller.bearing.{key}"),
-        levers=(levers.Catalogued(levers.BEARING, key, inverse=True), *levers.LOAD),
-        page="Roller",
+        method=f"{at.force} over the turn",
+        closed_by=at.closed_by,
+        kept_as=f"maximum {rated} load of the roller's outer ring" if at.first else "",
+        formula=f"N <= {symbol}; N: {at.greatest}, {symbol}: maximum {words} load of an outer ring"
+        " without a housing",
+        symbols={"N": "normal_force", symbol: key},
+        reason=f"an outer ring on a cam bends, and breaks {breaks}",
+        values=(*given.LOADS, key),
+        levers=(at.lever(f"{name}_limit", inverse=True), *levers.LOAD),
     ).measured(
         "angles",
-        allowed=of_key(f"roller.bearing.{key}"),
+        allowed=of_key(key),
         remark=_with_card,
         deviation=0.005,
-        kept=Kept(group=NORMAL_FORCE),
-    )(first_force)
+        kept=Kept(group=NORMAL_FORCE) if at.first else None,
+    )(at.normal)
 
 
-def _second_ring(name: str, words: str, symbol: str, reason: str, key: str) -> Declaration:
-    stated = f"cam.groove.second.{key}"
-    return check(
-        id=name,
-        title=f"Normal force vs. maximum {words} load of the outer ring of the second roller",
-        unit="N",
-        source=Source(f"{symbol} of a track roller", confirmed=True),
-        method="greatest normal force on the outer wall over the turn",
-        lift_can_help=True,
-        tier=Tier.SCREENING,
-        needs="roller",
-        closed_by="rollers",
-        part="roller_bearing",
-        formula=f"N <= {symbol}; N: greatest normal force on the outer wall over all load cases and"
-        f" angles, {symbol}: maximum {words} load of an outer ring without a housing",
-        symbols={"N": "normal_force", symbol: stated},
-        reason=reason,
-        values=(*given.LOADS, stated),
-        levers=(levers.one(stated), *levers.LOAD),
-        page="Roller",
-    ).measured("angles", allowed=of_key(stated), remark=_with_card, deviation=0.005)(second_force)
-
-
-_FATIGUE = "an outer ring on a cam bends, and breaks in fatigue"
-_OVERLOAD = "an outer ring on a cam bends, and breaks under a single overload"
-roller_radial = _outer_ring(
-    "roller_radial", "dynamic radial", "radial", "F_r,max", _FATIGUE, "radial_limit"
-)
-roller_static_radial = _outer_ring(
-    "roller_static_radial", "static radial", "static radial", "F_0r,max", _OVERLOAD,
-    "static_radial_limit",
-)  # fmt: skip
-second_roller_radial = _second_ring(
-    "second_roller_radial", "dynamic radial", "F_r,max", _FATIGUE, "radial_limit"
-)
-second_roller_static_radial = _second_ring(
-    "second_roller_static_radial", "static radial", "F_0r,max", _OVERLOAD, "static_radial_limit"
-)
+_RADIAL = "radial", "dynamic radial", "F_r,max", "in fatigue"
+_STATIC_RADIAL = "static_radial", "static radial", "F_0r,max", "under a single overload"
+roller_radial = _outer_ring(_FIRST, *_RADIAL)
+roller_static_radial = _outer_ring(_FIRST, *_STATIC_RADIAL)
+second_roller_radial = _outer_ring(_SECOND, *_RADIAL)
+second_roller_static_radial = _outer_ring(_SECOND, *_STATIC_RADIAL)
 
 
 @check(
@@ -779,7 +745,7 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     return speed * factor("rpm")
 
 
-@check(
+@_of_roller(
     id="grease_life",
     title="Life of the grease in the roller bearing",
     unit="h",
@@ -790,10 +756,6 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
         confirmed=False,
     ),
     method="of n D, P/C and temperature; the manufacturer's where it is given",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    needs="roller",
-    part="roller_bearing",
     kept_as="dynamic load rating of the roller at the life of its grease",
     formula="h 10^(6.10 - 4.40e-6 x - 2.50 (max(P/C, 0.05) - 0.05) - (0.021 - 1.80e-8 x)"
     " max(T, 50)) >= L; h: one hour, x = max(D n/u, 125000), D: outer diameter, u: 1 mm, n: mean"
@@ -823,7 +785,6 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
         "limits.target_life",
     ),
     levers=(levers.Catalogued(levers.BEARING, "C"), *levers.LOAD),
-    page="Roller",
 )
 def grease_life(solution: Solution) -> Demand | None:
     """Life of the grease, s, stated or estimated; None for oil."""
