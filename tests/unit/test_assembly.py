@@ -357,7 +357,7 @@ def test_gaps_in_the_plane_of_the_cam_by_polygons_over_the_turn(
     order = np.argsort(np.arctan2(cheek[1], cheek[0] - 0.05))
     cheek, roller = cheek[:, order], circle(radius)
     to_shaft, to_crank = [], []
-    for theta in np.arange(0.0, 2.0 * np.pi, np.pi / 60.0):
+    for theta in np.arange(0.0, 2.0 * np.pi, np.pi / 15.0):
         # the pitch curve is that of the cam's frame: turned back, the roller centre is on the axis
         place = turned(pitch.points(np.array([theta])), -theta)
         assert abs(abs(place[1, 0]) - machine.cam.offset) < 1e-9

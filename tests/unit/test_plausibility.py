@@ -234,6 +234,14 @@ class Notes(Progress):
         self.notes.append(text)
 
 
+class Stopped(Notes):
+    """Stops the run as Ctrl-C does before its first trial."""
+
+    def stage(self, name: str) -> None:
+        if name.startswith("trial"):
+            raise KeyboardInterrupt
+
+
 def test_a_run_warns_goes_on_and_records_it(tmp_path: Path) -> None:
     """A torque of zero: a round cam, no division by its swing."""
     case, notes = measured(tmp_path, 0.0 * TORQUE).with_positions(36), Notes()
@@ -249,9 +257,10 @@ def test_a_run_warns_goes_on_and_records_it(tmp_path: Path) -> None:
 
 def test_a_run_warns_of_a_source_that_is_open_by_its_words(tmp_path: Path) -> None:
     made_up = "made up for this template: replace by the maker's table"
-    text, notes = changed(small_machine("words"), made_up, "maker: verify"), Notes()
+    text, notes = changed(small_machine("words"), made_up, "maker: verify"), Stopped()
     case = parse_case(text).with_positions(36)
-    run_case(case, tmp_path / "run", depth=Tier.SCREENING, progress=notes)
+    with pytest.raises(KeyboardInterrupt):
+        run_case(case, tmp_path / "run", depth=Tier.SCREENING, progress=notes)
     (warning,) = (note for note in notes.notes if "version 0.1" in note)
     assert warning.startswith('warning: source "maker: verify" is to be confirmed by its words')
 
