@@ -939,7 +939,7 @@ class Check(Displayed):
         """Stated numbers in the units of the symbols of the formula; those known."""
         symbols = self.declaration.symbols
         known = {
-            name: _shown(min(value, BOUNDLESS), symbols[name].removeprefix(STATED).strip(" []"))
+            name: _shown(min(value, BOUNDLESS), symbols[name].partition("[")[2].rstrip("]"))
             for name, value in self.stated.items()
         }
         return {name: value for name, value in known.items() if value is not None}

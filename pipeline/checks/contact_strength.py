@@ -36,7 +36,14 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import LASTING, NONE, STATED, Allowed, Demand, Kept, check
 from camwright.pipeline.checks.demands import PRESSURE
-from camwright.pipeline.checks.extremes import Extreme, cycle_of, greatest, row_of
+from camwright.pipeline.checks.extremes import (
+    Extreme,
+    cycle_of,
+    greatest,
+    on_both_tracks,
+    pressed_row,
+    row_of,
+)
 from camwright.pipeline.checks.missing_keys import (
     lacking,
     lacking_along_line,
@@ -60,9 +67,9 @@ PSI = 6894.757293168  # Pa
 SHAKEDOWN = 4.0  # p0 / k, free rolling line contact
 FIRST_YIELD = 1.79  # p0 / Y, von Mises, line contact, nu = 0.3
 FACE_PASSES = 2.0  # of the contact over a point of a flat face in a cam turn, at most
-_ALONG_THE_LINE = {"K": "length_factor", "r": STATED, "p0": "p0_fe"}
+_ALONG_THE_LINE = {"K": "length_factor", "r": STATED, "p0": "p0_fe [MPa]"}
 _EQUIVALENT = {
-    "p0": "p0_fe",
+    "p0": "p0_fe [MPa]",
     "lambda": STATED,
     "k": "[MPa]",
     "Y": f"{STATED} [MPa]",
@@ -275,8 +282,8 @@ def passes(follower: FollowerKind, path: Array | float) -> float:
 
 
 def contact_p0(cam: LoadedCam) -> Array:
-    """Contact pressure in the middle of the line, Pa."""
-    return cam.p0
+    """Contact pressure in the middle of the line, of preloaded discs the greater of both, Pa."""
+    return on_both_tracks(cam, lambda each: each.p0)
 
 
 def line_pressure(cam: LoadedCam, allowed: Value) -> Array:
@@ -314,16 +321,75 @@ def _judged(
     )
 
 
+_OTHER_DISC = "on the preloaded disc that bears less"
+
+
+def with_its_track(
+    demand: Demand,
+    solution: Solution,
+    measure: Callable[[Cycle], Array],
+    symbols: Mapping[str, Callable[[Cycle], Array]],
+) -> Demand:
+    """Demand with the numbers of its formula where it is on the preloaded disc that bears less, of
+    which the cycle has no columns; unchanged elsewhere.
+
+    Parameters
+    ----------
+    measure : callable   cycle seen from a track -> values (n,), of which the demand is an extreme
+    symbols : mapping    symbol of the formula -> its values (n,) likewise
+    """
+    if demand.at is None:
+        return demand
+    cycle, k, less = pressed_row(solution.cycles, demand.at, measure)
+    if not less:
+        return demand
+    stated = {name: float(of(cycle)[k]) for name, of in symbols.items()}
+    note = "; ".join(filter(None, (_OTHER_DISC, demand.note)))
+    return replace(demand, note=note, stated={**demand.stated, **stated})
+
+
+def middle_pressure(cycle: Cycle) -> Array:
+    """Contact pressure in the middle of the line (n,), Pa."""
+    return cycle.surface.p0
+
+
+def signed_pressure(cycle: Cycle) -> Array:
+    """Signed contact pressure (n,), Pa, see `Cycle.signed_pressure`."""
+    return cycle.signed_pressure
+
+
+def plane_pressure(cycle: Cycle) -> Array:
+    """Contact pressure of plane strain (n,), Pa."""
+    return cycle.contact.p0
+
+
+def line_factor(cycle: Cycle) -> Array:
+    """Signed pressure by half-spaces over that of plane strain (n,); NaN without the ends."""
+    if cycle.length is None:
+        return np.full(cycle.theta.size, np.nan)
+    return cycle.length.factor / cycle.length.corrected_by
+
+
+_ENDS = {"K": line_factor, "p0": plane_pressure}
+
+
 def _pressure_in_words(demand: Demand, solution: Solution) -> Demand:
     """Demand with the material of its limit and, with a crowned line of contact, the pressure in
     its middle over plane strain; in a concave wall the conforming pressure beside that of Hertz.
     """
     figured = _with_endurance(demand, solution)
+    return with_its_track(
+        replace(figured, note=_of_the_line(solution)), solution, middle_pressure,
+        {"p0": middle_pressure},
+    )  # fmt: skip
+
+
+def _of_the_line(solution: Solution) -> str:
+    """Sentence on the middle of a crowned line, or else on conforming contacts."""
     if not solution.machine.is_crowned:
-        return replace(figured, note=conforming_sentence(solution))
+        return conforming_sentence(solution)
     most = max((float(c.length.centre.max()) for c in solution.cycles if c.length), default=np.nan)
-    note = f"in the middle of the crowned line, up to {most:.4g} times plane strain"
-    return replace(figured, note=note)
+    return f"in the middle of the crowned line, up to {most:.4g} times plane strain"
 
 
 def conforming_sentence(solution: Solution) -> str:
@@ -376,7 +442,8 @@ def _shakedown_in_words(demand: Demand, solution: Solution) -> Demand:
     if conforming := conforming_sentence(solution):
         note = f"{note}; {conforming}"
     figures, stated = (shear_yield(solution.machine).source,), _stated_yield(solution.machine)
-    return replace(demand, note=note, figures=figures, stated=stated)
+    worded = replace(demand, note=note, figures=figures, stated=stated)
+    return with_its_track(worded, solution, middle_pressure, {"p0": middle_pressure})
 
 
 def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
@@ -385,16 +452,17 @@ def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
     """
     machine, worst = solution.machine, demand.at
     rows = END_MEAN_LENGTH, AXIS_PARALLELISM, CAM_RUN_OUT, ROLLER_CLEARANCE
-    return replace(
+    worded = replace(
         demand,
         missing=(*demand.missing, *lacking_along_line(machine)),
-        note="" if worst is None else signed_sentence(solution, worst),
+        note="" if worst is None else signed_sentence(solution, worst, signed_pressure),
         stated=_stated_endurance(machine) | ({} if worst is None else of_elements(solution, worst)),
         figures=(
             _least_endurance(machine).source,
             *(f"limits.{row.id}: {machine.limits.source(row)}" for row in rows),
         ),
     )
+    return with_its_track(worded, solution, signed_pressure, _ENDS)
 
 
 def traction_coefficient(cycle: Cycle) -> Array:
@@ -457,10 +525,11 @@ contact_pressure = check(
     tier=Tier.SCREENING,
     error="contact",
     kept_as="contact pressure at the endurance limit",
-    formula="p0 <= p_E / S; p0: greatest contact pressure over all load cases and angles, p_E:"
+    formula="p0 <= p_E / S; p0: greatest contact pressure over all load cases and angles, of"
+    " preloaded discs on either, p_E:"
     " least endurance pressure of cam and follower, of rolling for a roller and of rolling with"
     " sliding for a flat face, S: limits.contact_safety",
-    symbols={"p0": "p0_fe", "p_E": f"{STATED} [MPa]"},
+    symbols={"p0": "p0_fe [MPa]", "p_E": f"{STATED} [MPa]"},
     reason="above the endurance pressure the track pits",
     values=(*given.CONTACT, *given.bodies("*endurance_pressure")),
     levers=(levers.RECROWNED, *levers.ENDURANCE),
@@ -488,7 +557,7 @@ contact_pressure = check(
     error="contact",
     formula="sigma_v <= Y / S; sigma_v: greatest von Mises stress with traction, stresses along the"
     " surface included, Y: least yield strength of cam and follower, S: limits.yield_safety",
-    symbols={"sigma_v": "von_mises_with_traction", "Y": f"{STATED} [MPa]"},
+    symbols={"sigma_v": "von_mises_with_traction [MPa]", "Y": f"{STATED} [MPa]"},
     reason="a contact above first yield may shake down, see shakedown_traction",
     values=(*given.CONTACT, *given.bodies("yield_strength")),
     page="Contact",
@@ -501,9 +570,11 @@ def first_yield(solution: Solution) -> Demand:
     limit = least_of_bodies(machine.bodies, lambda _, card: card.yield_strength / safety)
     onset = shown(FIRST_YIELD * limit.card.yield_strength, "MPa")
     note = f"first yield without traction at a contact pressure of {onset}"
-    worst = greatest(solution.cycles, _stress_with_traction)
+    worst = greatest(solution.cycles, lambda cycle: on_both_tracks(cycle, _stress_with_traction))
     judged = _judged(worst, limit, missing=no_friction(machine), note=note)
-    return replace(judged, stated=_stated_yield(machine))
+    stated = replace(judged, stated=_stated_yield(machine))
+    symbols = {"sigma_v": _stress_with_traction}
+    return with_its_track(stated, solution, _stress_with_traction, symbols)
 
 
 def _stress_with_traction(cycle: Cycle) -> Array:
@@ -527,7 +598,7 @@ shakedown = check(
     kept_as="shakedown pressure",
     formula="p0 <= 4 k / S; k = Y/sqrt(3): least shear yield strength of cam and follower, S:"
     " limits.shakedown_safety",
-    symbols={"p0": "p0_fe", "k": "[MPa]", "Y": f"{STATED} [MPa]"},
+    symbols={"p0": "p0_fe [MPa]", "k": "[MPa]", "Y": f"{STATED} [MPa]"},
     reason="above the limit every passage adds plastic strain",
     values=(*given.CONTACT, *given.bodies("yield_strength")),
     levers=(levers.RECROWNED, *levers.YIELD),
@@ -544,17 +615,22 @@ shakedown = check(
 
 
 def _signed(_: Solution, cycle: Cycle) -> Array:
-    """Signed contact pressure of a cycle (n,), Pa."""
-    return cycle.signed_pressure
+    """Signed contact pressure of a cycle (n,), of preloaded discs the greater of both, Pa."""
+    return on_both_tracks(cycle, signed_pressure)
 
 
 def _signed_in_operation(_: Solution, cycle: Cycle) -> Array:
     """Signed contact pressure of a cycle (n,), Pa; zero without a share of the operating time."""
-    return cycle.signed_pressure * float(cycle.machine.duty != 0.0)
+    return _signed(_, cycle) * float(cycle.machine.duty != 0.0)
 
 
 def _signed_equivalent(_: Solution, cycle: Cycle) -> Array:
     """Signed contact pressure of a cycle that is equivalent in shakedown with traction (n,), Pa."""
+    return on_both_tracks(cycle, signed_equivalent)
+
+
+def signed_equivalent(cycle: Cycle) -> Array:
+    """The same of one track (n,), Pa."""
     return cycle.signed_pressure * _traction_factor(cycle)
 
 
@@ -598,8 +674,10 @@ def contact_pressure_at_life(solution: Solution) -> Demand:
         figures = tuple(f"{card.name}: {card.source}" for card in machine.bodies.values())
         return Demand(worst.value, None, worst, (*missing, *lacks), figures=figures)
     limit = _life_limit(machine, load_cycles(solution.machines, solution.contour))
-    judged = _judged(worst, limit, missing=lacks, note=signed_sentence(solution, worst))
-    return replace(judged, stated=of_elements(solution, worst))
+    note = signed_sentence(solution, worst, signed_pressure)
+    judged = _judged(worst, limit, missing=lacks, note=note)
+    stated = replace(judged, stated=of_elements(solution, worst))
+    return with_its_track(stated, solution, signed_pressure, _ENDS)
 
 
 def of_elements(solution: Solution, worst: Extreme) -> dict[str, float]:
@@ -608,15 +686,14 @@ def of_elements(solution: Solution, worst: Extreme) -> dict[str, float]:
     return {"r": 1.0 if length is None else length.corrected_by}
 
 
-def signed_sentence(solution: Solution, worst: Extreme) -> str:
-    """Sentence on the kind of pressure along the line at the cam angle of the greatest one; ""
-    where it is not known.
+def signed_sentence(solution: Solution, worst: Extreme, measure: Callable[[Cycle], Array]) -> str:
+    """Sentence on the kind of pressure along the line at the cam angle of the greatest `measure`
+    (n,) of a cycle; "" where it is not known.
     """
-    for cycle in solution.cycles:
-        if cycle.load_case == worst.load_case and cycle.length and worst.cam_angle is not None:
-            index = first_least(np.abs(cycle.theta - worst.cam_angle))
-            return cycle.length.sentence(index)
-    return ""
+    if worst.cam_angle is None:
+        return ""
+    cycle, k, _ = pressed_row(solution.cycles, worst, measure)
+    return cycle.length.sentence(k) if cycle.length else ""
 
 
 def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: float) -> float:
@@ -658,7 +735,8 @@ _SIGNED = (
     tier=Tier.SCREENING,
     error="ends",
     kept_as="edge pressure at the endurance limit",
-    formula="r K p0 <= p_E / S; p0: contact pressure of plane strain, r: greatest ratio of finite"
+    formula="r K p0 <= p_E / S; p0: contact pressure of plane strain, of preloaded discs on either,"
+    " r: greatest ratio of finite"
     " elements to half-spaces at the certified angles, 1 without, K: signed pressure over p0 by"
     " half-spaces, at the tilt phi + t_p + t_r/(2 r_b) + c/b + g, or, forced, at phi + t_p +"
     " t_r/(2 r_b) - g; phi: slope of the camshaft at the cam, t_p: limits.axis_parallelism, t_r:"
@@ -685,7 +763,7 @@ _SIGNED = (
 )
 def edge_pressure(cam: LoadedCam) -> Array:
     """Contact pressure along the line, ends and tilt included, Pa."""
-    return cam.p0_signed
+    return on_both_tracks(cam, lambda each: each.p0_signed)
 
 
 @check(
@@ -719,14 +797,17 @@ def edge_shakedown(solution: Solution) -> Demand:
     worst = greatest(solution.cycles, partial(_signed_equivalent, solution))
     limit = _scaled(shear_yield(machine), SHAKEDOWN)
     missing = (*lacking_along_line(machine), *no_friction(machine))
-    judged = _judged(worst, limit, missing=missing, note=signed_sentence(solution, worst))
-    stated = _shakedown_stated(solution, worst) | of_elements(solution, worst)
-    return replace(judged, stated=stated)
+    note = signed_sentence(solution, worst, signed_equivalent)
+    judged = _judged(worst, limit, missing=missing, note=note)
+    stated = _shakedown_stated(solution, worst, signed_equivalent) | of_elements(solution, worst)
+    return with_its_track(replace(judged, stated=stated), solution, signed_equivalent, _ENDS)
 
 
-def _shakedown_stated(solution: Solution, worst: Extreme) -> dict[str, float]:
+def _shakedown_stated(
+    solution: Solution, worst: Extreme, measure: Callable[[Cycle], Array]
+) -> dict[str, float]:
     """p0/k at shakedown where an equivalent pressure is greatest, and the yield strength, Pa."""
-    cycle, k = row_of(solution.cycles, worst)
+    cycle, k, _ = pressed_row(solution.cycles, worst, measure)
     least = SHAKEDOWN / float(_traction_factor(cycle)[k])
     return {"lambda": least} | _stated_yield(solution.machine)
 
@@ -759,10 +840,11 @@ def _shakedown_stated(solution: Solution, worst: Extreme) -> dict[str, float]:
 def shakedown_traction(solution: Solution) -> Demand:
     """Maximum equivalent contact pressure with traction, Pa, against shakedown."""
     machine = solution.machine
-    worst = greatest(solution.cycles, equivalent_pressure)
+    worst = greatest(solution.cycles, lambda cycle: on_both_tracks(cycle, equivalent_pressure))
     limit = _scaled(shear_yield(machine), SHAKEDOWN)
-    judged = _judged(worst, limit, missing=no_friction(machine))
-    return replace(judged, stated=_shakedown_stated(solution, worst))
+    stated = _shakedown_stated(solution, worst, equivalent_pressure)
+    judged = replace(_judged(worst, limit, missing=no_friction(machine)), stated=stated)
+    return with_its_track(judged, solution, equivalent_pressure, {"p0": middle_pressure})
 
 
 @check(

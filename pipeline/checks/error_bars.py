@@ -10,6 +10,7 @@ import numpy as np
 from camwright.geometry.extrema import TIE, first_greatest
 from camwright.pipeline.base.verdict import ROUNDING
 from camwright.pipeline.checks.check import Check, Error
+from camwright.pipeline.checks.extremes import tracks_of
 from camwright.pipeline.checks.solution_verification import mesh_reaction
 from camwright.pipeline.cycle.solution import Solution
 
@@ -81,7 +82,7 @@ def contact_error(solution: Solution, figure: str | None = None) -> float | None
 
 def centre_error(solution: Solution) -> float:
     """Greatest relative error of mid-line over plane-strain pressure."""
-    errors = [cycle.length.centre_error for cycle in solution.cycles if cycle.length is not None]
+    errors = [cycle.length.centre_error for cycle in tracks_of(solution.cycles) if cycle.length]
     return max(errors, default=0.0)
 
 
@@ -92,7 +93,7 @@ def length_error(solution: Solution) -> float:
     0 where it is not known.
     """
     error, most = 0.0, 0.0
-    for cycle in solution.cycles:
+    for cycle in tracks_of(solution.cycles):
         if cycle.length is not None:
             index = first_greatest(cycle.signed_pressure)
             if not cycle.signed_pressure[index] <= most * (1.0 + TIE):

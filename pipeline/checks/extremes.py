@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, Protocol, Self, TypeVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -54,6 +54,46 @@ def row_of(cycles: Iterable[Cycle], worst: Extreme) -> tuple[Cycle, int]:
     """Cycle of an extreme, and the index of its solved angle."""
     cycle = cycle_of(cycles, worst)
     return cycle, first_least(np.abs(cycle.theta - (worst.cam_angle or 0.0)))
+
+
+class _Tracked(Protocol):
+    """A cycle or cam, which may be seen from the track that bears less, as one of its own kind."""
+
+    @property
+    def on_other_track(self) -> Self | None: ...
+
+
+Seen = TypeVar("Seen", bound=_Tracked)
+
+
+def on_both_tracks(seen: Seen, measure: Callable[[Seen], Array]) -> Array:
+    """Measure (..., n) of a cycle or cam, of preloaded discs the greater of both tracks at each cam
+    angle: a smaller roller may be pressed harder by less force. NaN where either is.
+    """
+    here, other = measure(seen), seen.on_other_track
+    if other is None:
+        return here
+    there = measure(other)
+    return np.where(np.isnan(here) | (np.real(here) >= np.real(there)), here, there)
+
+
+def pressed_row(
+    cycles: Iterable[Cycle], worst: Extreme, measure: Callable[[Cycle], Array]
+) -> tuple[Cycle, int, bool]:
+    """Cycle of an extreme of `on_both_tracks` seen from its track, index of its solved angle, and
+    whether that is the track that bears less.
+    """
+    cycle, k = row_of(cycles, worst)
+    other = cycle.on_other_track
+    if other is None or not measure(other)[k] > measure(cycle)[k]:
+        return cycle, k, False
+    return other, k, True
+
+
+def tracks_of(cycles: Iterable[Cycle]) -> list[Cycle]:
+    """The cycles, of preloaded discs also seen from the track that bears less."""
+    both = ((each, each.on_other_track) for each in cycles)
+    return [track for pair in both for track in pair if track is not None]
 
 
 def greatest(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme:

@@ -32,9 +32,9 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks import contact_strength
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check
-from camwright.pipeline.checks.extremes import Extreme, cycle_of, greatest, row_of, worst_case
+from camwright.pipeline.checks.extremes import Extreme, cycle_of, worst_case
 from camwright.pipeline.checks.flat_face_sliding import bulk_allowed, heat_missing
-from camwright.pipeline.checks.missing_keys import lacking_along_line, lacking_of_card
+from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.contact.cam_body import TWO_TRACKS
 from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.hertz import peak_pressure_square
@@ -433,52 +433,6 @@ def preload_pressure(solution: Solution) -> Demand | None:
     value, cycle, k = worst
     at = Extreme(value, cycle.load_case, float(cycle.theta[k]))
     return _within_endurance(solution, at, _preload_words(solution))
-
-
-@check(
-    title="Contact pressure along the line of the preloaded disc that bears less",
-    unit="MPa",
-    source=Source("surface endurance of cam and follower", confirmed=True),
-    formula="r K p0 <= p_E/S; K: signed pressure over p0 by half-spaces on the disc that bears"
-    " less, p0: its contact pressure of plane strain, r, p_E, S: as of edge_pressure",
-    symbols={
-        "r": STATED,
-        "K": STATED,
-        "p0": f"{STATED} [MPa]",
-        "p_E": f"{STATED} [MPa]",
-        "S": "limits.contact_safety",
-    },
-    reason="A smaller roller may be pressed harder by less force, at its ends first.",
-    method="as edge_pressure, ends and tilt included, at the nominal interference",
-    lift_can_help=True,
-    error="ends",
-    needs="roller",
-    closed_by="conjugate",
-    values=(
-        *given.LOADS, *given.LENGTH, *given.bodies("*endurance_pressure"),
-        "cam.conjugate.interference", "limits.contact_safety",
-    ),
-    levers=(levers.one("cam.conjugate.interference", -1), levers.CROWNED),
-    page="Contact",
-)  # fmt: skip
-def other_edge_pressure(solution: Solution) -> Demand | None:
-    """Greatest signed contact pressure on the disc that bears less, Pa; None without an
-    interference.
-    """
-    others = [each.on_other_track for each in solution.cycles]
-    cycles = tuple(each for each in others if each is not None)
-    if not cycles:
-        return None
-    worst = greatest(cycles, lambda each: each.signed_pressure)
-    judged = _within_endurance(solution, worst, "")
-    missing = (*judged.missing, *lacking_along_line(solution.machine))
-    cycle, k = row_of(cycles, worst)
-    if cycle.length is None:
-        return replace(judged, missing=missing, stated={})
-    r, p0 = cycle.length.corrected_by, float(cycle.contact.p0[k])
-    stated = {"r": r, "K": float(cycle.length.factor[k]) / r, "p0": p0}
-    stated |= {name: value for name, value in judged.stated.items() if name == "p_E"}
-    return replace(judged, missing=missing, note=cycle.length.sentence(k), stated=stated)
 
 
 def _within_endurance(solution: Solution, worst: Extreme, words: str) -> Demand:

@@ -33,8 +33,20 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Demand, Kept, check, of_key
-from camwright.pipeline.checks.contact_strength import endurance_of, of_elements
-from camwright.pipeline.checks.extremes import cycle_of, greatest, least, worst_case
+from camwright.pipeline.checks.contact_strength import (
+    endurance_of,
+    line_factor,
+    middle_pressure,
+    of_elements,
+    with_its_track,
+)
+from camwright.pipeline.checks.extremes import (
+    cycle_of,
+    greatest,
+    least,
+    on_both_tracks,
+    worst_case,
+)
 from camwright.pipeline.checks.missing_keys import (
     lacking,
     lacking_along_line,
@@ -148,7 +160,7 @@ traction_reserve = check(
     formula="lambda = h_min / sqrt(Rq1^2 + Rq2^2) >= limits.film_ratio; h_min: film of smooth"
     " surfaces in line contact, Rq: rms roughness of cam and follower",
     symbols={
-        "h_min": "film_thickness",
+        "h_min": "film_thickness [um]",
         "Rq1": "cam.roughness",
         "Rq2": "roller.roughness",
         "?": "follower.kind roller",
@@ -169,10 +181,11 @@ def film_ratio(solution: Solution) -> Demand:
     machine = solution.machine
     oil, kind = machine.lubricant, machine.follower
     running = [cycle for cycle in solution.cycles if cycle.machine.speed > 0]
-    worst, crowned = least(running or solution.cycles, _lambda), machine.is_crowned
+    worst = least(running or solution.cycles, lambda cycle: -on_both_tracks(cycle, _thinness))
+    crowned = machine.is_crowned
     missing = lacking(machine.cam.table, machine.cam, "roughness")
     missing += lacking(kind.table, kind, "roughness")
-    return Demand(
+    judged = Demand(
         worst.value,
         machine.limits[FILM_RATIO],
         worst,
@@ -182,6 +195,7 @@ def film_ratio(solution: Solution) -> Demand:
         else "",
         figures=() if oil is None else (oil.source,),
     )
+    return with_its_track(judged, solution, _thinness, {"h_min": _film_thickness})
 
 
 def _torsion_demand(
@@ -451,7 +465,7 @@ def _signed_depth(cycle: Cycle) -> Array:
     formula="d / (r K z) >= limits.case_depth_ratio; d: case_depth, least of the hardened bodies,"
     " z: depth of the maximum shear stress of plane strain, r, K: factors of edge_pressure, of the"
     " greatest product over all load cases",
-    symbols={"d": f"{STATED} [mm]", "r": STATED, "K": "length_factor", "z": "tau_depth"},
+    symbols={"d": f"{STATED} [mm]", "r": STATED, "K": "length_factor", "z": "tau_depth [mm]"},
     reason="of a hardened surface: the maximum shear stress must lie within the case",
     values=(*given.LENGTH, "cam.material.case_depth"),
     levers=levers.CASE,
@@ -465,14 +479,14 @@ def case_depth(solution: Solution) -> Demand | None:
     bodies = hardened_bodies(solution)
     if not bodies:
         return None
-    worst = greatest(solution.cycles, _signed_depth)
+    worst = greatest(solution.cycles, lambda cycle: on_both_tracks(cycle, _signed_depth))
     stated = {"d": min((card.case_depth or np.nan for card in bodies.values()), default=np.nan)}
     loaded = worst.value > 0 or np.isnan(worst.value)
     limit = solution.machine.limits[CASE_DEPTH_RATIO]
     depths = [card.case_depth for card in bodies.values() if card.case_depth is not None]
     ratio = min(depths) / worst.value if depths and loaded else None
     incomplete = [card for card in bodies.values() if card.case_depth is None]
-    return Demand(
+    judged = Demand(
         None if incomplete and not (ratio is not None and ratio < limit) else ratio,
         limit,
         worst,
@@ -483,6 +497,8 @@ def case_depth(solution: Solution) -> Demand | None:
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
         stated=stated | of_elements(solution, worst),
     )
+    symbols = {"K": line_factor, "z": lambda cycle: cycle.contact.tau_depth}
+    return with_its_track(judged, solution, _signed_depth, symbols)
 
 
 @check(
@@ -500,7 +516,7 @@ def case_depth(solution: Solution) -> Demand | None:
     error="contact",
     formula="p0 <= 2.76 HB - 70 MPa; HB: hardness_brinell, at most 400",
     symbols={
-        "p0": "p0_fe",
+        "p0": "p0_fe [MPa]",
     },
     reason="an estimate from the hardness alone; contact_pressure has the endurance of the card",
     values=(*given.CONTACT, "cam.material.hardness*"),
@@ -542,7 +558,7 @@ def pressure_by_hardness(solution: Solution) -> Demand | None:
     formula="p0 <= sigma_Hlim; carburised 1500 MPa, induction hardened 0.541 HV + 882 MPa,"
     " through-hardened 1.313 HV + 373 MPa; HV: hardness_vickers",
     symbols={
-        "p0": "p0_fe",
+        "p0": "p0_fe [MPa]",
     },
     reason="allowable stress of gear flanks, for comparison",
     values=(*given.CONTACT, "cam.material.hardness*"),
@@ -577,7 +593,7 @@ def _estimate(
 
     lacks: keys that the rule needs; reason: why it does not hold for a card that has them.
     """
-    worst = greatest(solution.cycles, lambda cycle: cycle.surface.p0)
+    worst = greatest(solution.cycles, lambda cycle: on_both_tracks(cycle, middle_pressure))
     limits = {body: rule(card) for body, card in bodies.items()}
     stated = {body: value for body, value in limits.items() if value is not None}
     incomplete = {body: card for body, card in bodies.items() if body not in stated}
@@ -586,7 +602,7 @@ def _estimate(
         for body, card in incomplete.items()
         if not lacks(card)
     ]
-    return Demand(
+    judged = Demand(
         worst.value,
         min(stated.values()) if stated else None,
         worst,
@@ -594,6 +610,7 @@ def _estimate(
         note="; ".join(notes),
         figures=tuple(f"{bodies[body].name}: {bodies[body].source}" for body in stated),
     )
+    return with_its_track(judged, solution, middle_pressure, {"p0": middle_pressure})
 
 
 @check(
@@ -642,6 +659,17 @@ def _rules(machine: Machine, card: Material) -> dict[str, float]:
     row = endurance_of(machine, card)
     by_motion = {row.motion: row.pressure} if row.pressure else {}
     return by_motion | endurance_by_hardness(card)
+
+
+def _thinness(cycle: Cycle) -> Array:
+    """`_lambda` with its sign changed (n,), which is greatest where the film is thinnest."""
+    return -_lambda(cycle)
+
+
+def _film_thickness(cycle: Cycle) -> Array:
+    """Film thickness (n,), m; NaN where it is not known."""
+    film = cycle.rolling.film
+    return np.full(cycle.theta.size, np.nan) if film is None else film.thickness
 
 
 def _lambda(cycle: Cycle) -> Array:

@@ -309,7 +309,8 @@ class Cycle(Tabled):
             loads, axial_force=-loads.axial_force, normal_force=loads.idle_force,
             idle_force=loads.normal_force, pressure_angle=there.pressure_angle, turned=there.turned,
         )  # fmt: skip
-        other = replace(self, turn=replace(self.turn, loads=seen), contact=self.idle, idle=None)
+        other = replace(self, turn=replace(self.turn, loads=seen), contact=self.idle,
+                        pair=self.pair.other_track, idle=None)  # fmt: skip
         other.results.update({"shaft": self.shaft, "pin_slope": self.pin_slope})
         return other
 

@@ -7,9 +7,9 @@ of what enters as data.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -333,6 +333,11 @@ class LoadedCam:
             mean = np.mean(magnitude(spin), axis=-1, keepdims=True)
             turning.append(TurningRoller(force, spin, mean))
         return tuple(turning)
+
+    @property
+    def on_other_track(self) -> Self | None:
+        """The cam seen from the track that bears less, of preloaded discs; None of others."""
+        return None
 
     @cached_property
     def reactions(self) -> tuple[Reaction, Reaction]:
@@ -862,7 +867,18 @@ class DiscCam(LoadedCam):
 class CarriedCam(LoadedCam):
     """Loaded cam whose motion is that on the track that carries: of a cam that pulls its follower
     one of two, at each cam angle.
+
+    facing: the same cam seen from the track that carries, of one seen from the other track.
     """
+
+    facing: CarriedCam | None = field(default=None, repr=False)
+
+    @property
+    def on_other_track(self) -> Self | None:
+        """Contact and normal force are those of that track, the rest is of both."""
+        if self.squeeze is None or not self.pulls:
+            return None
+        return replace(self, facing=self)
 
     @cached_property
     def first(self) -> Motion:
@@ -902,12 +918,16 @@ class CarriedCam(LoadedCam):
         """Equilibrium of an arm between two tracks, and the track that carries; None of a stem and
         of a cam that does not pull.
         """
+        if self.facing is not None:
+            return self.facing._between
         if self.pivot is None or not self.pulls:
             return None
         return self._swung(self.pivot, self.required, self._pull(self.pivot))
 
     @cached_property
     def wall(self) -> Array:
+        if self.facing is not None:
+            return -self.facing.wall
         return super().wall if self._between is None else self._between[1]
 
     @cached_property
@@ -930,6 +950,10 @@ class CarriedCam(LoadedCam):
         if squeeze is None:
             return pivot.between(required, pressed, pull, direction)
         return pivot.squeezed(required, pressed, squeeze, pull, direction)
+
+    @cached_property
+    def axial(self) -> Array:
+        return super().axial if self.facing is None else self.facing.axial
 
     @property
     def on_bodies(self) -> tuple[BodyContact, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -241,7 +242,7 @@ class SolvedCam(ForcesCam):
     cycle: Cycle
 
     @classmethod
-    def of(cls, cycle: Cycle, numbers: Numbers) -> SolvedCam:
+    def of(cls, cycle: Cycle, numbers: Numbers) -> Self:
         """At the solved angles; numbers: of the solution."""
         return cls(
             *_jet(cycle, numbers, cycle.loads),
@@ -260,6 +261,11 @@ class SolvedCam(ForcesCam):
     def shaft_tilts(self) -> tuple[Array, ...]:
         other = self.cycle.on_other_track
         return (self.shaft_tilt,) if other is None else (self.shaft_tilt, other.shaft_tilt)
+
+    @property
+    def on_other_track(self) -> Self | None:
+        other = self.cycle.on_other_track
+        return None if other is None else type(self).of(other, self.numbers)
 
     @property
     def jam_worst(self) -> Array:

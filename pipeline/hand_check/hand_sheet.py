@@ -444,7 +444,7 @@ class _Evaluation:
         if name in self.trees:
             return self._defined(name)
         text, _, unit = self.declared.symbols.get(name, name).partition(" [")
-        if text == STATED:
+        if text == STATED or name in self._stated:  # in place of a column of the other track
             return self._as_stated(name, unit.rstrip("]"))
         tree = formula.parsed(text)
         value = float(formula.value(tree, self._number, partial(self._number, turn=True)))

@@ -20,7 +20,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import SHAFT_SAFETY, SPRING_FATIGUE
 from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.checks.camshaft_strength import shaft_fatigue_points
-from camwright.pipeline.checks.extremes import steady
+from camwright.pipeline.checks.extremes import on_both_tracks, steady, tracks_of
 from camwright.pipeline.checks.spring_strength import spring_fatigue_points
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
@@ -246,8 +246,11 @@ def headline(solution: Solution) -> HeadlineRecord:
         return worst if np.isfinite(worst) else None
 
     def contact(measure: Callable[[ContactHistory], Array], scale: float) -> float | None:
+        def of_track(cycle: Cycle) -> Array:
+            return measure(cycle.contact)
+
         known = solution.mesh is not None or solution.tier < Tier.CYCLE
-        worst = over(lambda c: measure(c.contact)) if known else None
+        worst = over(lambda c: on_both_tracks(c, of_track)) if known else None
         return None if worst is None else scale * worst
 
     after = first.turn.torque_after if first in loaded else None
@@ -307,7 +310,9 @@ def figures(trial: Trial) -> CamFigures:
 
     rows: list[LoadCaseFigures] = []
     for cycle in steady(trial.solution):
-        loads, contact = cycle.loads, cycle.contact
+        loads = cycle.loads
+        p0_hertz = on_both_tracks(cycle, lambda one: one.contact.p0_hertz)
+        half_width = on_both_tracks(cycle, lambda one: one.contact.half_width)
         whole = cycle.end is None
         rows.append(
             {
@@ -318,8 +323,8 @@ def figures(trial: Trial) -> CamFigures:
                 "normal_force_max_N": peak(loads.normal_force) if whole else None,
                 "drive_torque_min_Nm": trough(loads.cam_torque) if whole else None,
                 "drive_torque_max_Nm": peak(loads.cam_torque) if whole else None,
-                "p0_hertz_max_MPa": peak(contact.p0_hertz, _MPA) if whole else None,
-                "half_width_max_mm": peak(contact.half_width, _MM) if whole else None,
+                "p0_hertz_max_MPa": peak(p0_hertz, _MPA) if whole else None,
+                "half_width_max_mm": peak(half_width, _MM) if whole else None,
             }
         )
     return {
@@ -346,7 +351,7 @@ def _body_stresses(solution: Solution, loaded: Sequence[Cycle]) -> BodyStresses:
     """
     bodies = solution.machine.bodies.values()
     (own, at), (other, there) = (von_mises_peak(card.nu) for card in bodies)
-    known = [c for c in loaded if solution.mesh is not None or solution.tier < Tier.CYCLE]
+    known = tracks_of(loaded) if solution.mesh is not None or solution.tier < Tier.CYCLE else []
     stress = depth = np.nan
     if known:
         worst = known[first_greatest([c.contact.von_mises.max() for c in known])]

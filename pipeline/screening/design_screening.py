@@ -23,6 +23,7 @@ from camwright.pipeline.case.external_load import closing_preload
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.load_case_torque import has_torque
 from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.extremes import on_both_tracks
 from camwright.pipeline.checks.registry import DECLARED, accepted
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.spring import spring_energy
@@ -447,7 +448,7 @@ def headline_columns(designs: Designs) -> dict[str, Column]:
         worst = np.max(loaded, axis=0)
         return np.where(np.isneginf(worst), np.nan, worst)
 
-    p0 = over(lambda each: each.p0_line)
+    p0 = over(lambda each: on_both_tracks(each, lambda one: one.p0_line))
     least = np.min([_least_force(each) for each in cams], axis=0)
     steepest = sampled_greatest(np.abs(designs.whole.motion.pressure_angle))
     figures = {

@@ -29,6 +29,7 @@ from camwright.pipeline.case.case_values import quantity_of, value_of
 from camwright.pipeline.case.lift_section import LiftPoints, LiftSegments
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.case.load_case_torque import has_torque
+from camwright.pipeline.checks.extremes import on_both_tracks
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.records.live_document import (
@@ -429,7 +430,7 @@ HEADLINE = (
     ),
     _Headline(
         "hertz_pressure", "Peak contact pressure after Hertz", "MPa", "greatest", "pressure",
-        lambda _, cam: sampled_greatest(cam.p0_line),
+        lambda _, cam: sampled_greatest(on_both_tracks(cam, lambda one: one.p0_line)),
     ),
 )  # fmt: skip
 """Key figures of a live preview, in the order of the calculation."""

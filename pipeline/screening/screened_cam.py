@@ -140,6 +140,8 @@ class ScreenedCam(CarriedCam):
     @cached_property
     def _pressed(self) -> PressedStem | None:
         """Stem in its guides under a preload of both rollers; None of other followers."""
+        if isinstance(self.facing, ScreenedCam):
+            return self.facing._pressed
         return self._pressed_at(self._friction("friction"))
 
     @cached_property
@@ -185,7 +187,9 @@ class ScreenedCam(CarriedCam):
     @cached_property
     def wall(self) -> Array:
         pressed = self._pressed
-        return super().wall if pressed is None else wall_of(pressed.axial, held=True)
+        if pressed is None or self.facing is not None:
+            return super().wall
+        return wall_of(pressed.axial, held=True)
 
     @cached_property
     def relative_radius(self) -> Array:
@@ -220,6 +224,8 @@ class ScreenedCam(CarriedCam):
 
     @cached_property
     def axial(self) -> Array:
+        if self.facing is not None:
+            return self.facing.axial
         if self._pressed is not None:
             return self._pressed.axial
         if self.pivoted is not None:

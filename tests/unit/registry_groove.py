@@ -120,32 +120,13 @@ def unpressed() -> Solution:
 
 def pressed(more: float) -> tuple[float, float]:
     """Least share of the preload and greatest pressure, MPa, with `more` interference, m."""
-    least, pressures, _ = on_both(more)
+    least, pressures = on_both(more)
     return least, float(pressures.max())
 
 
-def other_ends() -> float:
-    """Greatest pressure along the line of the disc that bears less, MPa."""
-    _, pressures, forces = on_both(0.0)
-    (cycle,) = made.preloaded().cycles
-    other = cycle.on_other_track
-    assert other is not None and other.length is not None
-    less = np.where(forces[0] < forces[1], *pressures)
-    return float((less * other.length.factor).max())
-
-
-def without_other() -> Solution:
-    """The pair without a known pressure on the disc that bears less."""
-    base = made.preloaded()
-    (cycle,) = base.cycles
-    assert cycle.idle is not None
-    unknown = replace(cycle.idle, p0=NAN * cycle.idle.p0)
-    return replace(base, cycles=(made.changed_cycle(cycle, idle=unknown),))
-
-
-def on_both(more: float) -> tuple[float, np.ndarray, np.ndarray]:
-    """Least share of the preload, and pressure, MPa, and force along the travel, N, of both discs
-    (2, n), with `more` interference, m.
+def on_both(more: float) -> tuple[float, np.ndarray]:
+    """Least share of the preload, and pressure, MPa, of both discs (2, n), with `more`
+    interference, m.
 
     Both rollers on springs of 20 kN/mm, arms of 60 mm under the inertia of 175 g.
     """
@@ -163,7 +144,7 @@ def on_both(more: float) -> tuple[float, np.ndarray, np.ndarray]:
         force / cosine / machine.contact_width * curved * machine.contact_modulus / np.pi
         for force, cosine, curved in zip(forces, tilt, flat, strict=True)
     ]
-    return float(least), 1e-6 * np.sqrt(squares), np.array(forces)
+    return float(least), 1e-6 * np.sqrt(squares)
 
 
 # --- by hand: s = h/2 (1 - cos theta), inertia alone ------------------------------------------
@@ -480,15 +461,6 @@ tried(
     unpressed,
     pressed(4e-6)[1],
     "Hertz (1882) of both discs, the springs pressed by 24 um",
-    made.preloaded,
-)
-tried(
-    "other_edge_pressure",
-    limited("other_edge_pressure", lambda p: weak_pair(endurance_pressure=p), made.preloaded),
-    lambda: weak_pair(endurance_pressure=None, sliding_endurance_pressure=None),
-    without_other,
-    other_ends(),
-    "Hertz (1882) of the disc that bears less times the factor along its line, by its own tests",
     made.preloaded,
 )
 by_limit(

@@ -232,10 +232,11 @@ def test_the_sheets_of_the_redesigned_case_give_its_demands(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["stem", "arm"])
+@pytest.mark.parametrize("name", ["stem", "arm", "pressed"])
 def test_sheets_of_unequal_discs_are_of_the_disc_of_the_demand(tmp_path, name):
-    """Radius or curvature of the second disc govern, and its roller turns faster."""
-    text = (DATA / f"conjugate_{'feeder' if name == 'stem' else 'arm'}.toml").read_text("utf-8")
+    """Radius, curvature or pressure of the second disc govern, and its roller turns faster."""
+    files = {"stem": "conjugate_feeder", "arm": "conjugate_arm", "pressed": "preloaded_arm"}
+    text = (DATA / f"{files[name]}.toml").read_text("utf-8")
     if name == "stem":
         text = text.replace('roller_radius = "23.5 mm"', 'roller_radius = "20 mm"')
         text = text.replace('distance = "154 mm"', 'distance = "170 mm"')
@@ -247,5 +248,9 @@ def test_sheets_of_unequal_discs_are_of_the_disc_of_the_demand(tmp_path, name):
     if name == "stem":
         assert run.sheet("cam_radius").result > 1.2e3 * run.contour.radius_max().value
     else:
+        if name == "pressed":
+            pressed = {each.symbol: each for each in run.sheet("edge_pressure").quantities}
+            assert pressed["p0"].value > 1.01 * 1e6 * run.run.final.cycle["p0_hertz_MPa"].max()
+            assert pressed["K"].source.startswith("stated")
         quantities = run.sheet("curvature_ratio").quantities
         assert "roller.radius, of the second disc" in [each.source for each in quantities]

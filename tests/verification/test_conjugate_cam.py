@@ -46,6 +46,7 @@ from camwright.pipeline.follower.shaft_strength import (
     torque_at,
 )
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.search.crown.solved_lines import SolvedLines
 
 DATA = Path(__file__).parents[1] / "data"
@@ -378,8 +379,8 @@ def test_a_vanishing_interference_is_a_pair_without_clearance():
 
 
 def test_the_ends_of_the_disc_that_bears_less_by_half_spaces():
-    """other_edge_pressure by half-spaces of the governing contact solved directly, 1 %: the table
-    that the check interpolates has 0.2 % of the greatest pressure.
+    """Checks of the signed pressure by half-spaces of the governing contact solved directly, 1 %:
+    the table that they interpolate has 0.2 % of the greatest pressure.
     """
     checks = {each.id: each for each in trial("pressed").checks}
     cycle = max(trial("pressed").cycles, key=lambda each: each.on_other_track.signed_pressure.max())
@@ -396,8 +397,57 @@ def test_the_ends_of_the_disc_that_bears_less_by_half_spaces():
             factor = signed_factor(lines, *at, side * moment).value
             _, p0 = line_contact(force / pair.contact_length, 1.0 / curvature, pair.contact_modulus)
             solved.append(float(factor[0] * p0[0]))
-    assert checks["other_edge_pressure"].demand == pytest.approx(max(solved), rel=0.01)
-    assert checks["other_edge_pressure"].demand > checks["edge_pressure"].demand
+    assert max(solved) > 1.02 * max(each.signed_pressure.max() for each in trial("pressed").cycles)
+    # the traction of the roller is less than 1e-4 of the normal force
+    for name in ("edge_pressure", "contact_pressure_at_life", "edge_shakedown"):
+        assert checks[name].demand == pytest.approx(max(solved), rel=0.01), name
+        assert checks[name].note.startswith("on the preloaded disc that bears less")
+
+
+def test_the_harder_pressed_disc_is_judged():
+    """Checks of the contact by Hertz (1882) on the smaller roller of the second disc, which less
+    force presses harder; 1e-4 for the traction that they count, 1e-3 for the table of its stress.
+    """
+    checks = {each.id: each for each in trial("pressed").checks}
+    _, machine, track = running("pressed")
+    pressures, carried = [], []
+    for cycle in trial("pressed").cycles:
+        loads, pulled = cycle.loads, cycle.loads.axial_force < 0.0
+        curved = 1.0 / 0.022 + 1.0 / track.contour.radius_of_curvature(loads.theta)
+        load = np.where(pulled, loads.normal_force, loads.idle_force) / machine.contact_width
+        _, p0 = line_contact(load, 1.0 / curved, machine.contact_modulus)
+        pressures.append(p0.max())
+        carried.append(cycle.contact.p0.max())
+    greatest = max(pressures)
+    assert greatest > 1.03 * max(carried)
+    for name in ("contact_pressure", "shakedown", "pressure_by_gear_limits"):
+        assert checks[name].demand == pytest.approx(greatest, rel=1e-9), name
+        assert "on the preloaded disc that bears less" in checks[name].note
+    assert checks["shakedown_traction"].demand == pytest.approx(greatest, rel=1e-4)
+    # von Mises stress below a line contact, nu = 0.3: Johnson, Contact Mechanics, sec. 4.2(c)
+    assert checks["first_yield"].demand == pytest.approx(0.558 * greatest, rel=1e-3)
+    assert headline(trial("pressed").solution)["p0_hertz_max_MPa"] == pytest.approx(
+        1e-6 * greatest, rel=1e-9
+    )
+
+
+def test_the_film_of_each_preloaded_disc_goes_on_where_the_other_bears_more():
+    """Without a jump beyond its other changes from angle to angle; film_ratio is the least."""
+    thinnest = []
+    for cycle in trial("pressed").cycles:
+        if cycle.machine.speed == 0.0:
+            continue
+        first, second = cycle.rolling.film.ratio, cycle.on_other_track.rolling.film.ratio
+        pulled = cycle.loads.wall < 0.0
+        changes = pulled != np.roll(pulled, 1)
+        assert changes.any()
+        for film in (np.where(pulled, second, first), np.where(pulled, first, second)):
+            steps = np.abs(film - np.roll(film, 1))
+            assert steps[changes].max() <= steps[~changes].max()
+            thinnest.append(film.min())
+        assert np.abs(first - second)[changes].min() > 0.0
+    checks = {each.id: each for each in trial("pressed").checks}
+    assert checks["film_ratio"].demand == pytest.approx(min(thinnest), rel=1e-12)
 
 
 def test_the_preload_is_judged_on_both_discs():
