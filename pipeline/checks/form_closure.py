@@ -348,7 +348,7 @@ def preload_least(solution: Solution) -> Demand | None:
         if pressed is None:
             return None
         squeeze, first, second = pressed
-        return np.minimum(first, second) / squeeze.preload - _tolerance_over_interference(solution)
+        return np.minimum(first, second) / squeeze.preload - _tolerance_over_interference(cycle)
 
     worst = _of_turns(solution, left, -1.0)
     if worst is None:
@@ -365,12 +365,14 @@ def preload_least(solution: Solution) -> Demand | None:
     return Demand(value, limit, at, note=_preload_words(solution), stated=stated)
 
 
-def _tolerance_over_interference(solution: Solution) -> float:
-    cam = solution.machine.cam
-    pair = cam.conjugate
-    if pair is None or pair.interference is None:
-        return np.nan
-    return cam.profile_tolerance / pair.interference
+def _tolerance_over_interference(cycle: Cycle) -> Array:
+    """Width of the profile tolerance over the interference that deviations leave (n,)."""
+    machine, loads = cycle.machine, cycle.loads
+    preload = machine.disc_preload
+    if preload is None or loads.second is None:
+        return np.full(loads.theta.size, np.nan)
+    track = loads.second.track(cycle.contour.pitch)
+    return machine.cam.profile_tolerance / preload.left(track, loads.theta)
 
 
 def _preload_words(solution: Solution) -> str:

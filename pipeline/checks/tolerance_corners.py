@@ -1,8 +1,9 @@
 """Tolerance corners of the final cam by closed forms, and the governing corner of a check.
 
-Each tolerance is at both ends in turn; then a seeded sample varies all at once. The lift is the
-nominal one; friction, spring, masses, phase and contour are those of the corner. The demand at a
-corner is the nominal demand times the ratio of the closed forms at the corner and at the nominal.
+Each tolerance is at both ends in turn, and all that narrow the clearance between two tracks, or
+widen it, at once; then a seeded sample varies all. The lift is the nominal one; friction, spring,
+masses, phase and contour are those of the corner. The demand at a corner is the nominal demand
+times the ratio of the closed forms at the corner and at the nominal.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -26,6 +28,7 @@ from camwright.pipeline.case.machine import Corner, Machine, friction_range
 from camwright.pipeline.checks.check import HELD, Check, Declaration, Demand
 from camwright.pipeline.checks.lost_loads import checks_on_sound_loads
 from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, checks_of
+from camwright.pipeline.contact.cam_body import NARROWING
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import solve_lengths
 from camwright.pipeline.cycle.solution import Solution, solved_turns
@@ -33,6 +36,8 @@ from camwright.pipeline.cycle.turn import Turn, TurnInput, turns
 from camwright.pipeline.records.corners_document import CornerRecord, CornersDocument
 
 NOMINAL = Corner("nominal")
+_ENDS = "low", "high"
+_Ranges = Mapping[str, Mapping[str, tuple[float, float]]]
 POSITIONS = 90
 """Cam angles per turn, enough for the ratio of two demands."""
 
@@ -53,15 +58,11 @@ class Outcome(Displayed):
 
 
 def corners_of(case: Case) -> tuple[Corner, ...]:
-    """Corners with one tolerance at its low or high limit each, then a seeded random sample of all
-    together.
+    """Corners with one tolerance at its low or high limit each, those of the clearance or
+    interference, then a seeded random sample of all together.
     """
     ranges = _ranges(case)
-    alone = []
-    for label, bounds in ranges.items():
-        low = {name: ends[0] for name, ends in bounds.items()}
-        high = {name: ends[1] for name, ends in bounds.items()}
-        alone += [Corner(f"{label} low", **low), Corner(f"{label} high", **high)]
+    alone = [_at(ranges, {label: end}) for label in ranges for end in range(len(_ENDS))]
     draw = np.random.default_rng(case.tolerances.seed)
     sample = []
     for number in range(case.tolerances.samples):
@@ -70,7 +71,43 @@ def corners_of(case: Case) -> tuple[Corner, ...]:
             share = float(draw.random())  # both guides share their lubrication
             values |= {name: low + share * (high - low) for name, (low, high) in bounds.items()}
         sample.append(Corner(f"sample {number + 1}", **values))
-    return (*alone, *sample)
+    return (*alone, *_limits_of_fit(case, ranges), *sample)
+
+
+def _limits_of_fit(case: Case, ranges: _Ranges) -> Iterator[Corner]:
+    """Corners of the least and the greatest clearance or interference of two tracks.
+
+    All that narrows it at every cam angle does so together, or all widens it: the worst case, by
+    which ISO 286-1 has the limits of a fit. Its chain is short, and each pair of tracks is adjusted
+    for itself; the statistical sum is that of the sample. What narrows it at some angles and widens
+    it at others is at both its ends. None where a single tolerance moves it.
+    """
+    moved = [label for label in case.cam.deviations if label in ranges]
+    if len(moved) < 2:
+        return
+    either = [label for label in moved if label not in NARROWING]
+    clear = case.cam.clearance > 0.0
+    for narrow in (True, False):
+        extreme = "minimum" if narrow is clear else "maximum"
+        fit = f"{extreme} {'clearance' if clear else 'interference'}"
+        ends = {label: end if narrow else 1 - end for label, end in NARROWING.items()}
+        for chosen in product(range(len(_ENDS)), repeat=len(either)):
+            beside = dict(zip(either, chosen, strict=True))
+            yield _at(ranges, ends | beside, ", ".join((fit, *_words(beside))))
+
+
+def _words(ends: Mapping[str, int]) -> Iterator[str]:
+    return (f"{label} {_ENDS[end]}" for label, end in ends.items())
+
+
+def _at(ranges: _Ranges, ends: Mapping[str, int], name: str = "") -> Corner:
+    """Corner with tolerances at an end, 0 or 1, each; the others are nominal."""
+    values = {
+        field: bounds[end]
+        for label, end in ends.items()
+        for field, bounds in ranges.get(label, {}).items()
+    }
+    return Corner(name or ", ".join(_words(ends)), **values)
 
 
 def spring_corners(case: Case) -> tuple[Corner, ...]:
@@ -80,23 +117,17 @@ def spring_corners(case: Case) -> tuple[Corner, ...]:
     spring and highest contour.
     """
     ranges = _ranges(case)
-
-    def at(ends: Mapping[str, int], name: str) -> Corner:
-        values = {
-            field: bounds[ends[label]]
-            for label, tolerance in ranges.items()
-            if label in ends
-            for field, bounds in tolerance.items()
-        }
-        return Corner(name, **values)
-
     weak = {"spring rate": 0, "preload": 0, "line profile": 0}
     corners = [
-        at(weak | {"mass": mass, "friction": friction}, f"weakest spring {2 * mass + friction + 1}")
+        _at(
+            ranges,
+            weak | {"mass": mass, "friction": friction},
+            f"weakest spring {2 * mass + friction + 1}",
+        )
         for mass in (0, 1)
         for friction in (0, 1)
     ]
-    strong = at(dict.fromkeys(weak, 1), "strongest spring")
+    strong = _at(ranges, dict.fromkeys(weak, 1), "strongest spring")
     return tuple(dict.fromkeys((*corners, strong)))
 
 
@@ -207,7 +238,7 @@ def _plain(demands: Mapping[str, float]) -> dict[str, float | None]:
     }
 
 
-def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
+def _ranges(case: Case) -> _Ranges:
     """Least and greatest value of each field of `Corner`, by tolerance and field; zero tolerances
     are left out.
     """

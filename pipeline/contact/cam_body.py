@@ -142,6 +142,9 @@ class BalanceHole(Part):
 Closure = Literal["spring", "gravity", "groove", "conjugate", "yoke"]
 TWO_TRACKS = ("groove", "conjugate", "yoke")
 """Closures of a cam that pulls as well, each with a table of its own in [cam]."""
+NARROWING = {"roller radius": 1, "second track": 0, "both contours": 1, "wear of the tracks": 0}
+"""End, 0 for low or 1 for high, of what narrows the clearance at every cam angle, see
+`CamBody.deviations`; the others narrow it at some angles and widen it at others."""
 FitTolerance = Annotated[float, In("mm", at_least=0, at_most=1)]
 _AS_DRAWN = "none: as drawn"
 

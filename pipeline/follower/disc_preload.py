@@ -93,6 +93,10 @@ class DiscPreload:
     compliances: Compliances
     deviation: TrackDeviation = EXACT
 
+    def left(self, track: SecondTrack, theta: Array) -> Array:
+        """Interference (n,), m, that the deviations leave at cam angles (n,), rad."""
+        return self.interference - self.deviation.on(track, theta)
+
     def at(self, track: SecondTrack, theta: Array) -> Squeezed:
         """Preload at cam angles (n,), rad, reduced to the first roller.
 
@@ -104,7 +108,7 @@ class DiscPreload:
         InputError
             If deviations leave no interference.
         """
-        left = self.interference - self.deviation.on(track, theta)
+        left = self.left(track, theta)
         if not float(np.min(left)) > 0.0:
             shown = units.shown(float(np.min(left)), "mm")
             raise InputError("cam.conjugate.interference", shown, "> 0 mm at every angle")

@@ -6,6 +6,7 @@ geometry/track_deviation.py.
 
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ from camwright.geometry.track_deviation import TrackDeviation
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import Corner, machines
-from camwright.pipeline.checks.tolerance_corners import corners_of, outcomes
+from camwright.pipeline.checks.tolerance_corners import POSITIONS, corners_of, outcomes
 from camwright.pipeline.cycle.crossover_history import impacts
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.preview import preview_case
@@ -173,9 +174,7 @@ def test_preload_opens_and_closes_with_the_corners(name):
     tried = {each.corner.name: each for each in outcomes(case, machines(case), contour, corners)}
     least = {name: each.demands["preload_least"] for name, each in tried.items()}
     most = {name: each.demands["preload_pressure"] for name, each in tried.items()}
-    # a stem that is pressed more rubs by a greater share of the preload in its guides
-    assert least["less"] < least["nominal"]
-    assert (least["nominal"] < least["more"]) == (case.follower.arm is not None)
+    assert least["less"] < least["nominal"] < least["more"]
     assert most["less"] < most["nominal"] < most["more"]
     machine = machines(case)[0]
     theta = uniform_turn(90)
@@ -196,3 +195,95 @@ def test_a_corner_without_preload_is_refused(name):
     gone = Corner("gone", wear_depth=12e-6)
     (tried,) = outcomes(case, machines(case), contour, [gone])
     assert "cam.conjugate.interference" in tried.refused
+
+
+def with_ranges(name, seed):
+    """Case of a file of tests/data with seeded tolerances of what moves the clearance."""
+    text, draw = (DATA / f"{name}.toml").read_text(encoding="utf-8"), np.random.default_rng(seed)
+    (table,) = (each for each in ("conjugate", "groove", "yoke") if f"[cam.{each}]" in text)
+    stated = ["wear_depth"]
+    stated += ["roller_tolerance"] * (table != "yoke") + ["place_tolerance"] * (table != "groove")
+    stated += ["centre_tolerance"] * (table == "conjugate" and "[follower.arm]" in text)
+    rows = [f'{key} = "{draw.uniform(0.3, 1.5):.3f} um"' for key in stated]
+    rows += [f'turn_tolerance = "{draw.uniform(2e-3, 5e-3):.5f} deg"'] * (table == "conjugate")
+    header = f"[cam.{table}]\n"
+    return parse_case(text.replace(header, "\n".join((header.strip(), *rows, ""))))
+
+
+def limits_and_combinations(case):
+    """Corners of the limits of the fit, and those of every combination of the ends."""
+    limits = [each for each in corners_of(case) if each.name.startswith(("minimum", "maximum"))]
+    moved = [
+        [{field: ends[k] for field, ends in fields.items()} for k in (0, 1)]
+        for fields in case.cam.deviations.values()
+        if any(low != high for low, high in fields.values())
+    ]
+    every = [{k: v for each in chosen for k, v in each.items()} for chosen in product(*moved)]
+    return limits, [Corner(f"{k}", **values) for k, values in enumerate(every)]
+
+
+def extremes(values):
+    return min(values), max(values)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["conjugate_arm", "conjugate_feeder", "preloaded_arm", "preloaded_feeder", "stepped_groove",
+     "yoke_pump"],
+)  # fmt: skip
+@pytest.mark.parametrize("seed", range(4))
+def test_limits_of_the_fit_are_the_extremes_of_all_combinations(name, seed):
+    """Least and greatest opening over the turn: linear in the deviations, so that one of the
+    combinations of their ends has it.
+    """
+    case = with_ranges(name, seed)
+    path, theta = case.contour(given_lift(case)).pitch, uniform_turn(72)
+    limits, every = limits_and_combinations(case)
+    assert 2 <= len(limits) < len(every)
+    fit = "clearance" if case.cam.clearance > 0.0 else "interference"
+    opened = {
+        each: each.deviation.opened(path, case.cam.second, theta) for each in (*limits, *every)
+    }
+    narrow = [each for each in limits if (f"minimum {fit}" in each.name) == (fit == "clearance")]
+    wide = [each for each in limits if each not in narrow]
+    least = min(opened[each].min() for each in every)
+    most = max(opened[each].max() for each in every)
+    assert min(opened[each].min() for each in narrow) == pytest.approx(least, rel=1e-12)
+    assert max(opened[each].max() for each in wide) == pytest.approx(most, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "checks"),
+    [("conjugate_feeder", ("landing_speed", "landing_pressure")),
+     ("preloaded_feeder", ("preload_least", "preload_pressure"))],
+)  # fmt: skip
+def test_checks_at_the_limits_of_the_fit_are_the_extremes_of_all_combinations(name, checks):
+    """The same corners among both: to round-off."""
+    case = with_ranges(name, 5)
+    contour = case.contour(given_lift(case))
+    limits, every = limits_and_combinations(case)
+    tried = outcomes(case, machines(case), contour, [*limits, *every])
+    for check in checks:
+        demands = [each.demands[check] for each in tried]
+        apart = extremes(demands[: len(limits)]), extremes(demands[len(limits) :])
+        assert apart[0] == pytest.approx(apart[1], rel=1e-9)
+        assert apart[0][1] > 1.1 * apart[0][0] > 0.0
+
+
+def test_profile_tolerance_is_judged_against_the_interference_left():
+    """Discs with their profiles at the lower limit leave the preload of an interference less by the
+    width of the tolerance.
+    """
+    case = with_tolerances("preloaded_arm")
+    contour, (state, *_) = case.contour(given_lift(case)), machines(case)
+    corner = Corner("less", wear_depth=2e-6)
+    (tried,) = outcomes(case, [state], contour, [corner])
+    machine = state.at_corner(corner)
+    theta, preload = uniform_turn(POSITIONS), machine.system.preload
+    track = case.cam.second.track(contour.pitch)
+    narrow = replace(preload, interference=preload.interference - case.cam.profile_tolerance)
+    here, there = preload.at(track, theta), narrow.at(track, theta)
+    loads = follower_loads(contour.pitch, machine.system, machine.cam_speed, theta)
+    pressed = np.minimum(*here.forces(loads.axial_force)) - here.preload + there.preload
+    least = (pressed / here.preload).min()
+    assert tried.demands["preload_least"] == pytest.approx(least, rel=1e-6)
