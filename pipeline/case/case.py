@@ -44,14 +44,15 @@ from camwright.pipeline.case.section import Name, Section, StatedSource, Table, 
 from camwright.pipeline.case.toml_text import Tables, tables_of
 from camwright.pipeline.case.torque_section import ShaftTorque, torque_files
 from camwright.pipeline.case.workshop_section import Document, Workshop, WorkshopOrder
-from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.contact.cam_body import SECOND_BEARING, CamBody
 from camwright.pipeline.contact.oil_film import Lubricant
+from camwright.pipeline.contact.rolling_bearing import Bearing
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
 from camwright.pipeline.follower.rocker import Rocker, RockerOutput
-from camwright.pipeline.follower.roller import Roller
+from camwright.pipeline.follower.roller import Roller, on_second_track
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.records.run_summary import ScopeRecord
 from camwright.pipeline.torque.period import FOUR_STROKE, Period
@@ -370,6 +371,14 @@ class Case(Displayed, Section):
         if self.follower.arm is None:
             return {f"guides.{side.lower()}": guide for side, guide in self.guides.both}
         return {} if pivot is None or pivot.bush is None else {"follower.pivot.bush": pivot.bush}
+
+    @property
+    def bearings(self) -> Mapping[str, Bearing]:
+        """Described bearings of rollers by the dotted name of their table."""
+        described, second = {Bearing.table: self.roller.bearing}, self.cam.on_pin
+        if second is not None and second.bearing is not None:
+            described[SECOND_BEARING] = on_second_track(self.roller, self.cam).bearing
+        return described
 
     @property
     def base_circle(self) -> float:

@@ -18,7 +18,14 @@ from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.limits import SPEED_REDUCTION, TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
 from camwright.pipeline.case.value_sources import require_known
-from camwright.pipeline.contact.cam_body import TWO_TRACKS, CamBody, CamConjugate, GrooveRoller
+from camwright.pipeline.contact.cam_body import (
+    SECOND_BEARING,
+    TWO_TRACKS,
+    CamBody,
+    CamConjugate,
+    GrooveRoller,
+)
+from camwright.pipeline.contact.rolling_bearing import Bearing
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_file import SpeedTable
@@ -288,9 +295,10 @@ def _closure(case: Case) -> None:
     if cam.groove is not None and pin is not None and not pin.overhung:
         limit = f'"overhung" with {stated_as}: a cheek on both sides cannot enter it'
         raise InputError("roller.pin.mounting", pin.mounting, limit)
-    ring = case.roller.bearing.ring
-    if case.spring.absent and ring is not None and case.roller.bearing.C0 is None:
-        raise InputError("roller.bearing.C0", "missing", "given with a ring and without a spring")
+    for table, bearing in case.bearings.items():
+        if case.spring.absent and bearing.ring is not None and bearing.C0 is None:
+            limit = "given with a ring and without a spring"
+            raise InputError(f"{table}.C0", "missing", limit)
 
 
 def _stores(case: Case, stated_as: str) -> None:
@@ -414,12 +422,13 @@ def _steps(second: GrooveRoller) -> Iterator[Rule]:
 
     yield _more(radius, lambda at: at("roller.hub_radius"), "> {roller.hub_radius}")
     yield _less(radius, lambda at: at("cam.prime_radius"), "< {cam.prime_radius}")
-    if second.C is None and second.C0 is None:  # no bearing of its own
+    if second.bearing is None:
         ring, thick = (f"roller.bearing.ring.{each}" for each in ("outer_diameter", "thickness"))
         limit = f"> {{}}, half of {{{ring}}} less {{{thick}}}: it runs on balls as the first"
         balls = lambda at: np.round(0.5 * at(ring) - at(thick), _DECIMALS)  # noqa: E731
         yield _more(radius, balls, limit)
-    yield from _rated(GrooveRoller.table, radius)
+    yield _around(SECOND_BEARING, radius)
+    yield from _rated(SECOND_BEARING, radius)
     above, within = "the roller runs above the fillet", "each roller is in its step"
     limit = f">= {{}}, twice {{{wide}}}: a step for each roller"
     yield _at_least(depth, lambda at: np.round(2.0 * at(wide), _DECIMALS), limit)
@@ -726,19 +735,21 @@ def _roller(case: Case) -> Iterator[Rule]:
     limit = "< {}, beyond which the roller runs beside the cam"
     cam, roller = case.cam, case.roller
     yield _less("roller.axial_offset", lambda at: 0.5 * (_flat(cam, at) + _flat(roller, at)), limit)
-    # A ring is stated to a micrometre; a tyre on it may be larger.
-    ring = "roller.bearing.ring.outer_diameter"
-    limit = f">= {{}}, half of {{{ring}}}"
-    yield Rule(
-        "roller.radius",
-        lambda at: at("roller.radius") < 0.5 * at(ring) - 1e-6,
-        limit,
-        _half(ring),
-    )
-    yield from _rated("roller.bearing", "roller.radius")
+    yield _around(Bearing.table, "roller.radius")
+    yield from _rated(Bearing.table, "roller.radius")
     pin = case.roller.pin
     if pin is not None and pin.mounting == "straddled":
         yield _at_least("roller.pin.span", lambda at: at("roller.width"), ">= {roller.width}")
+
+
+def _around(table: str, radius: str) -> Rule:
+    """Rule that a roller is around the outer ring of its bearing; keys as in `_rated`.
+
+    A ring is stated to a micrometre; a tyre on it may be larger.
+    """
+    ring = f"{table}.ring.outer_diameter"
+    limit = f">= {{}}, half of {{{ring}}}"
+    return Rule(radius, lambda at: at(radius) < 0.5 * at(ring) - 1e-6, limit, _half(ring))
 
 
 def _rated(table: str, radius: str) -> Iterator[Rule]:

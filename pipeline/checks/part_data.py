@@ -95,8 +95,10 @@ def _guides(case: Case) -> Tables:
 
 
 def _roller_bearing(case: Case) -> Tables:
-    bearing = case.roller.bearing
-    return {"roller.bearing": bearing, "roller.bearing.ring": bearing.ring}
+    described = dict[str, Part | None]()
+    for table, bearing in case.bearings.items():
+        described |= {table: bearing, f"{table}.ring": bearing.ring}
+    return described
 
 
 def _pivot(case: Case) -> Tables:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,10 +27,20 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import value_groups as given
-from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check, of_key
+from camwright.pipeline.checks.check import (
+    NONE,
+    STATED,
+    Allowed,
+    Declaration,
+    Demand,
+    Kept,
+    check,
+    of_key,
+)
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, force_over, normal_force
 from camwright.pipeline.checks.extremes import Measure, cam_of, cycle_of, worst_case
 from camwright.pipeline.checks.missing_keys import lacking_of_card
+from camwright.pipeline.checks.roller_bearing import FIRST_ROLLER, SECOND_ROLLER, JudgedRoller
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
 from camwright.pipeline.cycle.cycle import Cycle
@@ -40,7 +51,7 @@ from camwright.pipeline.follower import pin_strength
 from camwright.pipeline.follower.bearing_ring import goodman
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.roller import Roller
-from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
+from camwright.pipeline.follower.roller_parts import Fork, Pin
 
 
 def _pin_of(roller: Roller) -> tuple[Roller, Pin]:
@@ -543,107 +554,122 @@ def _stem_mass(solution: Solution, inset: float) -> tuple[float, tuple[str, ...]
     return float(follower.stem_material.density * section * max(length - inset, 0.0)), lacks
 
 
-_TENSILE = "roller.bearing.ring.tensile_strength"
-
-
 _RINGS = 16
 """Different rings up to which the bending of each is solved for many designs."""
-_RATING = "roller.bearing.C0"
-_RING_KEYS = "roller.radius", "roller.width", _RATING
 
 
-def _groove(numbers: Numbers) -> tuple[Value, Value]:
-    """Amplitude and mean of the stress at the groove per newton, Pa/N; NaN of a solid roller."""
-    load = () if numbers.get(_RATING) is not None else ("spring.preload",)
-    amplitude, mean = numbers.each(_ring_bending, (*_RING_KEYS, *load), _RINGS)
-    return amplitude, mean
+class _Ring(NamedTuple):
+    """Outer ring of the bearing of a roller."""
+
+    at: JudgedRoller
+
+    @property
+    def keys(self) -> tuple[str, str, str]:
+        """Keys of radius and width of the roller and of the static rating."""
+        return self.at.radius, "roller.width", self.at.key("C0")
+
+    @property
+    def tensile(self) -> str:
+        """Key of the tensile strength."""
+        return self.at.key("ring.tensile_strength")
+
+    def per_newton(self, numbers: Numbers) -> tuple[Value, Value]:
+        """Amplitude and mean of the stress at the groove, Pa/N; NaN of a solid roller."""
+        load = () if numbers.get(self.keys[-1]) is not None else ("spring.preload",)
+        amplitude, mean = numbers.each(self._bending, (*self.keys, *load), _RINGS)
+        return amplitude, mean
+
+    def _bending(self, numbers: Numbers) -> tuple[float, float]:
+        """As `per_newton`, of one machine."""
+        roller = self.at.roller_in(numbers.known_case)
+        names = zip(("radius", "width", "bearing.C0"), self.keys, strict=True)
+        stated = {f"roller.{name}": numbers.get(key) for name, key in names}
+        roller = roller.with_values({key: float(each) for key, each in stated.items() if each})
+        # the bending does not depend on the width of the contact, nor with a rating on the preload
+        solved = roller.ring(roller.line_width, float(np.ravel(numbers["spring.preload"])[0]))
+        if solved is None:
+            return np.nan, np.nan
+        return solved.bending.stress_amplitude, solved.bending.stress_mean
+
+    def amplitude(self, worst: Value, numbers: Numbers) -> Value:
+        """Amplitude at zero mean stress by the Goodman line, Pa, under a normal force, N."""
+        (amplitude, mean), force = self.per_newton(numbers), np.asarray(worst)
+        return goodman(amplitude * force, mean * force, float(numbers[self.tensile]))
+
+    def force(self, limit: float, numbers: Numbers) -> float | None:
+        """Normal force, N, at which the Goodman amplitude of the ring is `limit`, Pa: a N/(1 - m
+        N/R_m) = s_W; None where the ring is not described.
+        """
+        amplitude, mean = (float(each) for each in self.per_newton(numbers))
+        if np.isnan(amplitude):
+            return None
+        return limit / (amplitude + limit * mean / float(numbers[self.tensile]))
+
+    def in_words(self, demand: Demand, solution: Solution) -> Demand:
+        """Demand with the source of the ring, or without a value for a roller that is modelled as
+        solid.
+        """
+        roller = self.at.roller_in(solution.case)
+        ring = roller.bearing.ring
+        if ring is None or roller.solid_reason:
+            note = f"{roller.solid_reason}: the roller is modelled as solid on its hub"
+            undescribed = (self.at.key("ring"),) if ring is None else ()
+            return Demand(None, None, missing=undescribed, note=note, must_have=ring is None)
+        return replace(demand, figures=(ring.source,))
 
 
-def _ring_bending(numbers: Numbers) -> tuple[float, float]:
-    """Amplitude and mean of the stress in the groove of the outer ring per force, Pa/N; NaN where
-    the roller is modelled as solid.
-    """
-    roller = numbers.known_case.roller
-    stated = {key: numbers.get(key) for key in _RING_KEYS}
-    roller = roller.with_values({key: float(each) for key, each in stated.items() if each})
-    # the bending does not depend on the width of the contact, nor with a rating on the preload
-    solved = roller.ring(roller.line_width, float(np.ravel(numbers["spring.preload"])[0]))
-    if solved is None:
-        return np.nan, np.nan
-    return solved.bending.stress_amplitude, solved.bending.stress_mean
+def _ring_fatigue(at: JudgedRoller) -> Declaration:
+    """Bending fatigue of the outer ring of a roller."""
+    ring, fatigue = _Ring(at), at.key("ring.fatigue_bending")
+    return check(
+        id=f"{at.name}_ring_fatigue",
+        title=f"Bending fatigue of the {'' if at.first else 'second '}roller's outer ring",
+        unit="MPa",
+        source=Source("fatigue strength in bending", confirmed=True),
+        method="stress at the groove of the turning ring, finite elements on balls without tension,"
+        " all ball positions; amplitude reduced to zero mean stress by the Goodman line",
+        lift_can_help=True,
+        tier=Tier.SCREENING,
+        needs="roller",
+        closed_by=at.closed_by,
+        part="roller_bearing",
+        kept_as="normal force at the bending fatigue of the roller's outer ring"
+        if at.first
+        else "",
+        formula="s_a/(1 - s_m/R_m) <= s_W; s_a, s_m: amplitude and mean of the stress at the groove"
+        f" per newton, times the {at.greatest}, R_m, s_W: tensile and"
+        " fatigue strength of the ring. A ring in a roller of its own is held by it: not judged.",
+        symbols={
+            "s_a": "ring_stress_amplitude",
+            "s_m": "ring_stress_mean",
+            "R_m": ring.tensile,
+            "s_W": fatigue,
+        },
+        reason="the ring without a housing bends at every ball",
+        values=(
+            *given.LOADS,
+            "roller.material.E",
+            "roller.material.nu",
+            at.key("C0"),
+            at.key("ring.*"),
+        ),
+        levers=(at.lever("C0"), *levers.LOAD),
+        page="Roller",
+    ).measured(
+        "angles",
+        value=ring.amplitude,
+        bound=ring.force,
+        allowed=of_key(fatigue),
+        needed=(ring.tensile,),
+        remark=ring.in_words,
+        pointwise=True,
+        deviation=0.005,
+        kept=Kept(group=NORMAL_FORCE) if at.first else None,
+    )(at.force_on)
 
 
-def _ring_amplitude(worst: Value, numbers: Numbers) -> Value:
-    """Amplitude at zero mean stress by the Goodman line, Pa, under a normal force, N."""
-    (amplitude, mean), force = _groove(numbers), np.asarray(worst)
-    return goodman(amplitude * force, mean * force, float(numbers[_TENSILE]))
-
-
-def _ring_force(limit: float, numbers: Numbers) -> float | None:
-    """Normal force, N, at which the Goodman amplitude of the ring is `limit`, Pa: a N/(1 - m N/R_m)
-    = s_W; None where the ring is not described.
-    """
-    amplitude, mean = (float(each) for each in _groove(numbers))
-    if np.isnan(amplitude):
-        return None
-    return limit / (amplitude + limit * mean / float(numbers[_TENSILE]))
-
-
-def _ring_in_words(demand: Demand, solution: Solution) -> Demand:
-    """Demand with the source of the ring, or without a value for a roller that is modelled as
-    solid.
-    """
-    roller = solution.machine.roller
-    ring = roller.bearing.ring
-    if ring is None or roller.solid_reason:
-        note = f"{roller.solid_reason}: the roller is modelled as solid on its hub"
-        undescribed = (OuterRing.table,) if ring is None else ()
-        return Demand(None, None, missing=undescribed, note=note, must_have=ring is None)
-    return replace(demand, figures=(ring.source,))
-
-
-roller_ring_fatigue = check(
-    id="roller_ring_fatigue",
-    title="Bending fatigue of the roller's outer ring",
-    unit="MPa",
-    source=Source("fatigue strength in bending", confirmed=True),
-    method="stress at the groove of the turning ring, finite elements on balls without tension, all"
-    " ball positions; amplitude reduced to zero mean stress by the Goodman line",
-    lift_can_help=True,
-    tier=Tier.SCREENING,
-    needs="roller",
-    part="roller_bearing",
-    kept_as="normal force at the bending fatigue of the roller's outer ring",
-    formula="s_a/(1 - s_m/R_m) <= s_W; s_a, s_m: amplitude and mean of the stress at the groove per"
-    " newton, times the greatest normal force over all load cases and angles, R_m, s_W: tensile and"
-    " fatigue strength of the ring. A ring in a roller of its own is held by it: not judged.",
-    symbols={
-        "s_a": "ring_stress_amplitude",
-        "s_m": "ring_stress_mean",
-        "R_m": "roller.bearing.ring.tensile_strength",
-        "s_W": "roller.bearing.ring.fatigue_bending",
-    },
-    reason="the ring without a housing bends at every ball",
-    values=(
-        *given.LOADS,
-        "roller.material.E",
-        "roller.material.nu",
-        "roller.bearing.C0",
-        "roller.bearing.ring.*",
-    ),
-    levers=(levers.Catalogued(levers.BEARING, "C0"), *levers.LOAD),
-    page="Roller",
-).measured(
-    "angles",
-    value=_ring_amplitude,
-    bound=_ring_force,
-    allowed=of_key("roller.bearing.ring.fatigue_bending"),
-    needed=(_TENSILE,),
-    remark=_ring_in_words,
-    pointwise=True,
-    deviation=0.005,
-    kept=Kept(group=NORMAL_FORCE),
-)(normal_force)
+roller_ring_fatigue = _ring_fatigue(FIRST_ROLLER)
+second_roller_ring_fatigue = _ring_fatigue(SECOND_ROLLER)
 
 
 def _bore(numbers: Numbers) -> Value:

@@ -8,6 +8,7 @@ In the order of the calculation:
 | `tiers`              | tiers of a solution: preview, finite elements  |                      |
 | `axial_shape`        | ends and crown of a body, as a case has them   | m                    |
 | `shrink_fit`         | fit of the cam on its shaft: pressure, slip    | p, Pa; T, N m        |
+| `rolling_bearing`    | bearing of a roller, its outer ring            |                      |
 | `cam_body`           | cam disc: radii, width, bore, key, material    | m                    |
 | `hertz`              | line contact, subsurface stress                | a, m; p0, Pa; E*, Pa |
 | `follower_body`      | roller or flat face in contact with the cam    | m                    |

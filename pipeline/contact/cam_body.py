@@ -23,6 +23,7 @@ from camwright.pipeline.base.material import MadeOf
 from camwright.pipeline.base.quantities import Angle, In, Known, Length, Part, TableSource, Used
 from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
+from camwright.pipeline.contact.rolling_bearing import Bearing
 from camwright.pipeline.contact.shrink_fit import SeatFit
 
 
@@ -147,6 +148,8 @@ NARROWING = {"roller radius": 1, "second track": 0, "both contours": 1, "wear of
 `CamBody.deviations`; the others narrow it at some angles and widen it at others."""
 FitTolerance = Annotated[float, In("mm", at_least=0, at_most=1)]
 _AS_DRAWN = "none: as drawn"
+SECOND_BEARING = "cam.groove.second.bearing"
+"""Table of the bearing of a second roller on the pin of the first."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,8 +161,7 @@ class GrooveRoller(Part):
 
     table: ClassVar[str] = "cam.groove.second"
     defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("C", "C0", "radial_limit", "static_radial_limit", "roller_tolerance"),
-        "that of the first roller",
+        ("bearing", "roller_tolerance"), "that of the first roller"
     )
     source: TableSource = NO_SOURCE
 
@@ -171,22 +173,8 @@ class GrooveRoller(Part):
     """depth of the upper step of the groove, below the face of the disc"""
     relief: Annotated[float, In("mm", above=0, at_most=100), Known("drawing", "0.5 mm")]
     """gap between each roller and the wall opposite to that on which it runs"""
-    C: Annotated[
-        float | None, In("kN", above=0, at_most=1e5), Known("bearing catalogue", "14 kN")
-    ] = None
-    """dynamic rating of the bearing of the second roller"""
-    C0: Annotated[
-        float | None, In("kN", above=0, at_most=1e5), Known("bearing catalogue", "7.8 kN")
-    ] = None
-    """static rating of the bearing of the second roller"""
-    radial_limit: Annotated[
-        float | None, In("N", above=0, at_most=1e9), Known("catalogue of track rollers", "8.3 kN")
-    ] = None
-    """greatest dynamic radial load of its outer ring without a housing"""
-    static_radial_limit: Annotated[
-        float | None, In("N", above=0, at_most=1e9), Known("catalogue of track rollers", "11.8 kN")
-    ] = None
-    """greatest static radial load of its outer ring without a housing"""
+    bearing: Annotated[Bearing | None, Used("checks of the second roller's bearing")] = None
+    """bearing of the second roller; in the use of the first, where it states no other"""
     roller_tolerance: Annotated[FitTolerance | None, Known("drawing of the roller", "0.005 mm")] = (
         None
     )

@@ -14,6 +14,7 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.cycle.cam_balance import drilled_hole
 from camwright.pipeline.follower.follower_forces import Loads, wall_of
+from camwright.pipeline.follower.roller import on_second_track
 
 
 def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
@@ -39,7 +40,7 @@ def contact_pair(machine: Machine, contour: Contour) -> ContactPair:
     if second is not None:
         track, body = second.track(contour.pitch), pair.follower
         if contour.rolls:
-            roller = replace(machine.roller, radius=second.radius)
+            roller = on_second_track(machine.roller, cam)
             body = roller.body(width, machine.stem, machine.spring.preload)
         pulling = replace(
             pair, contour=track.contour, follower=body, turn=track.turn, own_body=cam.yoke is None,

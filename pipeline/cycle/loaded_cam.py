@@ -183,12 +183,18 @@ class BodyContact(NamedTuple):
         return cls(motion, axial, np.asarray(axial * motion.gain), turned)
 
 
+_EVERYWHERE = np.array([True])
+
+
 class TurningRoller(NamedTuple):
-    """Force on a roller with the surge (..., n), N; its speed, and mean over the turn, rad/s."""
+    """Force on a roller with the surge (..., n), N; its speed, and mean over the turn, rad/s;
+    whether it carries (..., n), of two on a pin.
+    """
 
     force: Array
     spin: Array
     mean: Array
+    carries: NDArray[np.bool_] = _EVERYWHERE
 
 
 class OfGuides(NamedTuple):
@@ -320,10 +326,13 @@ class LoadedCam:
 
     @cached_property
     def rollers(self) -> tuple[TurningRoller, ...]:
-        """The roller that carries; both of preloaded discs, which are pressed at once all the
-        turn.
+        """The roller that carries; both on a pin, each as it rolls on its own wall all the turn;
+        both of preloaded discs, which are pressed at once all the turn.
         """
-        pair = None if self.numbers.case is None else self.numbers.case.cam.conjugate
+        case = self.numbers.case
+        if case is not None and case.cam.on_pin is not None:
+            return self._on_walls("roller.radius", "cam.groove.second.radius")
+        pair = None if case is None else case.cam.conjugate
         if pair is None or pair.interference is None:
             return (TurningRoller(self.surged, self.spin, self.spin_mean),)
         turning = list[TurningRoller]()
@@ -332,6 +341,18 @@ class LoadedCam:
             force = np.where(carries, self.surged, each.normal)
             mean = np.mean(magnitude(spin), axis=-1, keepdims=True)
             turning.append(TurningRoller(force, spin, mean))
+        return tuple(turning)
+
+    def _on_walls(self, *radii: str) -> tuple[TurningRoller, ...]:
+        """Rollers on inner and outer wall, by the dotted keys of their radii."""
+        turning, motion = list[TurningRoller](), round_of(self.motion)
+        for wall, key in zip((1.0, -1.0), radii, strict=True):
+            carries, size = np.asarray(wall * self.wall > 0.0), wall * self.numbers[key]
+            force = np.where(carries, self.surged, 0.0 * self.surged)
+            beside = motion.path_speed * (1.0 / size - 1.0 / motion.size)
+            spin = np.asarray(self.speed * (motion.rolling + beside))
+            mean = np.mean(magnitude(spin), axis=-1, keepdims=True)
+            turning.append(TurningRoller(force, spin, mean, carries))
         return tuple(turning)
 
     @property

@@ -15,7 +15,8 @@ from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import AnyLimit
-from camwright.pipeline.contact.cam_body import WAVES
+from camwright.pipeline.contact.cam_body import SECOND_BEARING, WAVES
+from camwright.pipeline.contact.rolling_bearing import Bearing
 from camwright.pipeline.contact.shrink_fit import FittedRing, slip_torque
 from camwright.pipeline.contact.traction import ring_inertia
 from camwright.pipeline.follower.bearing_life import contamination_factor
@@ -292,8 +293,41 @@ def _cleanliness_load(numbers: Numbers) -> Value | None:
     limit = numbers.get("roller.bearing.fatigue_load_limit")
     if cleanliness is None or limit is None:
         return None
-    return limit * contamination_factor(
-        cleanliness, float(numbers["roller.bearing.pitch_diameter"])
+    circle = float(numbers["roller.bearing.pitch_diameter"])
+    return limit * contamination_factor(cleanliness, circle)
+
+
+def _own_of_second(numbers: Numbers) -> Bearing | None:
+    """Own bearing of a second roller on the pin of the first; None where it is like the first."""
+    case = numbers.case
+    second = None if case is None else case.cam.on_pin
+    if case is None or second is None or second.bearing is None:
+        return None
+    return second.bearing.beside(case.roller.bearing)
+
+
+def _of_second(name: str, field: str, numbers: Numbers) -> Value | None:
+    """Number of the bearing of such a roller by its key; field: of its own bearing."""
+    bearing = _own_of_second(numbers)
+    if bearing is None:
+        return numbers.get(f"{Bearing.table}.{name}")
+    stated: Value | None = getattr(bearing, field)
+    return stated
+
+
+def _cleanliness_of_second(numbers: Numbers) -> Value | None:
+    """As `_cleanliness_load`, of the bearing of such a roller."""
+    bearing = _own_of_second(numbers)
+    if bearing is None:
+        return numbers.get("roller.bearing.cleanliness_load")
+    if (
+        bearing.contamination is None
+        or bearing.fatigue_load_limit is None
+        or bearing.ball_circle is None
+    ):
+        return None
+    return bearing.fatigue_load_limit * contamination_factor(
+        bearing.contamination, bearing.ball_circle
     )
 
 
@@ -318,15 +352,10 @@ def _rotor_inertia(numbers: Numbers) -> Value | None:
     return ring_inertia(radius, roller.hub_radius, width, density)
 
 
-def _on_outer_wall(name: str, first: str, numbers: Numbers) -> Value | None:
-    """Number of the roller on the outer wall of a groove: of the second as stated, else of the
-    first.
-
-    name : of its key; first : dotted key of the first roller
-    """
-    key = f"cam.groove.second.{name}"
-    second = None if numbers.case is None else value_of(numbers.case, key)
-    return numbers.get(first) if second is None else second
+def _outer_radius(numbers: Numbers) -> Value | None:
+    """Radius of the roller on the outer wall of a groove, m: of the second, else of the first."""
+    stated = None if numbers.case is None else value_of(numbers.case, "cam.groove.second.radius")
+    return numbers.get("roller.radius") if stated is None else stated
 
 
 def base_radius(numbers: Numbers) -> Value:
@@ -453,11 +482,16 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "follower.size": _size,
     "cam.waviness": _waviness,
     "roller.rotor_inertia": _rotor_inertia,
-    "cam.groove.second.radius": partial(_on_outer_wall, "radius", "roller.radius"),
+    "cam.groove.second.radius": _outer_radius,
     **{
-        f"cam.groove.second.{each}": partial(_on_outer_wall, each, f"roller.bearing.{each}")
-        for each in ("C", "C0", "radial_limit", "static_radial_limit")
+        f"{SECOND_BEARING}.{each}": partial(_of_second, each, each)
+        for each in (
+            *("C", "C0", "radial_limit", "static_radial_limit", "fatigue_load_limit"),
+            *("speed_limit", "viscosity", "contamination", "temperature"),
+        )
     },
+    f"{SECOND_BEARING}.pitch_diameter": partial(_of_second, "pitch_diameter", "ball_circle"),
+    f"{SECOND_BEARING}.cleanliness_load": _cleanliness_of_second,
     "spring.link.body": _link_body,
     "roller.bearing.pitch_diameter": _ball_circle,
     "roller.bearing.cleanliness_load": _cleanliness_load,

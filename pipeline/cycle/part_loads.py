@@ -34,6 +34,8 @@ from camwright.pipeline.follower.guide_friction import (
 )
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.pivot_bush import bush_lines, pressed_bush
+from camwright.pipeline.follower.ring_on_balls import RingOnBalls
+from camwright.pipeline.follower.roller import on_second_track
 from camwright.pipeline.follower.spring import end_travel, lever, surge_force
 from camwright.pipeline.follower.wound_wire import natural_frequency
 
@@ -130,10 +132,16 @@ class PartLoads(Displayed):
                 "roller_acceleration", "rad/s^2", "Angular acceleration of the roller"
             ): self.roller_spin_acceleration,
             Column(
-                "ring_stress_amplitude", "MPa", "Stress amplitude of the bearing's outer ring"
+                "ring_stress_amplitude",
+                "MPa",
+                "Stress amplitude of the bearing's outer ring",
+                unknown=True,
             ): self.ring_amplitude,
             Column(
-                "ring_stress_mean", "MPa", "Mean stress of the bearing's outer ring"
+                "ring_stress_mean",
+                "MPa",
+                "Mean stress of the bearing's outer ring",
+                unknown=True,
             ): self.ring_mean,
             Column(
                 "p0_change_between_balls",
@@ -366,14 +374,19 @@ def _ring(
     """Amplitude and mean of the stress in the outer ring (n,), Pa, and relative change of the
     contact pressure from over to between balls (n,); None for a solid roller.
     """
-    ring = machine.follower.ring(contact_width, machine.spring.preload)
-    if ring is None:
-        return None, None, None
-    force, wall = loads.normal_force, loads.wall
-    radius = relative_radius(contour, loads.second, loads.theta, wall)
-    bending = ring.bending
-    return (
-        bending.stress_amplitude * force,
-        bending.stress_mean * force,
-        ring.midway(np.maximum(force, 0.0) / ring.body.width, radius),
-    )
+    force, wall, follower = loads.normal_force, loads.wall, machine.follower
+
+    def of(ring: RingOnBalls | None) -> Array | None:
+        if ring is None:
+            return None
+        radius = relative_radius(contour, loads.second, loads.theta, wall)
+        bent = ring.bending.stress_amplitude * force, ring.bending.stress_mean * force
+        return np.stack([*bent, ring.midway(np.maximum(force, 0.0) / ring.body.width, radius)])
+
+    values = of(follower.ring(contact_width, machine.spring.preload))
+    if machine.cam.on_pin is not None:
+        roller = on_second_track(machine.roller, machine.cam)
+        other = of(roller.ring(contact_width, machine.spring.preload))
+        if other is not None:
+            values = np.where(wall < 0.0, other, np.nan if values is None else values)
+    return (None, None, None) if values is None else (values[0], values[1], values[2])

@@ -21,7 +21,7 @@ In the order of the calculation:
 | `follower_flight`       | flights and landings in time               | m; m/s; J             |
 | `disc_preload`          | both discs of a pair pressed               | P, N; b, -            |
 | `crossover`             | flight and landing between two tracks      | t, s; v, m/s          |
-| `roller_parts`          | bearing, outer ring, pin, fork             |                       |
+| `roller_parts`          | pin, fork                                  |                       |
 | `roller_motion`         | spin, traction demand, rating life         | rad/s; L10, s         |
 | `bearing_life`          | lubrication, modified life, grease life    | kappa; a_ISO; L, s    |
 | `bearing_ring`          | bending of the outer ring                  | M, N m; sigma, Pa     |

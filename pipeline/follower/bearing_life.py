@@ -11,8 +11,8 @@ from camwright.geometry.arrays import Array, Value, Values
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius
+from camwright.pipeline.contact.rolling_bearing import Cleanliness
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT
-from camwright.pipeline.follower.roller_parts import Cleanliness
 
 LEAST_VISCOSITY_RATIO, GREATEST_VISCOSITY_RATIO = 0.1, 4.0  # range of a_ISO, ISO 281:2007, 9.3.3
 GREATEST_MODIFICATION = 50.0  # a_ISO, ISO 281:2007, 9.3.3

@@ -7,10 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.contact.rolling_bearing import OuterRing
 from camwright.pipeline.follower.bearing_ring import ball_stiffness
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls
-from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
+from camwright.pipeline.follower.roller_parts import Fork, Pin
 from camwright.pipeline.follower.stem_beam import Stem
 
 

@@ -19,11 +19,11 @@ from camwright.pipeline.base.quantities import (
     Used,
 )
 from camwright.pipeline.base.source import NO_SOURCE
+from camwright.pipeline.contact.rolling_bearing import DynamicRating, StaticRating
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.guide_reactions import Guide, require_about
 from camwright.pipeline.follower.pivot_forces import ArmPivot
 from camwright.pipeline.follower.rocker import RockerOutput
-from camwright.pipeline.follower.roller_parts import DynamicRating, StaticRating
 
 _Friction = Annotated[float | None, In(at_least=0, at_most=1)]
 _Turned = In("deg", at_least=-180, at_most=180)

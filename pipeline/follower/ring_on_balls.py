@@ -10,9 +10,9 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.ring_body import BallRing, RingBody, unit_bend
+from camwright.pipeline.contact.rolling_bearing import Bearing, OuterRing
 from camwright.pipeline.follower.bearing_ring import Ring, RingBending, ball_stiffness
 from camwright.pipeline.follower.bearing_ring_elements import ring_bending
-from camwright.pipeline.follower.roller_parts import Bearing, OuterRing
 
 # Half the length of the contact of a ball along the groove over its diameter, recalled for point
 # contacts in conforming grooves. A factor of 2 changes p0 by 0.1 %.

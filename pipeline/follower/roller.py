@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -21,6 +21,7 @@ from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import FollowerBody, RollerBody
 from camwright.pipeline.contact.oil_film import entrainment_speed
+from camwright.pipeline.contact.rolling_bearing import Bearing
 from camwright.pipeline.contact.traction import Drag, RollingContact, ring_inertia, rolling_contact
 from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.follower_forces import Loads
@@ -33,7 +34,7 @@ from camwright.pipeline.follower.follower_stiffness import (
 from camwright.pipeline.follower.pin_strength import bending_per_moment, pin_moment
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls, ring_on_balls, solid_reason
 from camwright.pipeline.follower.roller_motion import RollingRoller, roller_motion
-from camwright.pipeline.follower.roller_parts import Bearing, Fork, Pin
+from camwright.pipeline.follower.roller_parts import Fork, Pin
 from camwright.pipeline.follower.spring import NO_FORCE
 from camwright.pipeline.follower.stem_beam import Stem
 
@@ -363,6 +364,18 @@ class Roller(Part):
             radius=roller.radius,
             period=FULL_TURN / speed,
         )
+
+
+def on_second_track(roller: Roller, cam: CamBody) -> Roller:
+    """Roller on the second track of a cam, like the first but for what the case states of it; the
+    first of one track.
+    """
+    second = cam.second
+    if second is None:
+        return roller
+    bearing = None if cam.on_pin is None else cam.on_pin.bearing
+    beside = roller.bearing if bearing is None else bearing.beside(roller.bearing)
+    return replace(roller, radius=second.radius, bearing=beside)
 
 
 class _Turning(NamedTuple):

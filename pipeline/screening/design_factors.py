@@ -41,9 +41,9 @@ ARRAYS: tuple[str, ...] = (
     *(f"spring.design.{name}" for name in WIRE),
     "cam.prime_radius", "cam.offset", "cam.width", "cam.bore_radius", "cam.profile_tolerance",
     *(f"cam.groove.{name}" for name in ("clearance", "depth", "corner_radius", "outer_radius")),
-    *(f"cam.groove.second.{name}" for name in (
-        "radius", "spacing", "step_depth", "relief", "C", "C0", "radial_limit",
-        "static_radial_limit")),
+    *(f"cam.groove.second.{name}" for name in ("radius", "spacing", "step_depth", "relief")),
+    *(f"cam.groove.second.bearing.{name}" for name in (
+        "C", "C0", "speed_limit", "radial_limit", "static_radial_limit")),
     *(f"cam.conjugate.{name}" for name in (
         "roller_radius", "distance", "arm_length", "arm_angle", "clearance", "interference",
         "spacing")),

@@ -8,6 +8,7 @@ fails by it fails the check; any other is not evaluated (`Declaration.is_bound`)
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +45,7 @@ from camwright.pipeline.checks.check import Bounded, Declaration, Measured
 from camwright.pipeline.checks.demands import rating_over
 from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.checks.roller_bearing import FIRST_ROLLER, SECOND_ROLLER, JudgedRoller
 from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.cycle.arm_bodies import with_swing
@@ -254,15 +256,19 @@ def _torque_reduction(designs: Designs) -> Judged | None:
     return np.min(least, axis=0), np.broadcast_to(common, designs.count)
 
 
-def _grease_life(designs: Designs) -> Judged | None:
-    """Grease life of the roller bearing over the load cases and its target (m,), s; NaN where
+def _grease_life(designs: Designs, at: JudgedRoller) -> Judged | None:
+    """Grease life of the bearing of a roller over the load cases and its target (m,), s; NaN where
     lubrication or target is not stated. None with oil.
     """
     numbers, shape = designs.numbers, (designs.count, 1)
-    if (lubrication := designs.case.roller.bearing.lubrication) == "oil":
+    if (lubrication := at.bearing_in(designs.case).lubrication) == "oil":
         return None
-    target = None if lubrication is None else roller_bearing.grease_target(numbers)
-    life = np.nan if lubrication is None else _over_duty(designs, roller_bearing.greased, life=True)
+    target = None if lubrication is None else roller_bearing.grease_target(numbers, at)
+    life = (
+        np.nan
+        if lubrication is None
+        else _over_duty(designs, partial(roller_bearing.greased, at=at), life=True)
+    )
     limit = np.broadcast_to(np.nan if target is None else target, shape)
     return np.broadcast_to(life, shape)[:, 0], np.asarray(limit, dtype=float)[:, 0]
 
@@ -498,7 +504,8 @@ _ARRAYS: Mapping[str, tuple[Callable[[Designs], Judged | None], float]] = {
     TORQUE_REDUCTION.id: (_torque_reduction, 0.001),
     torque_balance.friction_power.id: (_friction_power, 0.005),
     torque_balance.mechanism_temperature.id: (_mechanism_temperature, 0.005),
-    roller_bearing.grease_life.id: (_grease_life, 0.001),
+    roller_bearing.grease_life.id: (partial(_grease_life, at=FIRST_ROLLER), 0.001),
+    roller_bearing.second_roller_grease.id: (partial(_grease_life, at=SECOND_ROLLER), 0.001),
     assembly.counterweight_gap.id: (_counterweight_gap, 0.001),
     assembly.counterweight_unbalance.id: (_counterweight_unbalance, 0.001),
     flat_face_sliding.bulk_temperature.id: (_bulk_temperature, 0.005),

@@ -22,7 +22,7 @@ from camwright.pipeline.checks import (
 )
 from camwright.pipeline.checks.check import Declaration, Kept
 from camwright.pipeline.checks.guide_strength import Side, table_of
-from camwright.pipeline.checks.roller_bearing import STANDSTILL
+from camwright.pipeline.checks.roller_bearing import FIRST_ROLLER, STANDSTILL
 from camwright.pipeline.cycle.loaded_cam import not_negative
 from camwright.pipeline.follower import bearing_life
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
@@ -115,7 +115,9 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
         return None
     turns = np.real(at.spin_mean) >= STANDSTILL
     speed = np.where(turns, at.spin_mean, STANDSTILL)
-    worn = wear(not_negative(at.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
+    worn = wear(not_negative(FIRST_ROLLER.force_on(at)), at.spin) / (
+        limit**BALL_LIFE_EXPONENT * speed
+    )
     shares, root = duty_shares(at.scenario), 1.0 / BALL_LIFE_EXPONENT
     if shares is None:
         share = grease.load_share(speed)

@@ -143,8 +143,14 @@ def groove_case() -> Case:
 def stepped_case() -> Case:
     """The groove with a step of its own for a second roller on the same pin."""
     tables = groove_case().tables()
+    ring = {"outer_diameter": "14 mm", "thickness": "1.2 mm", "pitch_diameter": "9.2 mm",
+            "balls": 7, "fatigue_bending": "700 MPa", "tensile_strength": "2000 MPa",
+            "source": "ring"}  # fmt: skip
+    own = {"name": "624", "C": "3 kN", "C0": "1.5 kN", "fatigue_load_limit": "70 N", "ring": ring,
+           "speed_limit": "2000 rad/s", "grease_life": "1500 h", "radial_limit": "900 N",
+           "static_radial_limit": "900 N", "source": "c"}  # fmt: skip
     second = {"radius": "7 mm", "spacing": "10.2 mm", "step_depth": "10.5 mm", "relief": "0.5 mm",
-              "C": "3 kN", "C0": "1.5 kN"}  # fmt: skip
+              "bearing": own}  # fmt: skip
     tables["cam"] |= {"width": "30 mm"}
     tables["cam"]["groove"] |= {"depth": "21 mm", "second": second}
     return case_of(tables)

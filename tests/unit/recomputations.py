@@ -53,6 +53,10 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "second_roller_static", "second_roller_life", "second_roller_load_share",
         "second_roller_radial", "second_roller_static_radial",
     ),
+    (_STEPS, "test_the_second_roller_by_the_data_of_its_own_bearing"): (
+        "second_roller_modified_life", "second_roller_speed", "second_roller_lubrication",
+        "second_roller_grease", "second_roller_ring_fatigue",
+    ),
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",
     ),

@@ -1,7 +1,7 @@
 """How the checks of a groove are tried: a harmonic lift in it, without a spring."""
 
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache
 
 import hand_calculations as by_hand
 import made_trial as made
@@ -298,28 +298,83 @@ def stepped(**values) -> Solution:
     return replace(base, cycles=(made.changed_cycle(cycle, loads=loads),))
 
 
-def unrated(name: str) -> Solution:
-    """The groove of two steps without a rating of either roller."""
+def own_bearing(**values) -> Solution:
+    """The groove of two steps with another bearing of its second roller."""
     base = made.in_steps()
-    groove, roller = base.case.cam.groove, base.case.roller
-    cam = replace(
-        base.case.cam, groove=replace(groove, second=replace(groove.second, **{name: None}))
-    )
-    other = replace(roller, bearing=replace(roller.bearing, **{name: None}))
-    return made.changed_solution(base, case=made.changed(base.case, cam=cam, roller_given=other))
+    groove = base.case.cam.groove
+    bearing = replace(groove.second.bearing, **values)
+    second = replace(groove.second, bearing=bearing)
+    cam = replace(base.case.cam, groove=replace(groove, second=second))
+    return made.changed_solution(base, case=made.changed(base.case, cam=cam))
 
 
-def limit_of_second(name: str):
-    """The groove of two steps by the radial limit of its second roller, N."""
+def in_use(**values) -> Solution:
+    """The groove of two steps with another use of the first bearing, which the second shares."""
+    base = made.in_steps()
+    roller = base.case.roller
+    other = replace(roller, bearing=replace(roller.bearing, **values))
+    return made.changed_solution(base, case=made.changed(base.case, roller_given=other))
 
-    def at(limit: float | None) -> Solution:
-        base = made.in_steps()
-        groove = base.case.cam.groove
-        second = replace(groove.second, **{name: limit})
-        cam = replace(base.case.cam, groove=replace(groove, second=second))
-        return made.changed_solution(base, case=made.changed(base.case, cam=cam))
 
-    return at
+def own_ring(**values) -> Solution:
+    """The groove of two steps with another outer ring of its second roller."""
+    ring = made.in_steps().case.cam.groove.second.bearing.ring
+    return own_bearing(ring=replace(ring, **values))
+
+
+def ring_of_second(force: float) -> float:
+    """Goodman, MPa, 2000 MPa: the stress of a ring of 14 mm per newton is solved."""
+    case = made.stepped_case()
+    own = case.cam.groove.second.bearing
+    solved = replace(case.roller, radius=0.007, bearing=own).ring(0.01, made.PRELOAD)
+    amplitude, mean = solved.bending.stress_amplitude, solved.bending.stress_mean
+    return float(1e-6 * amplitude * force / (1.0 - mean * force / 2000e6))
+
+
+def film_of_second() -> float:
+    """22 mm2/s over v1 of ISO 281, 9.2 mm, at the mean speed on the outer wall all the turn."""
+    rpm = turned_on_outer_wall().mean() * 30.0 / np.pi
+    factor, power = (45000.0, -0.83) if rpm < 1000.0 else (4500.0, -0.5)
+    return 22.0 * np.sqrt(9.2) / (factor * rpm**power)
+
+
+def turned_on_outer_wall() -> np.ndarray:
+    """Speed of the second roller on its wall at each angle, rad/s."""
+    (cycle,) = made.in_steps().cycles
+    pace = np.hypot(*cycle.contour.pitch.velocity(cycle.theta))
+    return cycle.cam_speed * (pace / 0.007 + 1.0)
+
+
+def modified_life_of_second() -> float:
+    """Damage of each position on the outer wall by its own a_ISO, e_C = 0.5, P_u = 70 N; h."""
+    (cycle,) = made.in_steps().cycles
+    kappa, damage = film_of_second(), 0.0
+    factors = (2.5671, 2.2649, 0.054381) if kappa < 0.4 else (2.5671, 1.9987, 0.19087)
+    if kappa >= 1.0:
+        factors = 2.5671, 1.9987, 0.071739
+    for force, speed, wall in zip(cycle.loads.normal_force, turned_on_outer_wall(),
+                                  cycle.loads.wall, strict=True):  # fmt: skip
+        if wall > 0.0:
+            continue
+        clean = (0.5 * 70.0 / max(force, 1.0)) ** (1.0 / 3.0)
+        left = 1.0 - (factors[0] - factors[1] / kappa ** factors[2]) ** 0.83 * clean
+        most = 0.1 / left**9.3 if left > 0.0 else 50.0
+        turns = 1e6 * min(most, 50.0) * (3e3 / max(force, 1.0)) ** 3
+        damage += speed / FULL_TURN / turns / cycle.theta.size
+    return 1.0 / damage / 3600.0
+
+
+def in_steps_with_limits(**values) -> Solution:
+    base = made.in_steps()
+    limits = made.changed(base.case.limits, **values)
+    return made.changed_solution(base, case=made.changed(base.case, limits=limits))
+
+
+def with_speed_in_steps(speed: float) -> Solution:
+    """The groove of two steps at another speed of the crank, rad/s; its figures stay."""
+    base = made.in_steps()
+    idle = made.load_case("idle", speed=speed)
+    return made.changed_solution(base, case=made.changed(base.case, load_cases=(idle,)))
 
 
 def on_outer_wall() -> tuple[float, float]:
@@ -346,6 +401,9 @@ by_limit(
     base=made.in_groove,
 )
 SECOND_FORCE, SECOND_LIFE = on_outer_wall()
+FASTEST_OUTSIDE = float(
+    turned_on_outer_wall()[made.in_steps().cycles[0].loads.wall < 0.0].max() * 30.0 / np.pi
+)
 by_limit(
     "second_roller_static",
     "roller_static_safety",
@@ -353,7 +411,7 @@ by_limit(
     1.5e3 / SECOND_FORCE,
     "C0 over the greatest force on the outer wall",
     base=made.in_steps,
-    missing=lambda: unrated("C0"),
+    missing=lambda: own_bearing(C0=None),
 )
 by_limit(
     "second_roller_load_share",
@@ -362,13 +420,17 @@ by_limit(
     SECOND_FORCE / 3e3,
     "greatest force on the outer wall over C",
     base=made.in_steps,
-    missing=lambda: unrated("C"),
+    missing=lambda: own_bearing(C=None),
 )
 for words in ("radial", "static_radial"):
     tried(
         f"second_roller_{words}",
-        limited(f"second_roller_{words}", limit_of_second(f"{words}_limit"), made.in_steps),
-        partial(unrated, f"{words}_limit"),
+        limited(
+            f"second_roller_{words}",
+            lambda limit, key=f"{words}_limit": own_bearing(**{key: limit}),
+            made.in_steps,
+        ),
+        lambda key=f"{words}_limit": own_bearing(**{key: None}),
         lambda: stepped(normal_force=NAN),
         SECOND_FORCE,
         "greatest force on the outer wall",
@@ -381,7 +443,54 @@ by_limit(
     SECOND_LIFE,
     "damage of the positions at which the outer wall carries, ISO 281",
     base=made.in_steps,
-    missing=lambda: unrated("C"),
+    missing=lambda: own_bearing(C=None),
+)
+by_limit(
+    "second_roller_modified_life",
+    "roller_life",
+    lambda: stepped(normal_force=NAN),
+    modified_life_of_second(),
+    "ISO 281, 9.3: damage of each position at which the outer wall carries",
+    base=made.in_steps,
+    missing=lambda: in_use(contamination=None),
+)
+tried(
+    "second_roller_speed",
+    limited("second_roller_speed", lambda n: own_bearing(speed_limit=n / 0.7), made.in_steps),
+    lambda: own_bearing(speed_limit=None),
+    lambda: with_speed_in_steps(np.nan),
+    FASTEST_OUTSIDE,
+    "w (|P'| + r)/r where the outer wall carries, rpm",
+    made.in_steps,
+)
+by_limit(
+    "second_roller_lubrication",
+    "viscosity_ratio",
+    lambda: with_speed_in_steps(np.nan),
+    film_of_second(),
+    "kappa of ISO 281 at the mean speed on the outer wall",
+    base=made.in_steps,
+    missing=lambda: in_use(viscosity=None),
+)
+tried(
+    "second_roller_grease",
+    limited(
+        "second_roller_grease", lambda life: in_steps_with_limits(target_life=life), made.in_steps
+    ),
+    lambda: in_use(lubrication=None),
+    None,  # the manufacturer's, a constant
+    1500.0,
+    "as stated",
+    made.in_steps,
+)
+tried(
+    "second_roller_ring_fatigue",
+    limited("second_roller_ring_fatigue", lambda p: own_ring(fatigue_bending=p), made.in_steps),
+    lambda: own_ring(fatigue_bending=None),
+    lambda: stepped(normal_force=NAN),
+    ring_of_second(SECOND_FORCE),
+    "Goodman, the solved stress per newton, Shigley ch. 6",
+    made.in_steps,
 )
 by_limit(
     "outer_second_contact",

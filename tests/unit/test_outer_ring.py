@@ -16,9 +16,9 @@ from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.ring_body import BallRing, RingBody
+from camwright.pipeline.contact.rolling_bearing import OuterRing
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
-from camwright.pipeline.follower.roller_parts import OuterRing
 
 RING = {
     "outer_diameter": '"32 mm"',

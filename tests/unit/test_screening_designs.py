@@ -482,7 +482,7 @@ def test_a_design_of_unknown_force_leaves_the_others_their_grease_life() -> None
         cam: Any = SimpleNamespace(
             numbers=Numbers({}, case), normal=normal[rows], rollers=(roller,)
         )
-        return roller_bearing.greased(cam)
+        return roller_bearing.greased(cam, roller_bearing.FIRST_ROLLER)
 
     (alone,) = greased(slice(1))
     assert np.isfinite(alone).all()

@@ -157,7 +157,10 @@ OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
     **dict.fromkeys(
         (
             f"second_roller_{each}"
-            for each in ("life", "static", "load_share", "radial", "static_radial")
+            for each in (
+                *("life", "static", "load_share", "radial", "static_radial", "modified_life"),
+                *("speed", "lubrication", "ring_fatigue"),
+            )
         ),
         in_steps,
     ),

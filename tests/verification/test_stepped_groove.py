@@ -4,6 +4,7 @@ The case is tests/data/stepped_groove.toml: the smaller second roller runs on th
 """
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -250,6 +251,70 @@ def test_the_bearing_of_each_roller_by_its_own_forces():
     assert most[1] < 0.995 * most[0]
 
 
+OWN = """
+[cam.groove.second.bearing]
+card = "track_roller_40x16"
+pitch_diameter = "28.5 mm"
+viscosity = "60 mm^2/s"
+lubrication = "grease_for_life"
+temperature = "60 degC"
+"""
+
+
+@cache
+def with_own_bearing():
+    """The case whose second roller is a track roller of 40 mm, greased for life."""
+    text = FILE.read_text(encoding="utf-8")
+    text = text.replace('radius = "21 mm"\ns', 'radius = "20 mm"\ns').replace(
+        'tool_radius = "21 mm"', 'tool_radius = "20 mm"'
+    )
+    return preview_case(
+        parse_case(text.replace("\n[camshaft]\n", f"{OWN}\n[camshaft]\n")), corners=False
+    )
+
+
+def test_the_second_roller_by_the_data_of_its_own_bearing():
+    """Speed, film of ISO 281, modified life by the damage of each position, JTEKT's estimate of its
+    grease, Goodman of its outer ring, whose stress per newton is solved; 1e-9. The first is as
+    before.
+    """
+    trial = with_own_bearing()
+    judged = {each.id: each.demand for each in trial.checks}
+    films, lives, greases, fastest, most = [], [], [], 0.0, 0.0
+    for cycle in trial.cycles:
+        pace = np.hypot(*cycle.contour.pitch.velocity(cycle.theta))
+        force, pulled = cycle.loads.normal_force, cycle.loads.axial_force < 0.0
+        spin = cycle.cam_speed * (pace / 0.020 + 1.0)
+        rpm = spin.mean() * 30.0 / np.pi
+        fastest, most = max(fastest, spin[pulled].max()), max(most, force[pulled].max())
+        if rpm < 1.0:  # at rest
+            continue
+        slope = (45000.0, -0.83) if rpm < 1000.0 else (4500.0, -0.5)
+        kappa = 60.0 * np.sqrt(28.5) / (slope[0] * rpm ** slope[1])
+        assert 1.0 <= kappa <= 4.0 and most < 0.05 * 9400.0
+        clean = (0.5 * 258.0 / np.maximum(force, 1.0)) ** (1.0 / 3.0)
+        left = 1.0 - (2.5671 - 1.9987 / kappa**0.071739) ** 0.83 * clean
+        modified = np.where(left > 0.0, np.minimum(0.1 / np.maximum(left, 0.1) ** 9.3, 50.0), 50.0)
+        used = np.mean((force / 9400.0) ** 3 / modified * spin * pulled)
+        x = max(40.0 * rpm, 125000.0)
+        films.append(kappa)
+        lives.append(FULL_TURN * 1e6 / used)
+        greases.append(10.0 ** (6.10 - 4.40e-6 * x - (0.021 - 1.8e-8 * x) * 60.0))
+    assert judged["second_roller_speed"] == pytest.approx(fastest, rel=1e-9)
+    assert judged["second_roller_lubrication"] == pytest.approx(min(films), rel=1e-9)
+    assert judged["second_roller_grease"] == pytest.approx(3600.0 * min(greases), rel=1e-9)
+    assert judged["second_roller_modified_life"] == pytest.approx(min(lives), rel=1e-6)
+    case, machine = trial.case, trial.cycles[0].machine
+    own = case.bearings[f"{SECOND}.bearing"]
+    assert own.contamination == case.roller.bearing.contamination
+    ring = replace(case.roller, radius=0.020, bearing=own).ring(machine.contact_width, 0.0).bending
+    stress = ring.stress_amplitude * most
+    stress /= 1.0 - ring.stress_mean * most / own.ring.tensile_strength
+    assert judged["second_roller_ring_fatigue"] == pytest.approx(stress, rel=1e-9)
+    for name in ("roller_life", "roller_static", "roller_speed", "bearing_lubrication"):
+        assert judged[name] == pytest.approx(STEPPED.check(name).demand, rel=1e-9), name
+
+
 def test_the_second_roller_stands_on_its_own_pin():
     """Its blow is stopped on a pin longer by the spacing: a cantilever, span cubed."""
     _, machine = STEPPED.running
@@ -392,8 +457,10 @@ SECOND = "cam.groove.second"
         ('radius = "21 mm"\ns', 'radius = "17.5 mm"\ns',
          f"{SECOND}.radius = 17.5 mm, must be > 17.9 mm, half"),
         ('radius = "21 mm"\ns', 'radius = "70 mm"\ns', f"{SECOND}.radius = 70 mm, must be < "),
-        ('relief = "0.5 mm"', 'relief = "0.5 mm"\nC0 = "200 kN"',
-         f"{SECOND}.C0 = 200 kN, must be <="),
+        ('relief = "0.5 mm"', 'relief = "0.5 mm"\nbearing = { name = "b", C0 = "200 kN" }',
+         f"{SECOND}.bearing.C0 = 200 kN, must be <="),
+        ('relief = "0.5 mm"', 'relief = "0.5 mm"\nbearing.card = "track_roller_47x18"',
+         f"{SECOND}.radius = 21 mm, must be >= 23.5 mm, half of {SECOND}.bearing.ring"),
         ('radius = "21 mm"\nspacing', 'spacing', f"{SECOND}.radius = missing"),
     ],
 )  # fmt: skip

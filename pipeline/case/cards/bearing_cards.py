@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Count, In, Length, Part, Pressure
 from camwright.pipeline.base.source import Source
-from camwright.pipeline.follower.roller_parts import Bearing, OuterRing
+from camwright.pipeline.contact.rolling_bearing import Bearing, OuterRing
 
 _Rating = Annotated[float, In("N", above=0, at_most=1e9)]
 _RING = ("balls", "pitch_diameter", "ring_thickness")

@@ -177,6 +177,7 @@ def _places(case: Tables) -> Iterator[tuple[str, str, Tables]]:
         "spring.design": "wires",
         "spring.gas": "gas_springs",
         "roller.bearing": "bearings",
+        "cam.groove.second.bearing": "bearings",
     }
     for field, kind in kinds.items():
         table: TomlValue | None = case

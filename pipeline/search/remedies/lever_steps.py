@@ -27,8 +27,8 @@ from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import unit_at, value_of
 from camwright.pipeline.contact.cam_body import BalanceHole
+from camwright.pipeline.contact.rolling_bearing import Bearing
 from camwright.pipeline.follower.guide_reactions import Guide
-from camwright.pipeline.follower.roller_parts import Bearing
 from camwright.pipeline.search.change import Change, number_of
 
 _DESIGN_DIGITS = 3  # of a value that a designer writes
