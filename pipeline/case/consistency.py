@@ -307,9 +307,9 @@ def _stores(case: Case, stated_as: str) -> None:
     Raises
     ------
     InputError
-        If the spring is missing, or the lift is that of a constrained synthesis that is not done:
-        of two rollers in a groove, of preloaded discs, or of a spring that pulls; or that of a
-        spring which pulls by a force that is not linear in the lift.
+        If the spring is missing, or the lift is that of a constrained synthesis by a spring that
+        pulls, which is not done, or of a spring which pulls by a force that is not linear in the
+        lift.
     """
     if case.spring.absent:
         limit = f"given with {stated_as} and without [lift]: it stores the work of the torque"
@@ -318,11 +318,8 @@ def _stores(case: Case, stated_as: str) -> None:
     if shape is not None and not (shape.linear or case.spring.preload > 0.0):
         limit = "> 0 without [lift]: the lift of a spring that pulls needs a force linear in it"
         raise InputError(key, text_of(case, key), limit)
-    if case.smoothing.kind == "constrained" and (
-        case.cam.on_pin is not None or not (case.cam.clearance > 0.0 and case.spring.preload > 0.0)
-    ):
-        limit = f"a filter with {stated_as}: it is done for a groove of one roller, for discs and"
-        limit += " for a yoke, with a clearance and a spring.preload > 0 N"
+    if case.smoothing.kind == "constrained" and not case.spring.preload > 0.0:
+        limit = f"a filter with {stated_as} and {key} <= 0 N"
         raise InputError("smoothing.kind", "constrained", limit)
 
 

@@ -290,9 +290,13 @@ def line_pressure(cam: LoadedCam, allowed: Value) -> Array:
     """Constraint sharpness + R_p / size <= 1, equivalent to p0 <= allowed.
 
     R_p is the relative radius at which the line contact has the allowed pressure. Pressure and
-    undercut depend on the same undercut factor, 1 - sharpness.
+    undercut depend on the same undercut factor, 1 - sharpness. Of preloaded discs the greater.
     """
-    return cam.motion.sharpness + cam.pressure_factor**2 * cam.flat_square / allowed**2
+
+    def on_track(seen: LoadedCam) -> Array:
+        return seen.motion.sharpness + seen.pressure_factor**2 * seen.flat_square / allowed**2
+
+    return on_both_tracks(cam, on_track)
 
 
 def _weighted_pressure(cam: LoadedCam, allowed: float) -> Array:

@@ -49,6 +49,7 @@ from camwright.pipeline.follower.crossover import INNER, OUTER, Landing
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import Carried
 
+INTERFERENCE = "cam.conjugate.interference"
 PLATE_MOMENT = 0.509
 """Greatest moment per length at the root of a long cantilever plate over a load at its edge."""
 
@@ -339,6 +340,7 @@ def _of_turns(
         *levers.GENTLER,
     ),
     page="Contact",
+    kept_as="force of the lesser disc over the preload",
 )
 def preload_least(solution: Solution) -> Demand | None:
     """Least force of both discs over the preload; None without an interference."""
@@ -408,6 +410,7 @@ def _preload_words(solution: Solution) -> str:
     ),
     levers=(levers.one("cam.conjugate.interference", -1),),
     page="Contact",
+    kept_as="contact pressure of both discs at the greatest preload",
 )  # fmt: skip
 def preload_pressure(solution: Solution) -> Demand | None:
     """Greatest contact pressure on either disc, Pa; None without an interference."""

@@ -612,13 +612,18 @@ class LoadedCam:
         return wall_of(self.required, held=self.pulls)
 
     @property
+    def heading(self) -> Array:
+        """Direction of the follower: 1 rising, 0 at rest, -1 falling."""
+        return np.asarray(np.sign(np.real(self.slope)))
+
+    @property
     def direction(self) -> Array:
         """Direction of the friction of the guides: 1 where the cam drives the follower, 0 at
         rest, else -1.
 
-        Of a cam that does not pull 1 on the rise, -1 on the return.
+        Of a cam that does not pull that of the follower.
         """
-        return np.asarray(np.sign(np.real(self.slope)) * self.wall)
+        return np.asarray(self.heading * self.wall)
 
     @property
     def jam_worst(self) -> Array | None:

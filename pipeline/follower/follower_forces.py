@@ -934,7 +934,7 @@ class PressedGuides(NamedTuple):
         """
         squeeze, most = self.squeeze, 1.0 - JAM_FLOOR
         first, second = (
-            np.where((way * direction > 0.0) & (jam > most), most, jam)
+            np.where((np.real(way * direction) > 0.0) & (np.real(jam) > most), most, jam)
             for way, jam in zip((1.0, -1.0), self.jams, strict=True)
         )
         mixed = squeeze.share * first - (1.0 - squeeze.share) * second

@@ -15,6 +15,7 @@ from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
+    CONTACT_FORCE_MARGIN,
     KEYWAY_SAFETY,
     PRESSURE_ANGLE,
     RETURN_PRESSURE_ANGLE,
@@ -25,11 +26,13 @@ from camwright.pipeline.checks.cam_shape import lift, spring_travel
 from camwright.pipeline.checks.check import Declaration, Measured
 from camwright.pipeline.checks.contact_strength import (
     LoadCycles,
+    endurance_allowed,
     life_turns,
     passes,
     pressure_allowables,
 )
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
+from camwright.pipeline.checks.form_closure import preload_least, preload_pressure
 from camwright.pipeline.checks.guide_strength import pivot_temperature, power_at
 from camwright.pipeline.checks.guide_wear import pivot_expansion, seizure_temperature
 from camwright.pipeline.checks.jump_and_jamming import cam_speed_without_jump, jump_speed
@@ -62,12 +65,13 @@ def ratings_of(case: Case) -> Ratings:
     numbers, machine = numbers_of(case, states), states[0]
     varies = "prime_radius" in case.smoothing.free or case.cam.conjugate is not None
     held = machine.cam.held_radius if varies else None
-    keyway = keyway_root_of(numbers)
+    keyway, preload = keyway_root_of(numbers), machine.disc_preload
     ratings = Ratings(
         numbers | {"cam.held_radius": held, "guides.a.mouth": numbers["guides.a.mouth"]},
         drag=machine.follower.drag,
         keyway=None if presses(numbers) or np.isnan(keyway.per_stress) else keyway,
         grease=grease_of(machine, numbers),
+        compliances=None if preload is None else preload.compliances,
     )
     return ratings.least(limits_of(case))
 
@@ -116,6 +120,10 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
         seizure = None if pin is None else seizure_temperature(pivot.bush, pin)
         if (limit := power_at("pivot", seizure, numbers)) is not None:
             limits.setdefault(pivot_temperature.kept_at, {})[pivot_expansion.id] = limit
+    if machine.disc_preload is not None:
+        limits[preload_least.id] = {preload_least.id: machine.limits[CONTACT_FORCE_MARGIN]}
+        if (endured := endurance_allowed(numbers).value) is not None:
+            limits[preload_pressure.id] = {preload_pressure.id: float(endured)}
     grease = grease_of(machine, numbers)
     if grease is not None:
         limits[grease_life.id] = {grease_life.id: grease.rating}

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,16 +27,21 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks.check import Declaration, Kept, Kind, Stroke
 from camwright.pipeline.checks.extremes import BY_DUTY
+from camwright.pipeline.checks.form_closure import INTERFERENCE
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.loaded_cam import (
     CarriedCam,
     DiscCam,
     LoadedCam,
     OfGuides,
+    TurningRoller,
+    greatest_friction,
     not_negative,
     roller_of,
 )
 from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.follower.disc_preload import Squeezed, squeezed
+from camwright.pipeline.follower.follower_forces import PressedGuides, wall_of
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_deflection
 from camwright.pipeline.smoothing.scenario import (
     Correction,
@@ -130,15 +135,50 @@ class ScenarioCam(CarriedCam):
 
     What finite elements, the surge or the heat of a solved cam add is in the `Correction` of the
     scenario, held while the search runs.
+
+    alone: 1 or -1: as though the first or the second track carried by itself; 0: both.
     """
 
     scenario: Scenario
     variables: DesignVariables
     ratings: Ratings
+    alone: float = 0.0
 
     @cached_property
     def second(self) -> SecondMotion | None:
         return _second_of(self, self.first, self.highest)
+
+    @cached_property
+    def squeeze(self) -> Squeezed | None:
+        """With the compliances of both rollers at the spring of the case."""
+        second, compliances = self.second, self.ratings.compliances
+        if second is None or compliances is None or self.alone:
+            return None
+        interference = self.numbers[INTERFERENCE]
+        return squeezed(interference, compliances, second.touch, second.leverage)
+
+    @cached_property
+    def _in_guides(self) -> _PressedStem | None:
+        """Stem whose rollers are preloaded; None of other followers."""
+        if self.squeeze is None or self.pivot is not None:
+            return None
+        near, far = (replace(self, alone=side, facing=None) for side in (1.0, -1.0))
+        return _PressedStem(self.squeeze, near, far)
+
+    @cached_property
+    def wall(self) -> Array:
+        if self.alone:
+            return np.full(np.shape(self.required), self.alone)
+        if self.facing is None and self._in_guides is not None:
+            return wall_of(self.axial, held=True)
+        return super().wall
+
+    @cached_property
+    def axial(self) -> Array:
+        stem = self._in_guides
+        if stem is None or self.facing is not None:
+            return super().axial
+        return stem.axial(self, stem.jams)
 
     @property
     def fix(self) -> Correction:
@@ -165,14 +205,14 @@ class ScenarioCam(CarriedCam):
         return np.asarray(self.speed * share)
 
     @property
-    def direction(self) -> Array:
-        """Direction of the follower, from -1, falling, to 1, rising.
+    def heading(self) -> Array:
+        """From -1, falling, to 1, rising.
 
         In the cell of a cam angle, see `Scenario`, in which the follower reverses, the direction is
         the mean over the cell, s' over its change within half of it, so that it can be
         differentiated.
         """
-        sharp, cell = super().direction, self.scenario.cell
+        sharp, cell = super().heading, self.scenario.cell
         if not np.any(cell):
             return sharp
         reach = 0.5 * cell * magnitude(self.jet.lift_d2)
@@ -208,26 +248,99 @@ class ScenarioCam(CarriedCam):
     def rubbing_share(self) -> OfGuides:
         return self._corrected(self.fix.rubbing_a, self.fix.rubbing_b)
 
+    def _loads(self, shares: Callable[[ScenarioCam], OfGuides]) -> OfGuides:
+        """Loads of the guides, N, by their shares of the axial force of a track."""
+        if self._in_guides is None:
+            return OfGuides(*(self.axial * each for each in shares(self)))
+        return self._in_guides.loads(self.axial, shares)
+
+    @cached_property
+    def rubbing(self) -> OfGuides:
+        return self._loads(lambda cam: cam.rubbing_share)
+
     @cached_property
     def bearing(self) -> OfGuides:
         """At most the limit at the temperature of the guide counts, see `Correction`."""
-        on_a, on_b = self._corrected(self.fix.guide_a, self.fix.guide_b)
-        return OfGuides(self.axial * on_a, self.axial * on_b)
+        fix = self.fix
+        return self._loads(lambda cam: cam._corrected(fix.guide_a, fix.guide_b))
 
     @cached_property
     def edge(self) -> OfGuides:
         """Greatest line load of the guides times their length, N."""
-        on_a, on_b = self._corrected(self.fix.edge_a, self.fix.edge_b)
-        return OfGuides(self.axial * on_a, self.axial * on_b)
+        fix = self.fix
+        return self._loads(lambda cam: cam._corrected(fix.edge_a, fix.edge_b))
+
+    @cached_property
+    def jam(self) -> Array:
+        stem = self._in_guides
+        return super().jam if stem is None else stem.mean(self.axial, stem.jams)
 
     @cached_property
     def jam_worst(self) -> Array | None:
+        stem = self._in_guides
+        if stem is not None and stem.worst is not None:
+            return stem.mean(stem.axial(self, stem.worst), stem.worst)
         on_points = super().jam_worst
         return None if on_points is None else on_points * self.fix.jam
+
+    @cached_property
+    def hot(self) -> OfGuides | None:
+        stem, friction = self._in_guides, greatest_friction(self.numbers)
+        if stem is None or stem.worst is None or friction is None:
+            return super().hot
+        loads = stem.loads(stem.axial(self, stem.worst), lambda cam: cam.hot_share)
+        return OfGuides(friction.a * loads.a, friction.b * loads.b)
+
+    @cached_property
+    def rollers(self) -> tuple[TurningRoller, ...]:
+        """The mean spin of a second preloaded roller is that on its prime circle."""
+        turning, second = super().rollers, self.second
+        if len(turning) == 1 or second is None:
+            return turning
+        path = roller_of(second.motion)
+        far = rolling_share(path.prime_radius[..., :1], path.size)
+        return tuple(
+            each._replace(mean=mean)
+            for each, mean in zip(turning, (self.spin_mean, self.speed * far), strict=True)
+        )
 
     @property
     def hot_share(self) -> OfGuides:
         return self._corrected(self.fix.hot_a, self.fix.hot_b)
+
+
+class _PressedStem(NamedTuple):
+    """Stem whose rollers are preloaded, by its cam on the track of either roller alone."""
+
+    squeeze: Squeezed
+    near: ScenarioCam
+    far: ScenarioCam
+
+    @property
+    def jams(self) -> tuple[Array, Array]:
+        """Jam index of either track."""
+        return self.near.jam, self.far.jam
+
+    @property
+    def worst(self) -> tuple[Array, Array] | None:
+        """`jams` at maximum friction; None where it is not known."""
+        near, far = self.near.jam_worst, self.far.jam_worst
+        return None if near is None or far is None else (near, far)
+
+    def axial(self, cam: ScenarioCam, jams: tuple[Array, Array]) -> Array:
+        """Axial force of a cam, N, by the jam index of either track."""
+        return PressedGuides(self.squeeze, jams)(cam.required, cam.heading)
+
+    def loads(self, axial: Array, shares: Callable[[ScenarioCam], OfGuides]) -> OfGuides:
+        """Loads of the guides, N: those of rollers on opposite sides of the cam add up."""
+        near, far = self.squeeze.forces(axial)
+        both = zip(shares(self.near), shares(self.far), strict=True)
+        return OfGuides(*(near * one + far * other for one, other in both))
+
+    def mean(self, axial: Array, jams: tuple[Array, Array]) -> Array:
+        """Jam index over the sum of the forces of both tracks."""
+        near, far = self.squeeze.forces(axial)
+        return np.asarray((near * jams[0] + far * jams[1]) / (near + far))
 
 
 def loaded(
@@ -391,7 +504,7 @@ class Constraint(Generic[State]):
     utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
     row: AnyLimit | None = None
     kept: Kept = field(default=Kept(), repr=False)
-    needs: Kind = ""
+    needs: Kind | Literal["preloaded"] = ""
     stroke: str = ""
     discs: bool = False
 

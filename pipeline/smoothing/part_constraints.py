@@ -1,4 +1,5 @@
-"""Constraints of checks without a pointwise measure: guide edges, speed sweep, keyway, grease.
+"""Constraints of checks without a pointwise measure: guide edges, speed sweep, keyway, grease,
+preload of both discs.
 
 As in `constraints`. What finite elements, the surge or the heat of a solved cam add is in the
 `Correction` of its scenario, held while the search runs.
@@ -7,7 +8,9 @@ As in `constraints`. What finite elements, the surge or the heat of a solved cam
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
+from typing import Literal
 
 import numpy as np
 
@@ -15,12 +18,14 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.checks import (
     demands,
+    form_closure,
     guide_strength,
     jump_and_jamming,
     key_strength,
     roller_bearing,
 )
 from camwright.pipeline.checks.check import Declaration, Kept
+from camwright.pipeline.checks.contact_strength import line_pressure
 from camwright.pipeline.checks.guide_strength import Side, table_of
 from camwright.pipeline.checks.roller_bearing import FIRST_ROLLER, STANDSTILL
 from camwright.pipeline.cycle.loaded_cam import not_negative
@@ -34,17 +39,21 @@ from camwright.pipeline.smoothing.cam_state import (
     duty_shares,
     where_applies,
 )
+from camwright.pipeline.smoothing.scenario import PRELOADED
 
 
 def _of(
     declared: Declaration,
     utilisation: Callable[[ScenarioCam, float], Array | Mean | None],
     unit: str = "",
+    needs: Literal["", "preloaded"] = "",
 ) -> Constraint[ScenarioCam]:
-    """Constraint of a check without a measure, at its row; unit: of a limit that a part sets."""
+    """Constraint of a check without a measure, at its row; unit: of a limit that a part sets;
+    needs: kind of follower, see `Ratings.kinds`, if not that of the check.
+    """
     row, rule = None if unit else declared.limit, Kept(unit=unit)
     key = declared.id if row is None else row.id
-    return Constraint(declared.id, key, utilisation, row, rule, declared.needs)
+    return Constraint(declared.id, key, utilisation, row, rule, needs or declared.needs)
 
 
 def _edge_use(side: Side, at: ScenarioCam, limit: float) -> Array:
@@ -141,6 +150,32 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     return Mean(terms, total=Total(of, members))
 
 
+def _preload_least(at: ScenarioCam, limit: float) -> Array | None:
+    """Utilisation of the least force on the disc that bears less: 1 plus `limit` less that force
+    over the preload, less the profile tolerance over the interference; None without a preload.
+    """
+    squeeze, numbers = at.squeeze, at.numbers
+    if squeeze is None:
+        return None
+    lost = numbers["cam.profile_tolerance"] / numbers[form_closure.INTERFERENCE]
+    first, second = squeeze.forces(at.axial)
+    least = np.where(np.real(first) < np.real(second), first, second)
+    return np.asarray(1.0 + limit + lost - least / squeeze.preload)
+
+
+def _preload_pressure(at: ScenarioCam, limit: float) -> Array | None:
+    """Pressure on the disc that is pressed harder, with an interference greater by the profile
+    tolerance, as `line_pressure`; None without a preload.
+    """
+    other = at.on_other_track
+    if other is None:
+        return None
+    more = at.numbers["cam.profile_tolerance"] + at.numbers[form_closure.INTERFERENCE]
+    numbers = at.numbers | {form_closure.INTERFERENCE: more}
+    # under the axial force of the nominal interference
+    return line_pressure(replace(at, numbers=numbers, facing=other), limit)
+
+
 PARTS: tuple[Constraint[ScenarioCam], ...] = (
     _of(guide_strength.guide_edge_pressure_a, partial(_edge_use, "A"), "N/mm"),
     _of(guide_strength.guide_edge_pressure_b, partial(_edge_use, "B"), "N/mm"),
@@ -148,5 +183,7 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
     _of(jump_and_jamming.elastic_contact, _elastic_contact),
     _of(key_strength.keyway_root, _keyway_root),
     _of(roller_bearing.grease_life, _grease_life, "N"),
+    _of(form_closure.preload_least, _preload_least, "-", PRELOADED),
+    _of(form_closure.preload_pressure, _preload_pressure, "MPa", PRELOADED),
 )
 """Limits of the parts on the loads of the cam in one scenario."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from typing import Final
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.follower.disc_preload import Compliances
 from camwright.pipeline.follower.spring_kinds import SpringShape
 
 
@@ -65,6 +67,7 @@ class Ratings:
     drag : Drag            of the roller
     keyway : KeywayRoot
     grease : Grease        of the roller bearing
+    compliances : Compliances   of both rollers of preloaded discs
     """
 
     numbers: Numbers
@@ -73,6 +76,7 @@ class Ratings:
     drag: Drag | None = None
     keyway: KeywayRoot | None = None
     grease: Grease | None = None
+    compliances: Compliances | None = None
 
     def times(self, key: str, factor: float) -> Ratings:
         """With a limit times a factor."""
@@ -95,11 +99,12 @@ class Ratings:
     def kinds(self) -> frozenset[str]:
         """Words for the kind of follower by which checks and constraints are selected: of a roller
         "roller", "round"; of a face "face", and on an arm "swung_face", of a curved one "round" as
-        well; of either "stem" or "arm". See `FollowerKind`.
+        well; of either "stem" or "arm", of preloaded rollers `PRELOADED`. See `FollowerKind`.
         """
         body = "stem" if self.numbers.get("follower.arm.length") is None else "arm"
         if self.numbers.get("follower.face.width") is None:
-            return frozenset({"roller", "round", body})
+            pressed = () if self.compliances is None else (PRELOADED,)
+            return frozenset({"roller", "round", body, *pressed})
         shapes = {"radius": {"round", "swung_face"}, "offset": {"swung_face"}}
         stated = (words for name, words in shapes.items()
                   if self.numbers.get(f"follower.face.{name}") is not None)  # fmt: skip
@@ -125,6 +130,9 @@ class Ratings:
             return None
         return 0.5 * width - abs(self.offset)
 
+
+PRELOADED: Final = "preloaded"
+"""Kind of follower whose two rollers are pressed by an interference of their discs."""
 
 _FACTORS = (
     "contact", "pressure_weight", "force_weight", "guide_a", "guide_b", "rubbing_a", "rubbing_b",

@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_conjugate_cam import uneven as uneven_pair
-from test_synthesis_of_held_cams import text_of
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
@@ -334,12 +333,6 @@ def test_every_sheet_of_a_run_agrees(tmp_path):
     sheets = {name: run.sheet(name) for name in run.records}
     assert {"jam_index", "preload_least", "roller_life", "cam_slip"} <= set(sheets)
     assert [name for name, sheet in sheets.items() if not sheet.agrees] == []
-
-
-def test_a_synthesis_of_a_preloaded_stem_is_refused():
-    words = "must be a filter .* with a clearance"
-    with pytest.raises(InputError, match=rf"smoothing\.kind = constrained, {words}"):
-        parse_case(text_of("preloaded_feeder", 8.0, 60.0))
 
 
 def test_the_pressure_of_an_undercut_disc_is_not_known():

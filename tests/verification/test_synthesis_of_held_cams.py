@@ -17,6 +17,7 @@ from camwright.geometry.second_track import relative_radius
 from camwright.pipeline.case.case_file import parse_case, with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks.demands import NORMAL_FORCE
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.preview import preview_case
@@ -65,11 +66,35 @@ YOKE = "yoke_pump", 2.0, 20.0, (
     *FAST.items(), ('width = "24 mm"', 'width = "10 mm"'),
     ("torque_reduction = 0.05", "torque_reduction = 0.02"),
 )  # fmt: skip
-CAMS = pytest.mark.parametrize("pair", [STEM, ARM, YOKE], ids=["stem", "arm", "yoke"])
-
+PRESSED_STEM = "preloaded_feeder", 8.0, 20.0, (
+    ('"200 rpm"', '"1500 rpm"'), ('"220 rpm"', '"1500 rpm"'), ("landing_speed", "# landing_speed"),
+    ('"3e-8 mm^3/N/m"', '"1e-9 mm^3/N/m"'),
+    ('interference = "0.013 mm"', 'interference = "0.06 mm"'),
+)  # fmt: skip
+PRESSED_ARM = "preloaded_arm", *ARM[1:3], (
+    ('"300 rpm"', '"2000 rpm"'), ('"330 rpm"', '"2000 rpm"'), ("landing_speed", "# landing_speed"),
+    ('interference = "0.02 mm"', 'interference = "0.04 mm"'),
+)  # fmt: skip
+PRESSED = PRESSED_STEM, PRESSED_ARM
+TWO_ROLLERS = "stepped_groove", 4.0, 20.0, (
+    ('"300 rpm"', '"2000 rpm"'), ('"330 rpm"', '"2000 rpm"'), ("landing_speed", "# landing_speed"),
+    ('mass = "3 kg"', 'mass = "5 kg"'), ('"3e-8 mm^3/N/m"', '"1e-9 mm^3/N/m"'),
+    ('roller_life = "15000 h"', 'roller_life = "100 h"'),
+    ("coefficients = 24", 'coefficients = 24\nfree = ["initial_energy"]'),
+)  # fmt: skip
+OF = {"stem": STEM, "arm": ARM, "yoke": YOKE, "groove": TWO_ROLLERS,
+      "pressed stem": PRESSED_STEM, "pressed arm": PRESSED_ARM}  # fmt: skip
+CAMS = pytest.mark.parametrize("pair", OF.values(), ids=OF)
+ONE_DISC = YOKE, TWO_ROLLERS
 
 OF_ROLLERS = {"pressure_angle", "curvature_ratio", "minimum_wall"}
 KEPT = 1.0 - RESERVE
+
+
+def limited(pair):
+    """Limits that the program on the finished contours keeps."""
+    own = {YOKE: {"face_width"}, TWO_ROLLERS: {"roller_static", "spring_travel"}}
+    return own.get(pair, OF_ROLLERS) | ({"preload_least"} if pair in PRESSED else set())
 
 
 @cache
@@ -84,7 +109,7 @@ def test_every_derivative_is_that_of_a_complex_step_through_the_cam(pair):
     _, whole = problem(pair)
     search = Search(coarsened(whole))
     state = search.state(search.exact, search.problem.variables)
-    discs = 1 if pair is YOKE else 2
+    discs = 1 if pair in ONE_DISC else 2
     assert state.pointwise["undercut"].shape == (discs, state.grid.theta.size)
     step = np.random.default_rng(3).normal(size=search.size)
     tiny = 1e-30j
@@ -104,13 +129,41 @@ def test_every_derivative_is_that_of_a_complex_step_through_the_cam(pair):
         exact = exact[rows.scenario, rows.point]
         assert np.abs(rows.change(step) - exact).max() <= 1e-8 * np.abs(exact).max() + 1e-14
         seen.add(rows.name)
-    assert {"contact_pressure", *({"face_width"} if pair is YOKE else OF_ROLLERS)} <= seen
+    assert limited(pair) | {"contact_pressure"} <= seen
     torque = np.imag(cam.torque[search.weighted, : search.problem.points]) / 1e-30
     norms = search.norms(state, summit, np.arange(len(search.weighted)))
     scaled = np.sqrt(search.problem.points) * np.std(search.problem.scenarios[0].torque)
     left = -torque[0] / search.problem.gear_ratio
     spread = np.linalg.norm(left - left.mean()) / scaled
     assert np.linalg.norm(norms[0].slopes @ step) == pytest.approx(spread, rel=1e-8)
+
+
+@pytest.mark.parametrize("pair", PRESSED, ids=["stem", "arm"])
+def test_both_preloaded_rollers_press_as_on_the_finished_discs(pair):
+    """Forces, guides and their friction against those of the contours, splines of the lift."""
+    case, whole = problem(pair)
+    search, machine = Search(whole), machines(case)[0]
+    raised = search.exact + np.ptp(search.exact)  # a lift without a sharp minimum
+    cam = search.loads_at(raised, whole.variables, search.turn)
+    lift = Lift(search.turn.theta, readonly(cam.jet.lift))
+    contour = case.contour(lift)
+    loads = follower_loads(contour.pitch, machine.system, machine.cam_speed, lift.theta)
+    k = next(k for k, each in enumerate(whole.scenarios) if each.weight > 0)
+    turning = np.abs(loads.lift_slope) > 1e-6  # beside a reversal the friction is that of its cell
+    pairs = {
+        "axial": (cam.axial, loads.axial_force), "normal": (cam.normal, loads.normal_force),
+        "other": (cam.on_other_track.normal, loads.idle_force),
+        "jam": (cam.jam, loads.jam_index), "torque": (cam.torque, loads.cam_torque),
+    }  # fmt: skip
+    if pair is PRESSED_STEM:
+        friction = loads.friction_force_a, loads.friction_force_b
+        mu = machine.system.friction_a, machine.system.friction_b
+        for side, own, each, by in zip("ab", cam.rubbing, friction, mu, strict=True):
+            pairs[side] = by * own, each
+    for name, (own, solved) in pairs.items():
+        away = np.abs(own[k] - solved)[turning].max()
+        assert away < 2e-6 * np.abs(solved).max(), name
+    assert loads.idle_force.max() > 50.0
 
 
 class Finished:
@@ -142,6 +195,8 @@ class Finished:
         engine = self.item.torque[:: self.item.torque.size // self.theta.size]
         left = engine - loads.cam_torque / self.problem.gear_ratio
         room = self._of_faces if self.case.cam.yoke else self._of_discs
+        if self.case.cam.groove:
+            room = self._of_groove
         made = float(np.std(left) / np.std(engine)), room(coefficients, contour, loads), loads
         self._last = coefficients.copy(), made
         return made
@@ -153,7 +208,14 @@ class Finished:
         rate, force = self.machine.spring.rate, self.problem.variables.closing
         return (np.sqrt(force**2 + 2.0 * rate * np.maximum(values, 0.0)) - force) / rate
 
-    def _of_discs(self, coefficients, contour, _loads):
+    def _of_groove(self, coefficients, contour, loads):
+        """Greatest lift and normal force."""
+        bounds = self.problem.ratings.bounds
+        force = KEPT - loads.normal_force / bounds[NORMAL_FORCE]
+        lift = KEPT - contour.lift.highest.value / bounds["spring_travel"]
+        return np.concatenate([force, [lift], 20.0 * self.basis.energy(coefficients)[0]])
+
+    def _of_discs(self, coefficients, contour, loads):
         limits, rooms = self.case.limits, []
         track = self.case.cam.second.track(contour.pitch)
         for disc, turn in ((contour, 0.0), (track.contour, track.turn)):
@@ -163,6 +225,11 @@ class Finished:
             wall = wall / np.hypot(*disc.points(self.theta + turn))
             rooms += [KEPT - limits.curvature_ratio * radius * curved, KEPT - angle, KEPT - wall]
         rooms.append(20.0 * self.basis.energy(coefficients)[0])
+        if preload := self.machine.disc_preload:
+            squeeze = preload.at(track, self.theta)
+            left = np.minimum(*squeeze.forces(loads.axial_force)) / squeeze.preload
+            lost = self.case.cam.profile_tolerance / preload.interference
+            rooms.append(left - lost - limits.contact_force_margin - RESERVE)
         return np.concatenate(rooms)
 
     def _of_faces(self, _coefficients, contour, loads):
@@ -209,7 +276,7 @@ def test_a_nonlinear_program_on_the_finished_discs_finds_the_same_ripple(pair):
     ripple, rooms, loads = own.at(there)
     assert ripple == pytest.approx(design.ripple, rel=1e-5)
     assert np.abs(rooms).min() < 1e-4 and rooms.min() > -1e-4  # a limit binds
-    assert loads.axial_force.min() < -20.0  # the second disc carries
+    assert loads.axial_force.min() < -20.0 or pair is PRESSED_STEM  # the second disc carries
     there, whole_of = unknowns(pair, there)
     scale, away = np.abs(there).max(), np.random.default_rng(5).normal(size=there.size)
     start = there / scale
@@ -233,13 +300,16 @@ def test_a_synthesised_pair_keeps_its_limits_when_it_is_solved(pair):
     trial = preview_case(parse_case(text_of(*pair)), corners=False)
     assert trial.synthesis["feasible"]
     running = next(each for each in trial.cycles if each.load_case == "running")
-    assert running.loads.axial_force.min() < -20.0 < 20.0 < running.loads.axial_force.max()
+    assert running.loads.axial_force.max() > 20.0
+    assert running.loads.axial_force.min() < -20.0 or pair is PRESSED_STEM
     kept = {"contact_pressure", "undercut", "torque_reduction", "self_intersection"}
-    kept |= {"face_width", "yoke_breadth"} if pair is YOKE else OF_ROLLERS | {"roller_static"}
+    kept |= {"yoke_breadth"} if pair is YOKE else {"roller_static"}
+    kept |= {"preload_pressure"} if pair in PRESSED else set()
     status = {each.id: each.status for each in trial.checks}
+    kept |= limited(pair)
     assert {name: status[name] for name in kept} == dict.fromkeys(kept, "pass")
     use = {each.id: each.utilisation for each in trial.checks}
-    for name in {"face_width"} if pair is YOKE else OF_ROLLERS:
+    for name in limited(pair) - {"preload_least", "roller_static"}:  # in a form of their own
         kept_use = trial.synthesis["utilisation"][name]
         assert use[name] == pytest.approx(kept_use, rel=1e-3), name
 
