@@ -25,6 +25,7 @@ In the order of the calculation:
 | `given_lift`           | lift of a case without engine                | s, m             |
 | `keys`                 | every key: meaning, unit, range, default     |                  |
 | `added_tables`         | tables that complete a case; missing keys    |                  |
+| `unknown_keys`         | unknown keys beside what else is refused     |                  |
 | `closure_tables`       | what stands for the spring of such a cam     |                  |
 | `arm_tables`           | scope and start angle of an oscillating arm  | psi, rad         |
 | `rocker_tables`        | what the output of a rocker carries          | kg; N            |

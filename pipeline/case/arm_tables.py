@@ -29,12 +29,16 @@ def with_arm(tables: Tables) -> Tables:
     Raises
     ------
     InputError
-        If the case has guides, or start angle or inertia are wrong, or stated beside prime radius
-        or mass; if another case leaves out an arm or its pivot, or is without stem or guides.
+        If a follower of another kind has an arm, the case has guides, or start angle or inertia are
+        wrong, or stated beside prime radius or mass; if another case leaves out an arm or its
+        pivot, or is without stem or guides.
     """
     follower, scope = tables.get("follower"), tables.get("scope")
     left_out = scope.get("not_covered") if isinstance(scope, dict) else None
     if not isinstance(follower, dict) or follower.get("kind") != OSCILLATING:
+        if isinstance(follower, dict) and "arm" in follower:
+            limit = f'left out, or follower.kind = "{OSCILLATING}"'
+            raise InputError("follower.arm", "a table", limit)
         if isinstance(left_out, list) and (named := [each for each in OF_ARM if each in left_out]):
             limit = f'without "{named[0]}", which follower.kind = "{OSCILLATING}" alone has'
             raise InputError("scope.not_covered", _shown(left_out), limit)

@@ -37,6 +37,7 @@ from camwright.pipeline.case.rocker_tables import with_rocker
 from camwright.pipeline.case.scope_section import with_every_name, with_stand_ins
 from camwright.pipeline.case.section import named
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
+from camwright.pipeline.case.unknown_keys import with_unknown_keys
 
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
@@ -101,12 +102,21 @@ def completed(case: Case, folder: Path | None) -> Case:
 
 
 def case_of(data: Tables, folder: Path | None = None) -> Case:
-    """Case from its tables and the cards of `folder`; files to which it refers are not read."""
-    tables = resolved(data, folder)
+    """Case from its tables and the cards of `folder`; files to which it refers are not read.
+
+    Raises
+    ------
+    InputError
+        With all unknown keys, whatever else is refused: one of them may be the reason.
+    """
     try:
-        return validated(tables)
-    except MissingKeysError as error:
-        raise with_examples(error, tables, folder) from None
+        tables = resolved(data, folder)
+        try:
+            return validated(tables)
+        except MissingKeysError as error:
+            raise with_examples(error, tables, folder) from None
+    except InputError as error:
+        raise with_unknown_keys(error, data) from None
 
 
 def resolved(data: Tables, folder: Path | None = None) -> Tables:

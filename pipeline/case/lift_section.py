@@ -106,9 +106,10 @@ class LiftEccentric(Section):
 def _kind(
     lift: TomlValue | LiftTable | LiftSegments | LiftPoints | LiftEccentric,
 ) -> str | None:
-    """Kind of a lift section; "table" where a table states none, None for anything but a table."""
+    """Kind of a lift section; "table" where a file alone is stated, None where nothing tells it."""
     if isinstance(lift, dict):
-        return str(lift.get("kind", "table"))
+        kind = lift.get("kind", "table" if "file" in lift else None)
+        return None if kind is None else str(kind)
     if isinstance(lift, (LiftTable, LiftSegments, LiftPoints, LiftEccentric)):
         return lift.kind
     return None

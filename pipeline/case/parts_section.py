@@ -134,21 +134,18 @@ class Follower(Section):
 
     @model_validator(mode="after")
     def _has_its_arm(self) -> Self:
-        """Refuse an oscillating follower without arm, an arm or pivot of another, and the gravity
-        angle of a stem with an arm.
+        """Refuse an oscillating follower without arm, the pivot of another, and the gravity angle
+        of a stem with an arm.
         """
         if self.pivot is not None and self.arm is None:
             raise InputError("follower.pivot", "a table", "left out, or given with follower.arm")
-        if (self.kind == "oscillating") == (self.arm is not None):
-            if self.arm is not None and self.gravity_angle is not None:
-                stated = units.shown(self.gravity_angle, "deg")
-                limit = "left out with an arm: see follower.pivot.gravity_angle"
-                raise InputError("follower.gravity_angle", stated, limit)
-            return self
-        if self.arm is None:
+        if self.kind == "oscillating" and self.arm is None:
             raise InputError("follower.arm", "missing", 'given with follower.kind = "oscillating"')
-        limit = 'left out, or follower.kind = "oscillating"'
-        raise InputError("follower.arm", "a table", limit)
+        if self.arm is not None and self.gravity_angle is not None:
+            stated = units.shown(self.gravity_angle, "deg")
+            limit = "left out with an arm: see follower.pivot.gravity_angle"
+            raise InputError("follower.gravity_angle", stated, limit)
+        return self
 
     @model_validator(mode="after")
     def _has_one_force(self) -> Self:

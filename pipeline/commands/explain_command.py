@@ -64,19 +64,22 @@ def _open_sources() -> str:
 
 def _explained(word: str) -> str:
     """Text that explains a word: keys or table of the case file, check, or a kind that is not
-    supported; InputError with the closest ones if it is none of these.
+    supported or has another name, with the keys and tables of its name in other tables; InputError
+    with the closest ones if it is none of these.
     """
     from camwright.pipeline.base.missing_kinds import missing_kinds
-    from camwright.pipeline.case.keys import keys_at
+    from camwright.pipeline.case.keys import case_keys, keys_at
     from camwright.pipeline.checks.registry import DECLARED
 
     parts = _of_keys(word, keys_at(word))
     if word in DECLARED:
         parts.append(_of_check(word))
     if not parts:
-        if missing := missing_kinds("", word):
-            return "\n".join(_text(f"{word}: {kind.sentence}", ()) for kind in missing)
+        parts = [_text(f"{word}: {kind.sentence}", ()) for kind in missing_kinds("", word)]
+    if not parts:
         raise InputError("WORD", word, f"a key or table of a case file, or a check{_closest(word)}")
+    alike = {key.path: None for key in case_keys() if key.path.endswith(f".{word}")}
+    parts += [text for path in alike for text in _of_keys(path, keys_at(path))]
     return "\n\n".join(parts)
 
 
@@ -162,7 +165,8 @@ def _of_check(name: str) -> str:
 
 
 def _text(heading: str, rows: Iterable[tuple[str, str]]) -> str:
-    return fill(heading, WIDTH) + "\n" + _listed([row for row in rows if row[1]], LABEL)
+    listed = _listed([row for row in rows if row[1]], LABEL)
+    return fill(heading, WIDTH) + (f"\n{listed}" if listed else "")
 
 
 def _listed(rows: Iterable[tuple[str, str]], width: int) -> str:

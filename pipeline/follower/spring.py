@@ -307,9 +307,10 @@ class Spring(Part):
         for name, owner in (*zip(SHAPES, SHAPES, strict=True), ("design", "coil")):
             stated = getattr(self, name) is not None
             if stated and kind != owner:
-                raise InputError(
-                    f"spring.{name}", "a table", f'left out with spring.kind = "{kind}"'
-                )
+                limit = f'left out with spring.kind = "{kind}"'
+                if self.kind is None:
+                    limit = f'left out, or spring.kind = "{owner}"'
+                raise InputError(f"spring.{name}", "a table", limit)
             if kind == owner and not stated and name != "design":
                 raise InputError(f"spring.{name}", "missing", f'given with spring.kind = "{kind}"')
         if self.linked is None:

@@ -83,6 +83,20 @@ def test_pivot_and_arm_are_explained_as_guides_are(capsys):
         assert words in arm
 
 
+def test_a_word_of_a_check_or_a_kind_shows_the_keys_of_its_name(capsys):
+    """A check may be called as a key of another meaning, a kind as its table."""
+    for word, heads in {
+        "closure": ("closure: Lift closure", "cam.closure: what keeps", "limits.closure: "),
+        "groove": ("groove: a groove (track, face) cam is stated by", "cam.groove: "),
+        "conjugate": ("conjugate: a pair of discs is stated by", "cam.conjugate: "),
+    }.items():
+        texts = explained(capsys, word).rstrip("\n").split("\n\n")
+        assert [text.startswith(head) for text, head in zip(texts, heads, strict=True)] == [
+            True for _ in heads
+        ]
+        assert texts == [text.strip("\n") for text in texts]
+
+
 @pytest.mark.parametrize(
     ("word", "closest"),
     [("guides.a.wal", "guides.a.wall"), ("wall", "guides.b.wall"), ("jam_indx", "jam_index"),

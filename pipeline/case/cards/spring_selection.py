@@ -103,13 +103,15 @@ def put_force(case: Tables) -> None:
 def _law(spring: Tables) -> SpringShape | None:
     """Force law of the spring of a case from its table: gas or torsion spring, or one with a link
     or on a rocker; None where rate and preload are stated, or the table is missing and refused
-    later.
+    later. A kind that is left out or unknown, refused later, too, is that of the table.
     """
-    kind = spring.get("kind", "coil")
-    part = SHAPES.get(kind) if isinstance(kind, str) else None
-    if part is not None and str(kind) not in spring:
+    kind = str(spring.get("kind"))
+    if kind not in ("coil", *SHAPES):
+        kind = next((each for each in SHAPES if each in spring), "coil")
+    part = SHAPES.get(kind)
+    if part is not None and kind not in spring:
         return None
-    shape = None if part is None else read_part(part, spring[str(kind)], f"spring.{kind}")
+    shape = None if part is None else read_part(part, spring[kind], f"spring.{kind}")
     if shape is not None and not shape.linkable:
         return shape
     if "link" in spring:
