@@ -24,6 +24,7 @@ from camwright.reports.drawing.arrangement import (
     DrawnMechanism,
     DrawnMotion,
     DrawnSector,
+    DrawnStep,
 )
 from camwright.reports.drawing.drawing_shapes import Drawing
 from camwright.reports.drawing.second_follower import DrawnSecond
@@ -34,7 +35,7 @@ from camwright.reports.drawing.spring_shapes import (
     NoSpring,
     SpringPlaces,
 )
-from camwright.reports.sheet_turn import SheetTurn
+from camwright.reports.sheet_turn import SheetTurn, beside_path
 
 _COLUMNS = {"contact": "normal_force_N", "spring": "spring_force_N",
             "guide-a": "guide_reaction_A_N", "guide-b": "guide_reaction_B_N"}  # fmt: skip
@@ -165,7 +166,32 @@ def _groove(turn: SheetTurn) -> DrawnGroove | None:
     radius, depth = (turn.length("cam", "groove", key) for key in ("outer_radius", "depth"))
     if wall is None or radius is None or depth is None:
         return None
-    return DrawnGroove(wall, radius, depth, turn.length("cam", "groove", "second", "radius"))
+    second = turn.length("cam", "groove", "second", "radius")
+    return DrawnGroove(wall, radius, depth, second, _steps(turn, depth, wall, second))
+
+
+def _steps(
+    turn: SheetTurn, depth: float, wall: Array, second: float | None
+) -> tuple[DrawnStep, ...]:
+    """Steps of a groove from the face down, each with the roller that runs in it.
+
+    Parameters
+    ----------
+    depth : float           of the groove, mm
+    wall : array (2, n)     outer, on which a roller runs
+    second : float          radius of a second roller, mm; None without one
+    """
+    inner = np.array([turn.contour["contour_x_mm"], turn.contour["contour_y_mm"]])
+    relief, middle = (
+        turn.length("cam", "groove", "second", key) or 0.0 for key in ("relief", "step_depth")
+    )
+    if second is None:
+        return (DrawnStep(0.0, depth, inner, wall),)
+    first = turn.length("roller", "radius") or 0.0
+    of_first = (inner, beside_path(turn.contour, first + relief), (True, False))
+    of_second = (beside_path(turn.contour, -second - relief), wall, (False, True))
+    upper, lower = (of_second, of_first) if second > first else (of_first, of_second)
+    return DrawnStep(0.0, middle, *upper), DrawnStep(middle, depth, *lower)
 
 
 def _arm(turn: SheetTurn) -> DrawnArm | None:

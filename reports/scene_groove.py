@@ -9,28 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.reports.drawing.arrangement import DrawnGroove
+from camwright.pipeline.base.files import Json
+from camwright.reports.drawing.arrangement import DrawnGroove, DrawnStep
 from camwright.reports.scene_solids import Solid, box, joined, pin, ring, rod, tube
-from camwright.reports.sheet_turn import SheetTurn, beside_path
+from camwright.reports.sheet_turn import SheetTurn
 
+_MARK = 0.05  # half of the width of a mark over the radius, and its height over half of the width
+_ROLLER_GREY, _MARK_GREY = "#e3e8ed", "#444c55"
 _CHEEK = 0.35  # of the width of the roller, where the case states no cheek
-
-
-class SceneStep(NamedTuple):
-    """Step of a groove: depths of face and floor below the face of the disc, inner and outer wall
-    (2, n), and which of them carry; mm.
-    """
-
-    top: float
-    bottom: float
-    inner: Array
-    outer: Array
-    carries: tuple[bool, bool] = (True, True)
-
-    @property
-    def walls(self) -> tuple[Array, Array]:
-        """Inner and outer wall."""
-        return self.inner, self.outer
 
 
 class SceneRoller(NamedTuple):
@@ -58,7 +44,7 @@ class SceneGroove:
     width: float
     roller: float
     cheek: tuple[float, float]
-    steps: tuple[SceneStep, ...]
+    steps: tuple[DrawnStep, ...]
     second: SceneRoller | None = None
 
     @property
@@ -66,7 +52,7 @@ class SceneGroove:
         """Middle of the disc."""
         return self.face - 0.5 * self.width
 
-    def _wall(self, step: SceneStep, wall: Array) -> Solid:
+    def _wall(self, step: DrawnStep, wall: Array) -> Solid:
         height = self.face - 0.5 * (step.top + step.bottom)
         return ring(wall, step.bottom - step.top).deeper(height)
 
@@ -119,13 +105,43 @@ class SceneGroove:
         cheek_at, wide = self.cheek
         half, bridge = 0.5 * stem, 2.0 * radius
         plate = box((-half, -bridge, cheek_at - 0.5 * wide), (half, bridge, cheek_at + 0.5 * wide))
-        second, lowest, others = self.second, -0.5 * self.roller, list[Solid]()
-        if second is not None:
-            lowest = min(lowest, second.height - 0.5 * self.roller)
-            others.append(pin(second.radius, 0.5 * self.roller).deeper(second.height))
+        lowest = -0.5 * self.roller
+        if self.second is not None:
+            lowest = min(lowest, self.second.height - 0.5 * self.roller)
         reach = 0.5 * (cheek_at + 0.5 * wide - lowest)
         axle = pin(radius, reach).deeper(reach + lowest)
-        return joined((plate, axle, rod(stem, bridge, top).deeper(cheek_at), *others))
+        return joined((plate, axle, rod(stem, bridge, top).deeper(cheek_at)))
+
+    def moving(self, angle: Array, centre: Array, digits: int) -> list[Json]:
+        """Records of the second roller with a mark, see `scene_arm.moving`, as it rolls on the
+        outer wall without slip all the turn; [] without one.
+
+        Parameters
+        ----------
+        angle : array (f,)       cam angles, deg
+        centre : array (2, f)    of the rollers in the frame of the guides, mm
+        """
+        second, wall = self.second, self.outer
+        if second is None:
+            return []
+        chords = np.hypot(*np.diff(wall, axis=1, append=wall[:, :1]))
+        along = np.r_[0.0, np.cumsum(chords)]
+        turned = -np.interp(angle, np.linspace(0.0, 360.0, along.size), along) / second.radius
+        half, radius = 0.5 * self.roller, second.radius
+        mark = box(
+            (-_MARK * radius, 0.5 * radius, -(1.0 + _MARK) * half),
+            (_MARK * radius, 0.95 * radius, (1.0 + _MARK) * half),
+        )
+        bodies = (pin(radius, half), _ROLLER_GREY), (mark, _MARK_GREY)
+        return [
+            {
+                "body": solid.deeper(second.height).as_record(digits), "colour": colour,
+                "plain": False, "turn": [round(float(each), digits) for each in turned],
+                "x": [round(float(each), digits) for each in centre[0]],
+                "y": [round(float(each), digits) for each in centre[1]],
+                "stretch": [1.0] * angle.size,
+            } for solid, colour in bodies
+        ]  # fmt: skip
 
 
 def scene_groove(
@@ -144,10 +160,15 @@ def scene_groove(
     corner = turn.length("cam", "groove", "corner_radius") or 0.0
     roller = min(turn.length("roller", "width") or groove.depth, groove.depth - corner)
     face, second = groove.depth - corner - 0.5 * roller, _second(turn)
-    steps: tuple[SceneStep, ...] = (SceneStep(0.0, groove.depth, inner, outer),)
+    steps = tuple(
+        each._replace(
+            inner=inner if each.carries[0] else _at_stations(turn, each.inner, inner.shape[1]),
+            outer=_at_stations(turn, each.outer, inner.shape[1]),
+        )
+        for each in groove.steps
+    )
     if second is not None:
         face -= max(-second.height, 0.0)
-        steps = _steps(turn, groove.depth, (inner, outer), second)
     wide = turn.length("roller", "fork", "cheek_width") or _CHEEK * roller
     span = turn.length("roller", "pin", "span")
     cheek_at = max(face, 0.5 * roller) + 0.6 * wide if span is None else span
@@ -176,30 +197,3 @@ def _second(turn: SheetTurn) -> SceneRoller | None:
     if radius is None or spacing is None or first is None:
         return None
     return SceneRoller(radius, spacing if radius > first else -spacing)
-
-
-def _steps(
-    turn: SheetTurn, depth: float, walls: tuple[Array, Array], second: SceneRoller
-) -> tuple[SceneStep, ...]:
-    """Steps of a groove for two rollers, from the face down.
-
-    Parameters
-    ----------
-    depth : float            of the groove, mm
-    walls : pair of (2, n)   inner and outer, on which rollers run, at equal cam angles, mm
-    """
-    relief, middle = (
-        turn.length("cam", "groove", "second", key) or 0.0 for key in ("relief", "step_depth")
-    )
-    first, count = turn.length("roller", "radius") or 0.0, walls[0].shape[1]
-    beside_first, beside_second = (
-        _at_stations(turn, beside_path(turn.contour, distance), count)
-        for distance in (first + relief, -second.radius - relief)
-    )
-    of_first, of_second = (walls[0], beside_first), (beside_second, walls[1])
-    both = [(of_first, (True, False)), (of_second, (False, True))]
-    upper, lower = both if second.height < 0.0 else both[::-1]
-    return (
-        SceneStep(0.0, middle, *upper[0], upper[1]),
-        SceneStep(middle, depth, *lower[0], lower[1]),
-    )

@@ -193,6 +193,7 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
         "facing": _rounded(view.to_lab + view.turn + spin),
         "lean": None if lean is None else _rounded(lean),
         "moving": [
+            *([] if groove is None else groove.moving(view.angle, lab, _DIGITS)),
             *scene_arm.moving(mechanism, lifts, width, _DIGITS),
             *scene_second.moving(
                 mechanism,

@@ -74,16 +74,35 @@ class DrawnSector(NamedTuple):
     position: float
 
 
+class DrawnStep(NamedTuple):
+    """Step of a groove: depths of face and floor below the face of the disc, inner and outer wall
+    (2, n), and which of them carry; mm.
+    """
+
+    top: float
+    bottom: float
+    inner: Array
+    outer: Array
+    carries: tuple[bool, bool] = (True, True)
+
+    @property
+    def walls(self) -> tuple[Array, Array]:
+        """Inner and outer wall."""
+        return self.inner, self.outer
+
+
 @dataclass(frozen=True, eq=False)
 class DrawnGroove:
     """Groove in a disc around the contour, its inner wall: outer wall (2, n), radius of the disc,
-    depth; `second`: radius of a roller on the outer wall alone, None without; mm.
+    depth; `second`: radius of a roller on the outer wall alone, None without; steps from the face
+    down; mm.
     """
 
     wall: Array
     radius: float
     depth: float
     second: float | None = None
+    steps: tuple[DrawnStep, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -421,12 +440,11 @@ def arm_groups(m: DrawnMechanism, arm: DrawnArm, lift: float) -> tuple[ShapeGrou
     lift : float   of the reference point along its arc, mm
     """
     edge, thin = Pen("ink", _EDGE * m.scale, "steel"), Pen("muted", _THIN * m.scale)
-    half, roller, end = arm.half, m.roller or 0.0, (0.0, -arm.length)
+    half, end = arm.half, (0.0, -arm.length)
     bar = rectangle(-half, -arm.length, half, 0.0)
     swung: tuple[Shape, ...] = (
         DrawnOutline((bar,), edge),
-        DrawnOutline((circle(roller, end), circle(m.pin, end)), Pen("ink", edge.width, "card")),
-        DrawnOutline((circle(m.pin, end),), edge),
+        *(() if m.roller is None else _rollers(m, edge, end)),
         DrawnOutline((circle(arm.bearing),), edge),
     )
     if m.face is not None:
@@ -613,8 +631,9 @@ def _cam(m: DrawnMechanism) -> list[Shape]:
                  0.85 * m.text, "muted", "middle")  # fmt: skip
     disc = [DrawnOutline((m.contour, *holes), edge)]
     if m.groove is not None:
-        floor = DrawnOutline((m.groove.wall, m.contour), Pen("ink", edge.width, "shade"))
-        disc = [DrawnOutline((circle(m.groove.radius), *holes), edge), floor]
+        floor = Pen("ink", edge.width, "shade")
+        steps = (DrawnOutline((each.outer, each.inner), floor) for each in m.groove.steps)
+        disc = [DrawnOutline((circle(m.groove.radius), *holes), edge), *steps]
     return [
         *disc,
         *_counterweight(m),
@@ -642,18 +661,14 @@ def _follower(m: DrawnMechanism) -> list[Shape]:
     half, end = 0.5 * m.stem, m.stem_end - m.lowest
     made: list[Shape] = []
     if m.roller is not None:
-        bridge = m.roller + 0.25 * m.stem
+        bridge = max(_rollers_of(m)) + 0.25 * m.stem
         made += [
             DrawnOutline((rectangle(-half, 0.0, half, end),), edge),
             DrawnOutline(
                 (rectangle(-1.1 * half, bridge, 1.1 * half, bridge + 0.35 * m.stem),), edge
             ),
-            DrawnOutline((circle(m.roller), circle(m.pin)), Pen("ink", edge.width, "card")),
-            DrawnOutline((circle(m.pin),), edge),
+            *_rollers(m, edge),
         ]
-        if m.groove is not None and m.groove.second is not None:
-            hidden = Pen("ink", 0.5 * edge.width, dash="dashed")
-            made.append(DrawnOutline((circle(m.groove.second),), hidden))
     elif m.face is not None:
         width, thick = m.face
         made += [
@@ -668,6 +683,26 @@ def _follower(m: DrawnMechanism) -> list[Shape]:
         reach = 0.8 * m.stem
     made.append(DrawnOutline((rectangle(-reach, seat - thick, reach, seat),), edge))
     return made
+
+
+def _rollers_of(m: DrawnMechanism) -> list[float]:
+    """Radii of the roller, and of a second one on its pin, mm."""
+    second = None if m.groove is None else m.groove.second
+    return [each for each in (m.roller, second) if each is not None]
+
+
+def _rollers(m: DrawnMechanism, edge: Pen, at: tuple[float, float] = (0.0, 0.0)) -> list[Shape]:
+    """Roller about its pin; of two the larger one, which is at the face of the groove, with the
+    other dashed behind it. at : place of their centres, mm
+    """
+    *behind, largest = sorted(_rollers_of(m))
+    drawn: list[Shape] = [
+        DrawnOutline((circle(largest, at), circle(m.pin, at)), Pen("ink", edge.width, "card")),
+        DrawnOutline((circle(m.pin, at),), edge),
+    ]
+    hidden = Pen("ink", 0.5 * edge.width, dash="dashed")
+    drawn += [DrawnOutline((circle(each, at),), hidden) for each in behind]
+    return drawn
 
 
 def _guides(m: DrawnMechanism) -> list[Shape]:

@@ -174,3 +174,36 @@ def test_the_pictures_have_both_steps_and_both_rollers(run):
     assert {8.85, -9.15, -27.15, -37.15} <= set(heights.tolist())
     assert scene.second.height == -18.0
     assert scene.follower(20.0, 100.0, 8.5).points[2].min() == pytest.approx(-18.0 - 8.75)
+    # the second roller turns against the first, by the length of the outer wall over a turn
+    angle, centre = np.array([0.0, 180.0, 360.0]), np.zeros((2, 3))
+    for body in scene.moving(angle, centre, 4):
+        path = np.stack([run.final.contour[f"pitch_{axis}_mm"] for axis in "xy"])
+        length = np.hypot(*np.diff(path, axis=1, append=path[:, :1])).sum() + 2.0 * np.pi * 21.0
+        assert body["turn"][0] == 0.0
+        assert body["turn"][1:] == pytest.approx([-length / 42.0, -length / 21.0], rel=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("second", [21.0, 26.0])
+def test_each_roller_is_drawn_in_its_own_step(run, second):
+    """The larger one in the upper step, before the other; neither crosses a wall at any angle."""
+    turn = read_material(run.path).turn
+    groove = dict(turn.case["cam"]["groove"])
+    groove["second"] = {**groove["second"], "radius": f"{second} mm"}
+    table = dict(turn.contour)
+    for axis in "xy":
+        table[f"outer_{axis}_mm"] = table[f"pitch_{axis}_mm"] + second * table[f"normal_{axis}"]
+    case = {**turn.case, "cam": {**turn.case["cam"], "groove": groove}}
+    changed = replace(turn, case=case, contour=table)
+    mechanism = mechanism_of(changed)
+    (follower,) = (each for each in arrangement_at(changed).groups if each.name == "follower")
+    sizes = [float(np.hypot(*each.lines[0]).max()) for each in follower.shapes
+             if np.ptp(np.hypot(*each.lines[0])) < 1e-9]  # fmt: skip
+    assert sizes[0] == pytest.approx(max(second, 23.5))
+    assert sizes[-1] == pytest.approx(min(second, 23.5))
+    path = np.stack([table[f"pitch_{axis}_mm"] for axis in "xy"])
+    for step, radius in zip(mechanism.groove.steps, (sizes[0], sizes[-1]), strict=True):
+        for wall in step.walls:
+            for centre in path.T[::60]:
+                away = np.hypot(*(wall - centre[:, None])).min()
+                assert away > radius - 1e-3
