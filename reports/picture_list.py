@@ -234,7 +234,9 @@ def axial_pictures(material: ReportMaterial) -> Sequence[Picture]:
         )
     rows = final.cycle.of_load_case(axial.worst_case)
     at = int(np.argmin(np.abs(rows["cam_angle_deg"] - axial.worst_angle)))
-    values = [float(rows[name][at]) for name in ("p0_fe_MPa", "p0_hertz_MPa") if name in rows]
+    disc = "idle_" if pressure_figures.bears_less(records, axial) else ""
+    names = f"{disc}p0_fe_MPa", f"{disc}p0_hertz_MPa"
+    values = [float(rows[name][at]) for name in names if name in rows]
     centre = next((value for value in values if np.isfinite(value)), None)
     certified = pressure_figures.certified_pressure(records, axial, centre)
     tiers = (

@@ -386,6 +386,23 @@ def shown_place(check: Record | None, records: Sequence[Record]) -> tuple[str, f
     return None
 
 
+def _at_place(records: Sequence[Record], axial: AxialPressure) -> list[Record]:
+    """Of the certified contacts those at the shown angle of `axial`."""
+    return [
+        record
+        for record in records
+        if abs(float(record["cam_angle_deg"]) - axial.worst_angle) < _SAME_ANGLE
+        and record["load_case"] == axial.worst_case
+    ]
+
+
+def bears_less(records: Sequence[Record], axial: AxialPressure) -> bool:
+    """Whether the certified contact at the shown angle is on that of preloaded discs which bears
+    less.
+    """
+    return any(record.get("bears_less", False) for record in _at_place(records, axial)[:1])
+
+
 def certified_pressure(
     records: Sequence[Record], axial: AxialPressure, plane: float | None
 ) -> CertifiedPressure | None:
@@ -397,10 +414,9 @@ def certified_pressure(
     records : sequence      `length_certificate` of the trial, factors over plane strain
     plane : float or None   maximum pressure of plane strain at the shown angle, MPa
     """
-    for record in records:
-        here = abs(float(record["cam_angle_deg"]) - axial.worst_angle) < _SAME_ANGLE
-        if plane is None or record["load_case"] != axial.worst_case or not here:
-            continue
+    if plane is None:
+        return None
+    for record in _at_place(records, axial):
         tier = record["finite_elements"]
         centre, end1, end2 = (plane * float(tier[name]) for name in _PLACES)
         bars = [

@@ -235,7 +235,7 @@ def ends(points: Sequence[Record]) -> ReportTable:
         blocks = _figure(point, "finite_elements")
         mean = f"mean of {number(blocks.get('mean_length_mm'))} mm at a corner"
         rows.append([
-            str(point.get("load_case")), number(point.get("cam_angle_deg")),
+            str(point.get("load_case")), _angle(point),
             number(point.get("force_N")), number(point.get("moment_Nmm")),
             mean if point.get("is_mean_at_corner") else "greatest",
             number(point.get("cycle_factor")), number(point.get("signed_factor")),

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath
@@ -371,6 +372,18 @@ class Machine(Displayed):
             crown = self._crown(0.5 * (low + high), side)
             pairs.append(FinitePair((bodies[0], bodies[1]), self._base_curvature, crown))
         return tuple(pairs)
+
+    def with_second_in_place(self, contour: Contour) -> Machine:
+        """The machine with the bodies of the second disc and its roller in place of the first;
+        contour : of the first disc. Itself without a second disc.
+        """
+        second = self.cam.second
+        if second is None or not second.own_disc:
+            return self
+        least = float(second.track(contour.pitch).contour.radius_min().value)
+        roller = replace(self.roller, radius=second.radius)
+        cam = replace(self.cam, prime_radius=least + second.radius)
+        return replace(self, follower=roller, cam=cam)
 
     @property
     def _base_curvature(self) -> float:

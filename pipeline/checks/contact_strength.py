@@ -38,7 +38,6 @@ from camwright.pipeline.checks.check import LASTING, NONE, STATED, Allowed, Dema
 from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.extremes import (
     Extreme,
-    cycle_of,
     greatest,
     on_both_tracks,
     pressed_row,
@@ -460,7 +459,8 @@ def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
         demand,
         missing=(*demand.missing, *lacking_along_line(machine)),
         note="" if worst is None else signed_sentence(solution, worst, signed_pressure),
-        stated=_stated_endurance(machine) | ({} if worst is None else of_elements(solution, worst)),
+        stated=_stated_endurance(machine)
+        | ({} if worst is None else of_elements(solution, worst, signed_pressure)),
         figures=(
             _least_endurance(machine).source,
             *(f"limits.{row.id}: {machine.limits.source(row)}" for row in rows),
@@ -680,14 +680,16 @@ def contact_pressure_at_life(solution: Solution) -> Demand:
     limit = _life_limit(machine, load_cycles(solution.machines, solution.contour))
     note = signed_sentence(solution, worst, signed_pressure)
     judged = _judged(worst, limit, missing=lacks, note=note)
-    stated = replace(judged, stated=of_elements(solution, worst))
+    stated = replace(judged, stated=of_elements(solution, worst, signed_pressure))
     return with_its_track(stated, solution, signed_pressure, _ENDS)
 
 
-def of_elements(solution: Solution, worst: Extreme) -> dict[str, float]:
-    """Ratio of finite elements to half-spaces in the greatest stated pressure."""
-    length = cycle_of(solution.cycles, worst).length
-    return {"r": 1.0 if length is None else length.corrected_by}
+def of_elements(
+    solution: Solution, worst: Extreme, measure: Callable[[Cycle], Array]
+) -> dict[str, float]:
+    """Ratio of finite elements to half-spaces in the greatest `measure` (n,) of a cycle."""
+    cycle, k, _ = pressed_row(solution.cycles, worst, measure)
+    return {"r": 1.0 if cycle.length is None else float(cycle.length.corrected_by[k])}
 
 
 def signed_sentence(solution: Solution, worst: Extreme, measure: Callable[[Cycle], Array]) -> str:
@@ -803,7 +805,8 @@ def edge_shakedown(solution: Solution) -> Demand:
     missing = (*lacking_along_line(machine), *no_friction(machine))
     note = signed_sentence(solution, worst, signed_equivalent)
     judged = _judged(worst, limit, missing=missing, note=note)
-    stated = _shakedown_stated(solution, worst, signed_equivalent) | of_elements(solution, worst)
+    stated = _shakedown_stated(solution, worst, signed_equivalent)
+    stated |= of_elements(solution, worst, signed_equivalent)
     return with_its_track(replace(judged, stated=stated), solution, signed_equivalent, _ENDS)
 
 

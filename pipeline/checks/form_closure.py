@@ -32,7 +32,12 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks import contact_strength
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check
-from camwright.pipeline.checks.extremes import Extreme, cycle_of, worst_case
+from camwright.pipeline.checks.extremes import (
+    Extreme,
+    cycle_of,
+    on_both_tracks,
+    worst_case,
+)
 from camwright.pipeline.checks.flat_face_sliding import bulk_allowed, heat_missing
 from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.contact.cam_body import TWO_TRACKS
@@ -665,29 +670,35 @@ def landing_balance(solution: Solution) -> Demand | None:
     needs="roller",
     closed_by="form",
     if_limited=True,
-    formula="max |v| <= limits.crossover_slip; v: speed of the surface of the roller that carries"
-    " against its track",
-    symbols={"v": "slip_speed"},
+    formula="max |v| <= limits.crossover_slip; v: speed of the surface of the roller that carries,"
+    " of preloaded discs of either, against its track",
+    symbols={"v": "slip_speed [m/s]"},
     reason="It wears and heats roller and walls at the same places in each turn.",
     values=(*given.LOADS, "roller.friction"),
     levers=(levers.one("cam.prime_radius", -1, 2.0),),
     page="Contact",
 )
 def crossover_slip(solution: Solution) -> Demand:
-    """Greatest slip of the roller that carries over the turn, m/s."""
+    """Greatest slip of a roller that carries over the turn, m/s."""
+    machine = solution.machine
 
     def slip(cycle: Cycle) -> Array | None:
-        contact = cycle.rolling.contact
-        return None if contact is None else np.abs(contact.slip)
+        unknown = cycle.rolling.contact is None
+        return None if unknown else on_both_tracks(cycle, _slip)
 
-    machine, worst = solution.machine, _of_turns(solution, slip, 1.0)
-    limit = machine.limits[CROSSOVER_SLIP]
+    limit, worst = machine.limits[CROSSOVER_SLIP], _of_turns(solution, slip, 1.0)
     if worst is None:
         lacks = () if machine.follower.friction is not None else ("roller.friction",)
         return Demand(None, limit, missing=lacks)
     value, cycle, k = worst
     at = Extreme(value, cycle.load_case, float(cycle.theta[k]))
-    return Demand(value, limit, at)
+    return contact_strength.with_its_track(Demand(value, limit, at), solution, _slip, {"v": _slip})
+
+
+def _slip(cycle: Cycle) -> Array:
+    """Slip of the roller of a track (n,), m/s, >= 0; NaN where it is not known."""
+    contact = cycle.rolling.contact
+    return np.full(cycle.theta.size, np.nan) if contact is None else np.abs(contact.slip)
 
 
 @check(
@@ -702,7 +713,8 @@ def crossover_slip(solution: Solution) -> Demand:
     closed_by="form",
     formula="T_oil + 0.47 1.2 T_m + T_f <= limits.surface_temperature, and that of the cards of cam"
     " and roller where they state one; T_oil: lubricant.temperature, T_m: mean of T_f over the"
-    " turn, T_f: greatest 1.11 F v/(b (B_1 sqrt|u| + B_2 sqrt|u - v|) sqrt(2 a)), F: friction on"
+    " turn, of preloaded discs of each roller, T_f: greatest 1.11 F v/(b (B_1 sqrt|u| + B_2"
+    " sqrt|u - v|) sqrt(2 a)), F: friction on"
     " the roller, v: its slip, b: width of the contact, u: speed of the contact along the track, B:"
     " root of conductivity times density times specific heat of cam and roller, a: half-width",
     symbols={
@@ -725,14 +737,18 @@ def slip_temperature(solution: Solution) -> Demand:
         return Demand(None, allowed, missing=missing)
     cold = oil.temperature
 
-    def rises(cycle: Cycle) -> Array:
-        flash = cycle.rolling.flash
-        return np.full(cycle.theta.size, np.nan) if flash is None else flash
+    def flash(cycle: Cycle) -> Array:
+        rise = cycle.rolling.flash
+        return np.full(cycle.theta.size, np.nan) if rise is None else rise
 
-    def hot(cycle: Cycle) -> float:
-        return float(celsius(cold + bulk_rise(rises(cycle)) + rises(cycle).max()))
+    def hot(rise: Array) -> float:
+        return float(celsius(cold + bulk_rise(rise) + rise.max()))
 
-    worst = worst_case(solution.cycles, hot, integral=False)
-    rise = rises(cycle_of(solution.cycles, worst))
+    worst = worst_case(
+        solution.cycles,
+        lambda cycle: float(np.max([hot(each) for each in cycle.on_each_disc(flash)])),
+        integral=False,
+    )
+    rise = max(cycle_of(solution.cycles, worst).on_each_disc(flash), key=hot)
     stated = {"T_m": float(rise.mean()), "T_f": float(rise.max())}
     return Demand(worst.value, allowed, worst, figures=(oil.source,), stated=stated)

@@ -26,7 +26,14 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Declaration, Demand, check
-from camwright.pipeline.checks.extremes import Extreme, greatest, least
+from camwright.pipeline.checks.contact_strength import plane_pressure, with_its_track
+from camwright.pipeline.checks.extremes import (
+    Extreme,
+    greatest,
+    least,
+    on_both_tracks,
+    tracks_of,
+)
 from camwright.pipeline.contact.bore_stress import BoreStress
 from camwright.pipeline.contact.contact_history import QUANTITIES, CertificatePoint
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence, converged
@@ -73,7 +80,7 @@ def _terms_of(unit: str) -> dict[str, str]:
     title="Distance of the contact from fixed boundaries / half-width",
     formula="min(w, t)/max a >= 10; w: least wall from contour to bore or keyway, t: thickness of"
     " the outer ring, or of the roller to its hub, at most w, a: half-width of the contact",
-    symbols={**dict.fromkeys("wt", f"{STATED} [mm]"), "a": "half_width_fe"},
+    symbols={**dict.fromkeys("wt", f"{STATED} [mm]"), "a": "half_width_fe [mm]"},
     reason="Nearer supports change the contact itself, and with it every pressure.",
     unit="-",
     sense="at_least",
@@ -98,10 +105,16 @@ def held_distance(solution: Solution) -> Demand:
     depth = machine.follower.held_depth
     stated = {"w": float(wall), "t": float(wall if depth is None else min(wall, depth))}
     wall = stated["t"]
-    worst = greatest(solution.cycles, lambda cycle: cycle.contact.half_width)
+    worst = greatest(solution.cycles, lambda cycle: on_both_tracks(cycle, _half_width))
     loaded = worst.value > 0 or np.isnan(worst.value)
     share = float(wall / worst.value) if loaded else None
-    return Demand(share, HELD_DISTANCE, worst, stated=stated)
+    judged = Demand(share, HELD_DISTANCE, worst, stated=stated)
+    return with_its_track(judged, solution, _half_width, {"a": _half_width})
+
+
+def _half_width(cycle: Cycle) -> Array:
+    """Half-width of the contact (n,), m."""
+    return cycle.contact.half_width
 
 
 @check(
@@ -137,7 +150,7 @@ def excluded_zone(solution: Solution) -> Demand | None:
     title="Von Mises stress at bore and keyway vs. yield strength",
     formula="max sigma <= Y / S; sigma: von Mises stress on bore and keyway outside the excluded"
     " zones, Y: yield strength of the core, S: limits.bore_safety",
-    symbols={"sigma": "bore_stress_off_edges", "Y": f"{STATED} [MPa]"},
+    symbols={"sigma": "bore_stress_off_edges [MPa]", "Y": f"{STATED} [MPa]"},
     reason="Does not decide: the shaft is taken as rigid and bonded, which overestimates the"
     " stress beside the keyway and omits the fit.",
     unit="MPa",
@@ -160,12 +173,12 @@ def bore_stress(solution: Solution) -> Demand | None:
     if not bores:
         return None
     card = solution.machine.cam.material
-    worst = greatest(solution.cycles, _away_from_edges)
+    worst = greatest(solution.cycles, lambda cycle: on_both_tracks(cycle, _away_from_edges))
     at_edges = max(float(np.max(bore.von_mises)) for bore in bores)
     core = card.core_yield
     radius = max(bore.excluded for bore in bores)
     within = f"{shown(at_edges, 'MPa')} within {shown(radius, 'mm', 2)} of the keyway edges"
-    return Demand(
+    judged = Demand(
         worst.value,
         core / solution.machine.limits[BORE_SAFETY],
         worst,
@@ -173,14 +186,15 @@ def bore_stress(solution: Solution) -> Demand | None:
         figures=(f"{card.name}: {card.source}",),
         stated={"Y": core},
     )
+    return with_its_track(judged, solution, _away_from_edges, {"sigma": _away_from_edges})
 
 
 @check(
     title="Depth of maximum von Mises stress / half-width",
     formula="min z/a >= 0.3; z: depth of the maximum von Mises stress, a: half-width",
     symbols={
-        "z": "von_mises_depth",
-        "a": "half_width_fe",
+        "z": "von_mises_depth [mm]",
+        "a": "half_width_fe [mm]",
     },
     reason="A maximum at the surface is that of an element, not of the contact.",
     unit="-",
@@ -196,15 +210,18 @@ def bore_stress(solution: Solution) -> Demand | None:
 def subsurface_depth(solution: Solution) -> Demand:
     """Least depth of the maximum von Mises stress over the half-width."""
 
-    def share(cycle: Cycle) -> Array:
-        """Depth of the maximum over the half-width (n,); infinite without contact."""
+    def shallowness(cycle: Cycle) -> Array:
+        """Depth of the maximum over the half-width (n,) with its sign changed; -infinite without
+        contact.
+        """
         half = cycle.contact.half_width
         loaded = half > 0
         depth = cycle.contact.von_mises_depth / np.where(loaded, half, 1.0)
-        return np.where(loaded, depth, np.where(np.isnan(half), np.nan, np.inf))
+        return -np.where(loaded, depth, np.where(np.isnan(half), np.nan, np.inf))
 
-    worst = least(solution.cycles, share)
-    return Demand(worst.value, SUBSURFACE, worst)
+    worst = least(solution.cycles, lambda cycle: -on_both_tracks(cycle, shallowness))
+    symbols = {"z": lambda one: one.contact.von_mises_depth, "a": _half_width}
+    return with_its_track(Demand(worst.value, SUBSURFACE, worst), solution, shallowness, symbols)
 
 
 def _residual(
@@ -249,12 +266,13 @@ def _residual(
     return residual
 
 
-def _with_pivot(
-    residual: Array, cycle: Cycle, name: Literal["equilibrium", "complementarity"]
-) -> Array:
-    """Residual (n,) of the contact, at least that of the pin in the bush of a pivot."""
+def _with_pivot(cycle: Cycle, name: Literal["equilibrium", "complementarity"]) -> Array:
+    """Residual (n,) of the contact, of preloaded discs the greater of both, at least that of the
+    pin in the bush of a pivot.
+    """
     of_pin = 0.0 if cycle.pivot is None else float(getattr(cycle.pivot, name))
-    return np.maximum(np.abs(residual), of_pin)
+    residual = on_both_tracks(cycle, lambda one: np.abs(getattr(one.contact, f"residual_{name}")))
+    return np.maximum(residual, of_pin)
 
 
 guide_equilibrium_force = _residual(
@@ -281,7 +299,7 @@ guide_equilibrium_moment = _residual(
 )
 contact_equilibrium = _residual(
     "contact_equilibrium",
-    lambda cycle: _with_pivot(cycle.contact.residual_equilibrium, cycle, "equilibrium"),
+    lambda cycle: _with_pivot(cycle, "equilibrium"),
     title="Force equilibrium residual of the contact",
     formula="d <= 1e-6; d: greatest |integral of p - P| / P of the solved angles, p: contact"
     " pressure, P: line load",
@@ -289,7 +307,7 @@ contact_equilibrium = _residual(
 )
 contact_complementarity = _residual(
     "contact_complementarity",
-    lambda cycle: _with_pivot(cycle.contact.residual_complementarity, cycle, "complementarity"),
+    lambda cycle: _with_pivot(cycle, "complementarity"),
     COMPLEMENTARITY,
     title="Complementarity residual of the contact",
     formula="d <= c; d: greatest of -p/p0, -g/h and p g/(p0 h) of the solved angles, p: pressure,"
@@ -313,8 +331,8 @@ RESIDUALS = tuple(
     title="Peak pressure, finite elements vs. Hertz",
     formula="max |p_FE/p_H - 1| <= 0.03; p_FE, p_H: peak pressure by finite elements and by Hertz",
     symbols={
-        "p_FE": "p0_fe",
-        "p_H": "p0_hertz",
+        "p_FE": "p0_fe [MPa]",
+        "p_H": "p0_hertz [MPa]",
     },
     reason="Does not decide: the bending of real bodies is a true difference; benchmarks and"
     " certificate decide.",
@@ -327,8 +345,15 @@ RESIDUALS = tuple(
 )
 def hertz_difference(solution: Solution) -> Demand:
     """Greatest relative difference of the contact pressure from Hertz."""
-    worst = greatest(solution.cycles, lambda cycle: np.abs(cycle.contact.p0_difference))
-    return Demand(worst.value, HERTZ_DIFFERENCE, worst)
+
+    def difference(cycle: Cycle) -> Array:
+        return np.abs(cycle.contact.p0_difference)
+
+    worst = greatest(solution.cycles, lambda cycle: on_both_tracks(cycle, difference))
+    symbols = {"p_FE": plane_pressure, "p_H": lambda one: one.contact.p0_hertz}
+    return with_its_track(
+        Demand(worst.value, HERTZ_DIFFERENCE, worst), solution, difference, symbols
+    )
 
 
 @check(
@@ -659,7 +684,8 @@ def _order(figure: Convergence) -> str:
 
 
 def _bores(solution: Solution) -> list[BoreStress]:
-    return [c.rolling.bore for c in solution.cycles if c.rolling.bore is not None]
+    every = [track.rolling.bore for track in tracks_of(solution.cycles)]
+    return [bore for bore in every if bore is not None]
 
 
 def _away_from_edges(cycle: Cycle) -> Array:

@@ -495,7 +495,7 @@ def case_depth(solution: Solution) -> Demand | None:
             *lacking_along_line(solution.machine),
         ),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
-        stated=stated | of_elements(solution, worst),
+        stated=stated | of_elements(solution, worst, _signed_depth),
     )
     symbols = {"K": line_factor, "z": lambda cycle: cycle.contact.tau_depth}
     return with_its_track(judged, solution, _signed_depth, symbols)

@@ -29,7 +29,8 @@ AXIAL_ARRAYS = (
 
 
 def axial_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
-    """Arrays of ``5_length.npz``, by half-spaces; None without body ends or contact.
+    """Arrays of ``5_length.npz``, by half-spaces; None without body ends or contact. Of preloaded
+    discs they are those of the disc with the greater signed pressure at each angle.
 
     At a corner the pressure of the last cell is the mean over the stated length: the peak there
     depends on the cells. With an axial offset each half of the line is that of its own end.
@@ -41,17 +42,7 @@ def axial_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
     machine, first = cycles[0].machine, cycles[0].length
     if first is None or any(cycle.length is None for cycle in cycles):
         return None
-    p0, radius, force, moment = (
-        np.concatenate(columns)
-        for columns in zip(
-            *(
-                (c.contact.p0, c.contact.relative_radius, c.loads.normal_force, c.length.moment)
-                for c in cycles
-                if c.length is not None
-            ),
-            strict=True,
-        )
-    )
+    p0, radius, force, moment = np.concatenate([_of_lines(cycle) for cycle in cycles], axis=1)
     rows = np.flatnonzero(np.isfinite(radius) & (radius > 0) & (force > 0))
     if not rows.size:
         return None
@@ -81,6 +72,22 @@ def axial_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
         pressure_rows[rows] = _MPA * pressure
         arrays[name] = pressure_rows
     return arrays
+
+
+def _of_lines(cycle: Cycle) -> Array:
+    """Pressure of plane strain, Pa, relative radius, m, force, N, and moment, N m, of the contacts
+    of a turn (4, n); of preloaded discs at each angle of that with the greater signed pressure.
+    """
+
+    def of(track: Cycle) -> Array:
+        moment = np.full(track.theta.size, np.nan) if track.length is None else track.length.moment
+        contact, force = track.contact, track.loads.normal_force
+        return np.stack([contact.p0, contact.relative_radius, force, moment])
+
+    here, other = of(cycle), cycle.on_other_track
+    if other is None:
+        return here
+    return np.where(other.signed_pressure > cycle.signed_pressure, of(other), here)
 
 
 def _cells(

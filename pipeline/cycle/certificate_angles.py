@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -115,22 +116,65 @@ def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[Leng
     The greatest signed pressure of all load cases; that of each other load case whose contact is
     about as wide, so that the same blocks serve; those of the first load case nearest to cam angles
     (rad) under load. Each at the worst moment of its range; empty without ends. A load case in
-    which the follower leaves the cam or locks counts only where every one does.
+    which the follower leaves the cam or locks counts only where every one does. Of preloaded discs
+    those of each, the disc with the greater pressure first.
     """
-    pressures = [
-        np.where(cycle.contact.below_round_off, 0.0, np.nan_to_num(cycle.signed_pressure))
-        for cycle in cycles
-    ]
     sound = [cycle.loads.end is None for cycle in cycles]
+    counted = [sound[case] or not any(sound) for case in range(len(cycles))]
+    discs = [
+        _loads_of_disc(cycles, pressures, counted, angles, second=number > 0)
+        for number, pressures in enumerate(
+            zip(*(cycle.on_each_disc(_signed_pressure) for cycle in cycles), strict=True)
+        )
+    ]
+    ranked = sorted((each for each in discs if each.loads), key=lambda each: -each.greatest)
+    return tuple(load for each in ranked for load in each.loads)
+
+
+class _DiscLoads(NamedTuple):
+    """Contacts of a disc to be certified, and its greatest signed pressure, Pa."""
+
+    loads: tuple[LengthLoad, ...]
+    greatest: float
+
+
+def _signed_pressure(cycle: Cycle) -> Array:
+    """Signed pressure (n,), Pa, 0 where it is not known or its load vanishes."""
+    pressure = np.nan_to_num(cycle.signed_pressure)
+    return np.where(cycle.contact.below_round_off, 0.0, pressure)
+
+
+def _loads_of_disc(
+    cycles: Sequence[Cycle],
+    pressures: Sequence[Array],
+    counted: Sequence[bool],
+    angles: Sequence[float],
+    *,
+    second: bool,
+) -> _DiscLoads:
+    """Contacts of a disc to be certified, see `length_loads`.
+
+    Parameters
+    ----------
+    pressures : sequence   of each load case: signed pressure (n,) on the disc, Pa
+    counted : sequence     of each load case: whether it counts
+    second : bool          whether it is the second of preloaded discs
+    """
     worst = [
         (case, first_greatest(pressure))
         for case, pressure in enumerate(pressures)
-        if (sound[case] or not any(sound)) and pressure.max() > 0
+        if counted[case] and pressure.max() > 0
     ]
     if not worst:
-        return ()
-    first = worst[first_greatest([pressures[case][k] for case, k in worst])]
-    chosen = {at: _length_load(cycles, at) for at in (first, *worst)}
+        return _DiscLoads((), 0.0)
+
+    def load(at: tuple[int, int]) -> LengthLoad:
+        """Contact at the numbers of load case and position."""
+        return _length_load(cycles[at[0]], at[1], second=second)
+
+    greatest = [float(pressures[case][k]) for case, k in worst]
+    first = worst[first_greatest(greatest)]
+    chosen = {at: load(at) for at in (first, *worst)}
     width = _half_width(chosen[first])
     chosen = {
         at: load
@@ -141,8 +185,8 @@ def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[Leng
         apart = np.abs(np.angle(np.exp(1j * (cycles[0].theta - angle))))
         at = 0, first_least(np.where(pressures[0] > 0, apart, np.inf))
         if pressures[0][at[1]] > 0 and at not in chosen:
-            chosen[at] = _length_load(cycles, at)
-    return tuple(chosen.values())
+            chosen[at] = load(at)
+    return _DiscLoads(tuple(chosen.values()), max(greatest))
 
 
 def _half_width(load: LengthLoad) -> float:
@@ -150,34 +194,40 @@ def _half_width(load: LengthLoad) -> float:
     return plane_strain(load.pair, load.force)[0]
 
 
-def _length_load(cycles: Sequence[Cycle], at: tuple[int, int]) -> LengthLoad:
+def _length_load(cycle: Cycle, index: int, *, second: bool) -> LengthLoad:
     """Contact of a load case at a position, with the end and the moment that give the greatest
-    signed pressure; at : numbers of load case and position.
+    signed pressure; second : on the second of preloaded discs.
     """
-    cycle, index = cycles[at[0]], at[1]
+    machine, other = cycle.machine, cycle.on_other_track
+    bears_less = other is not None and second != bool(cycle.loads.wall[index] < 0.0)
+    if other is not None and bears_less:
+        cycle = other
     if cycle.length is None:
         raise ResultError("pressure along the line of contact: missing")
     force = cycle.loads.normal_force[[index]]
     curvature = 1.0 / cycle.contact.relative_radius[[index]]
+    loaded = machine.with_second_in_place(cycle.contour) if second else machine
     tried = [
-        (pair, share * cycle.length.moment[[index]])
-        for pair in cycle.machine.finite_pairs
+        (pair, pressed.bodies, share * cycle.length.moment[[index]])
+        for pair, pressed in zip(machine.finite_pairs, loaded.finite_pairs, strict=True)
         for share in (0.0, 1.0, -1.0)
     ]
     lines = [
         signed_factor(length_table(pair, cycle.length.mean_length), curvature, force, moment)
-        for pair, moment in tried
+        for pair, _, moment in tried
     ]
     chosen = first_greatest([line.value[0] for line in lines])
-    pair, moment = tried[chosen]
+    pair, bodies, moment = tried[chosen]
     return LengthLoad(
         load_case=cycle.load_case,
         theta=float(cycle.theta[index]),
-        pair=replace(pair, curvature=float(curvature[0])),
+        pair=replace(pair, bodies=bodies, curvature=float(curvature[0])),
         force=float(force[0]),
         moment=float(moment[0]),
         factor=float(lines[chosen].value[0]),
         centre=float(lines[chosen].centre[0]),
+        second=second,
+        bears_less=bears_less,
     )
 
 

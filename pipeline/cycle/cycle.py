@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -95,9 +95,9 @@ class Cycle(Tabled):
     half-planes, and for a contour that encloses no body, where it is unknown. None inside rolling
     and part loads means that the machine has no such part. error_bars: demands have those of their
     sampling; without where ratios of demands alone count. ends: finite elements over half-spaces
-    of the pressure along the line of contact; None: half-spaces alone. idle: contact on the track
-    that bears less, of preloaded discs; None of others. results: by name,
-    computed from loads and contact.
+    of the pressure along the line of contact, of preloaded discs of each; (): half-spaces alone.
+    idle: contact on the track that bears less, of preloaded discs; None of others. results: by
+    name, computed from loads and contact.
     """
 
     turn: Turn
@@ -106,18 +106,19 @@ class Cycle(Tabled):
     bodies: CycleBodies | None
     contact: ContactHistory
     error_bars: bool = field(default=True, kw_only=True)
-    ends: EndCorrection | None = field(default=None, kw_only=True)
+    ends: tuple[EndCorrection, ...] = field(default=(), kw_only=True)
     idle: ContactHistory | None = field(default=None, kw_only=True)
     results: dict[str, object] = field(default_factory=dict, init=False)
 
-    def with_ends(self, correction: EndCorrection | None) -> Cycle:
-        """The cycle with the pressure along the line of contact corrected by finite elements.
+    def with_ends(self, corrections: tuple[EndCorrection, ...]) -> Cycle:
+        """The cycle with the pressure along the line of contact corrected by finite elements, by
+        one correction or that of each of preloaded discs.
 
-        None: by half-spaces. What is computed already and does not depend on it is kept.
+        (): by half-spaces. What is computed already and does not depend on it is kept.
         """
-        if correction == self.ends:
+        if corrections == self.ends:
             return self
-        cycle = replace(self, ends=correction)
+        cycle = replace(self, ends=corrections)
         unchanged = (
             "parts",
             "pin_slope",
@@ -310,9 +311,20 @@ class Cycle(Tabled):
             idle_force=loads.normal_force, pressure_angle=there.pressure_angle, turned=there.turned,
         )  # fmt: skip
         other = replace(self, turn=replace(self.turn, loads=seen), contact=self.idle,
-                        pair=self.pair.other_track, idle=None)  # fmt: skip
-        other.results.update({"shaft": self.shaft, "pin_slope": self.pin_slope})
+                        pair=self.pair.other_track, idle=self.contact)  # fmt: skip
+        of_both = {"shaft": self.shaft, "pin_slope": self.pin_slope}
+        other.results.update({**of_both, "on_other_track": self})
         return other
+
+    def on_each_disc(self, measure: Callable[[Cycle], Array]) -> tuple[Array, ...]:
+        """Measure (n,) of the cycle on each of preloaded discs over the turn; of others as it
+        is.
+        """
+        here, other = measure(self), self.on_other_track
+        if other is None:
+            return (here,)
+        less, first = measure(other), self.loads.wall > 0.0
+        return np.where(first, here, less), np.where(first, less, here)
 
     @KeptResult
     def surface(self) -> ContactHistory:
@@ -326,8 +338,10 @@ class Cycle(Tabled):
         """Traction, creep, film, fatigue and bore stress; NaN if the contour is no body."""
         if self.contact.tier is None:
             return RollingHistory.unknown(self.theta.size)
+        other = self.on_other_track
         return rolling_history(
-            self.machine, self.pair, self.bodies, self.loads, self.surface, self.idle
+            *(self.machine, self.pair, self.bodies, self.loads, self.surface),
+            None if other is None else other.surface,
         )
 
     @KeptResult
@@ -689,11 +703,15 @@ def turn_of_line(cycle: Cycle) -> TurnOfLine:
 
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:
     """Pressure along the line of contact of cycles whose contour encloses a body."""
-    turns = [turn_of_line(each) for each in cycles]
-    return [
-        solved if solved is None or cycle.ends is None else solved.corrected(cycle.ends)
-        for cycle, solved in zip(cycles, length_histories(turns), strict=True)
-    ]
+    turns, corrected = [turn_of_line(each) for each in cycles], list[LengthHistory | None]()
+    for cycle, solved in zip(cycles, length_histories(turns), strict=True):
+        if solved is None or not cycle.ends:
+            corrected.append(solved)
+            continue
+        first, *others = cycle.ends
+        by = first.where(cycle.loads.wall > 0.0, others[0]) if others else first
+        corrected.append(solved.corrected(by))
+    return corrected
 
 
 def solve_lengths(cycles: Iterable[Cycle]) -> None:
@@ -717,6 +735,11 @@ class _ThinnedCycle(Cycle):
 
     whole: Cycle
     step: int
+
+    @KeptResult
+    def on_other_track(self) -> Cycle | None:
+        other = self.whole.on_other_track
+        return None if other is None else other._at_every(self.step)
 
     @KeptResult
     def length(self) -> LengthHistory | None:

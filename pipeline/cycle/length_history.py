@@ -131,20 +131,24 @@ class LengthHistory:
     def error(self) -> Array:
         """Relative error bar (n,) of the factor."""
         if self.correction is not None:
-            return np.full(self.at_corner.shape, self.correction.signed_error)
+            return np.broadcast_to(self.correction.signed_error, self.at_corner.shape)
         return np.where(self.at_corner, CORNER_ERROR, BOUNDED_ERROR)
 
     @property
-    def corrected_by(self) -> float:
-        """Ratio of finite elements to half-spaces in the greatest signed pressure; 1 without."""
-        return 1.0 if self.correction is None else self.correction.signed
+    def corrected_by(self) -> Array:
+        """Ratio (n,) of finite elements to half-spaces in the greatest signed pressure; 1 without
+        finite elements.
+        """
+        by = 1.0 if self.correction is None else self.correction.signed
+        return np.broadcast_to(by, self.at_corner.shape)
 
     @property
     def centre_error(self) -> float:
         """Relative error bar of the pressure in the middle of a crowned line over plane strain."""
         if not self.is_crowned:
             return 0.0
-        return BOUNDED_ERROR if self.correction is None else self.correction.centre_error
+        bar = BOUNDED_ERROR if self.correction is None else self.correction.centre_error
+        return float(np.max(bar))
 
     def corrected(self, correction: EndCorrection) -> LengthHistory:
         """The history of the half-spaces, corrected by finite elements."""
@@ -187,7 +191,7 @@ class LengthHistory:
         if self.correction is None:
             return f"by half-spaces with mirrored ends, {bar} as stated, finite elements not solved"
         return (
-            f"by half-spaces times {self.correction.signed:.4g}, the greatest ratio of finite"
+            f"by half-spaces times {self.corrected_by[place]:.4g}, the greatest ratio of finite"
             f" elements to half-spaces at the certified angles, {bar} by refinement"
         )
 

@@ -43,7 +43,7 @@ def _point(point: LengthPoint, bodies: Sequence[str]) -> LengthPointRecord:
     """
     load = point.load
     _, p0 = plane_strain(load.pair, load.force)
-    return {
+    record: LengthPointRecord = {
         "load_case": load.load_case,
         "cam_angle_deg": in_unit(load.theta, "deg"),
         "force_N": load.force,
@@ -58,6 +58,9 @@ def _point(point: LengthPoint, bodies: Sequence[str]) -> LengthPointRecord:
         "finite_elements": _elements(point, bodies),
         "difference": _by_name(point.difference),
     }
+    if load.bears_less:
+        record["bears_less"] = True
+    return record
 
 
 def _tier(tier: TierResult) -> LengthTier:

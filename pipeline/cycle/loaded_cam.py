@@ -689,9 +689,16 @@ class LoadedCam:
     def friction_work(self) -> Array:
         """Friction power of guides, pivot, roller bearing and face over the cam speed, N m."""
         guides = (self.axial - self.closing - self.inertia) * self.slope
+        work, other = guides + self._bearing_work, self.on_other_track
+        if other is not None:
+            work = work + other._bearing_work
+        return work + self.axial * self.motion.sliding
+
+    @property
+    def _bearing_work(self) -> Array:
+        """Friction power of the bearing of the roller over the cam speed, N m."""
         drag = 0.0 if self.drag is None else self.drag.bearing_torque(self.normal)
-        contact = drag * magnitude(np.asarray(self.motion.rolling))
-        return guides + contact + self.axial * self.motion.sliding
+        return np.asarray(drag * magnitude(np.asarray(self.motion.rolling)))
 
     @cached_property
     def reverses(self) -> NDArray[np.bool_]:

@@ -407,10 +407,7 @@ def _with_ends(
         progress.note(
             f"finite-element ends: not solved, the stated error bars hold: {certificate.refused}"
         )
-    correction = certificate.correction
-    cycles = final.cycles
-    if correction is not None:
-        cycles = tuple(each.with_ends(correction) for each in cycles)
+    cycles = tuple(each.with_ends(certificate.corrections) for each in final.cycles)
     return replace(final, length_certificate=certificate, cycles=cycles)
 
 
@@ -426,7 +423,8 @@ def bore_error(pair: ContactPair, cycles: tuple[Cycle, ...]) -> float | None:
     Roache (1998), sec. 5.6.
     """
     worst: tuple[float, Cycle, int] | None = None
-    for cycle in cycles:
+    both = ((each, each.on_other_track) for each in cycles)
+    for cycle in (track for pair in both for track in pair if track is not None):
         bore = cycle.rolling.bore
         if bore is None or np.isnan(bore.away_from_edges).any():
             return None

@@ -285,6 +285,8 @@ class LengthPointRecord(TypedDict):
     """Load case."""
     cam_angle_deg: float
     """Cam angle."""
+    bears_less: NotRequired[bool]
+    """True: the contact of preloaded discs that bears less there."""
     force_N: float
     """Contact force."""
     moment_Nmm: float

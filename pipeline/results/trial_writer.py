@@ -27,7 +27,7 @@ def write_trial_files(folder: RunFolder, trial: Trial) -> None:
     correction of it.
     """
     number, case = trial.number, trial.case
-    cycles = tuple(cycle.with_ends(None) for cycle in trial.cycles)
+    cycles = tuple(cycle.with_ends(()) for cycle in trial.cycles)
     folder.write("2_spline.csv", spline_columns(trial.lift), number)
     folder.write("2_lift.csv", lift_columns(case, trial.lift), number)
     if trial.limits_in_use is not None:

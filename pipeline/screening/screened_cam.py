@@ -463,7 +463,7 @@ class ScreenedCam(CarriedCam):
 
     @cached_property
     def roller_slip(self) -> Array:
-        """Greatest slip of the roller that carries (m,), m/s; NaN where it is not known."""
+        """Greatest slip of a roller that carries (m,), m/s; NaN where it is not known."""
         drag, shape, greatest = self.drag, self.normal.shape, list[list[float]]()
         if drag is None or self.numbers.known_case.facing.friction is None:
             return np.full(shape[0], np.nan)
@@ -484,7 +484,9 @@ class ScreenedCam(CarriedCam):
 
     @cached_property
     def _rollers(self) -> Sequence[tuple[Motion, Array, NDArray[np.bool_]]]:
-        """Motion, normal force, N, and where it carries, of each roller of a cam that pulls."""
+        """Motion, normal force, N, and where it carries, of each roller of a cam that pulls; both
+        of preloaded discs do.
+        """
         every = np.ones(self.normal.shape, dtype=bool)
         if self.block.second is None:
             return [(self.motion, self.normal, every)]
@@ -493,7 +495,7 @@ class ScreenedCam(CarriedCam):
         if squeeze is None:
             forces = [np.where(at, self.normal, 0.0) for at in on]
         else:
-            along = squeeze.forces(self.axial)
+            along, on = squeeze.forces(self.axial), (every, every)
             forces = [one * track.gain for one, track in zip(along, tracks, strict=True)]
         return list(zip(tracks, forces, on, strict=True))
 

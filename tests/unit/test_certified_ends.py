@@ -100,7 +100,7 @@ def test_a_certified_run_signs_the_pressure_of_finite_elements():
     solved = cw.solve(cam.case, cam.contour, positions=36, corners=False)
     solution = solved.solution
     certificate, cycles = solution.length_certificate, solution.cycles
-    first, correction = certificate.points[0], certificate.correction
+    first, (correction,) = certificate.points[0], certificate.corrections
     case = next(c for c in cycles if c.load_case == first.load.load_case)
     worst = int(np.nanargmax(case.signed_pressure))
     assert case.theta[worst] == first.load.theta

@@ -84,7 +84,7 @@ def test_points_have_their_force_and_moment_at_both_tiers(condensations):
 
 def test_the_half_spaces_are_corrected_to_the_finite_elements(condensations):
     certificate, _, _ = condensations
-    correction, blocks = certificate.correction, [p.finite_elements for p in certificate.points]
+    (correction,), blocks = certificate.corrections, [p.finite_elements for p in certificate.points]
     signed = [tier.signed.values[-1] for tier in blocks]
     assert correction.signed == pytest.approx(max(signed) / 1.25, rel=1e-12)
     assert correction.signed_error == max(tier.signed.gci for tier in blocks) > 0
@@ -95,7 +95,18 @@ def test_the_half_spaces_are_corrected_to_the_finite_elements(condensations):
         means, greatest = tier.factors.end_means[0].max(), tier.factors.greatest[0]
         assert value <= greatest
         assert value == greatest if not tier.at_corner else value >= (1 - 1e-12) * means
-    assert replace(certificate, points=()).correction is None
+    assert replace(certificate, points=()).corrections == ()
+
+
+def test_each_of_preloaded_discs_is_corrected_by_its_own_points(condensations):
+    certificate, _, _ = condensations
+    first, *others = certificate.points
+    on_second = [replace(each, load=replace(each.load, second=True)) for each in others]
+    one, other = replace(certificate, points=(first, *on_second)).corrections
+    assert one.signed == first.ratio != max(each.ratio for each in others) == other.signed
+    by = one.where(np.array([True, False]), other)
+    assert by.signed.tolist() == [one.signed, other.signed]
+    assert by.signed_error.tolist() == [one.signed_error, other.signed_error]
 
 
 def test_blocks_in_the_disk_cache_are_not_condensed_again(tmp_path, monkeypatch):

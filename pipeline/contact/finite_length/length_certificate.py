@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
-from camwright.geometry.arrays import Array
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import ContactError
 from camwright.pipeline.base.worker_processes import ALONE, Crew, PendingCall
 from camwright.pipeline.contact.finite_length import length_contact
@@ -37,7 +40,8 @@ class LengthLoad:
     """Contact of finite length at one cam angle, rad: force, N; moment about the middle, N m.
 
     The curvature of the pair is that at the angle. factor, centre: signed pressure and pressure in
-    the middle by the half-spaces of the cycle, over plane strain.
+    the middle by the half-spaces of the cycle, over plane strain. second: on the second of
+    preloaded discs; bears_less: on that of them which bears less there.
     """
 
     load_case: str
@@ -47,6 +51,8 @@ class LengthLoad:
     moment: float
     factor: float
     centre: float
+    second: bool = False
+    bears_less: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,13 +88,30 @@ class LengthPoint:
 class EndCorrection:
     """Ratio of finite elements to the half-spaces of the cycle, with relative error bars.
 
-    Greatest ratios and bars of the certified angles: of the signed pressure, of the middle.
+    Greatest ratios and bars of the certified angles: of the signed pressure, of the middle; of one
+    disc, or of that which carries at each angle (n,).
     """
 
-    signed: float
-    signed_error: float
-    centre: float
-    centre_error: float
+    signed: Value
+    signed_error: Value
+    centre: Value
+    centre_error: Value
+
+    @classmethod
+    def of_points(cls, points: Sequence[LengthPoint]) -> EndCorrection:
+        """Greatest ratios of finite elements to half-spaces over points, with their error bars."""
+        blocks = [point.finite_elements for point in points]
+        return cls(
+            max(point.ratio for point in points),
+            max(each.signed.gci for each in blocks),
+            max(point.centre_ratio for point in points),
+            max(each.convergence[0].gci for each in blocks),
+        )
+
+    def where(self, first: NDArray[np.bool_], other: EndCorrection) -> EndCorrection:
+        """This correction at some angles (n,), that of another disc at the others."""
+        pairs = zip(astuple(self), astuple(other), strict=True)
+        return EndCorrection(*(np.where(first, *pair) for pair in pairs))
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,19 +127,12 @@ class LengthCertificate:
     refused: str = ""
 
     @property
-    def correction(self) -> EndCorrection | None:
-        """Greatest ratios of finite elements to half-spaces over the points, with their error bars;
-        None without points.
+    def corrections(self) -> tuple[EndCorrection, ...]:
+        """Correction by all points; of two preloaded discs that of each by its own. Empty without
+        points.
         """
-        if not self.points:
-            return None
-        blocks = [point.finite_elements for point in self.points]
-        return EndCorrection(
-            max(point.ratio for point in self.points),
-            max(each.signed.gci for each in blocks),
-            max(point.centre_ratio for point in self.points),
-            max(each.convergence[0].gci for each in blocks),
-        )
+        both = [[one for one in self.points if one.load.second is at] for at in (False, True)]
+        return tuple(EndCorrection.of_points(points) for points in both if points)
 
 
 @dataclass(frozen=True, eq=False)
