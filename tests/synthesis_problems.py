@@ -156,6 +156,7 @@ def with_corrections(problem, seed):
         **{name: about(0.0, 30.0) for name in forces},
         **{name: np.full(turn.size, value) for name, value in single.items()},
         **{name: about(1.1, 0.2) for name in ("pressure_weight", "force_weight")},
+        **{name: about(1.1, 0.2) for name in ("bush_rubbing", "bush_bearing")},
     )
     scenarios = tuple(
         changed(item, correction=correction, viscous_damping=3.0) for item in problem.scenarios

@@ -53,7 +53,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
-from camwright.pipeline.cycle.part_loads import PartLoads
+from camwright.pipeline.cycle.part_loads import BushLoad, PartLoads
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import (
     NYLON_PV,
@@ -66,6 +66,8 @@ ARM_LENGTH = "follower.arm.length"
 Side = Literal["A", "B"]
 Place = Literal["A", "B", "pivot"]
 GUIDES: tuple[Side, ...] = ("A", "B")
+TILTED = ", with those of the greatest moment of the contact, which tilts the pin"
+"""Words of the pushes on the bush of a pivot."""
 PLACES: tuple[Place, ...] = (*GUIDES, "pivot")
 """Guides of a stem, and the pivot of an arm, which has a bush, too."""
 
@@ -136,12 +138,38 @@ def has_bush(place: Place) -> Callable[[Value, Numbers], NDArray[np.bool_]]:
     return lambda _, numbers: np.array(numbers.get(f"{table_of(place)}.length") is not None)
 
 
-def _reaction(cycle: Cycle, side: Side) -> Array:
+def _reaction(cycle: Cycle, side: Place) -> Array:
+    """Net load of a bush (n,), N."""
+    if side == "pivot":
+        return np.asarray(np.hypot(*cycle.loads.pivot_load))
     return cycle.guides.reaction_a if side == "A" else cycle.guides.reaction_b
 
 
-def _rubbing_load(cycle: Cycle, side: Side) -> Array:
+def _rubbing_load(cycle: Cycle, side: Place) -> Array:
+    """Pushes on both sides of a bush (n,), N."""
+    if side == "pivot":
+        return _known(cycle.parts.pivot_rubbing)
     return cycle.guides.rubbing_load_a if side == "A" else cycle.guides.rubbing_load_b
+
+
+def _bearing_load(cycle: Cycle, side: Place) -> Array:
+    """Load on the more loaded side of a bush over the loaded share of its length (n,), N."""
+    if side == "pivot":
+        return _known(cycle.parts.pivot_bearing)
+    return cycle.guide_pushes[GUIDES.index(side)]
+
+
+def _known(push: Array | None) -> Array:
+    """Push on the bush of a pivot (n,), N.
+
+    Raises
+    ------
+    InputError
+        If the pivot has none.
+    """
+    if push is None:
+        raise InputError(table_of("pivot"), "missing", "given for its checks")
+    return push
 
 
 def _heat_of(cam: LoadedCam, place: Place) -> Array | None:
@@ -280,8 +308,9 @@ def _guide_pressure(side: Place) -> Declaration:
         method="greatest push on one side of the bore over diameter x loaded length, with that of a"
         " forced tilt at right angles; at most the limit at the temperature of the guide"
         if side != "pivot"
-        else "greatest load of the pivot over diameter x length of its bush; at most the limit at"
-        " the temperature of the bush",
+        else "greatest push on one side of the bush over diameter x loaded length, of a rigid pin"
+        " in slices of a bush with clearance, tilted by the greatest moment of the contact, with"
+        " the load at right angles; at most the limit at the temperature of the bush",
         lift_can_help=True,
         fails_from=Tier.SCREENING,
         error="sampling" if side == "pivot" else "guide_edges",
@@ -319,7 +348,10 @@ def _guide_pressure(side: Place) -> Declaration:
     )
     def pressure(cam: LoadedCam) -> Array:
         """Mean pressure in a bush, Pa."""
-        push = cam.pivot_load if side == "pivot" else cam.bearing[GUIDES.index(side)]
+        if side == "pivot":
+            push = cam.pivot_load * cam.bush_bearing
+        else:
+            push = cam.bearing[GUIDES.index(side)]
         return magnitude(push) / cam.numbers[f"{table_of(side)}.area"]
 
     return pressure
@@ -336,7 +368,9 @@ def _loaded_side(solution: Solution, side: Place, worst: Extreme) -> dict[str, f
     cycle, k = row_of(solution.cycles, worst)
     if side == "pivot":
         length = guide_of(cycle.machine, side).length
-        return {"F": float(np.hypot(*cycle.loads.pivot_load[:, k])), "l": length}
+        load = BushLoad.of(cycle.machine, cycle.loads, cycle.follower_moment)
+        reach = length if load is None else float(load.pressed.reach[k])
+        return {"F": float(_bearing_load(cycle, side)[k]) * reach / length, "l": reach}
     index = GUIDES.index(side)
     push, length = cycle.guides.loaded_side(index, k)
     if cycle.sideways is not None:
@@ -348,19 +382,20 @@ def _pushes(solution: Solution, side: Place, worst: Extreme) -> tuple[str, ...]:
     """Note on the forces on both sides of the bore at the greatest pressure, and on the pressure by
     the reaction alone.
 
-    Their sum is the rubbing load, their difference the reaction. The pin of a pivot has one side.
+    Their sum is the rubbing load, their difference the reaction, but for what acts on a pivot
+    across the plane of its couple.
     """
-    if side == "pivot":
-        return ()
     cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
-    k = first_greatest(cycle.guide_pushes[GUIDES.index(side)])
+    k = first_greatest(_bearing_load(cycle, side))
     both, net = float(_rubbing_load(cycle, side)[k]), abs(float(_reaction(cycle, side)[k]))
-    greater, less = (shown(0.5 * each, "N", 4) for each in (both + net, both - net))
     alone = shown(net / guide_of(cycle.machine, side).projected_area, "MPa", 3)
+    if side == "pivot":
+        return (f"pushes of {shown(both, 'N', 4)} on both sides; {alone} by the load alone",)
     tilted = ""
     if (across := cycle.sideways) is not None:
         load = float((across.reaction_a if side == "A" else across.reaction_b)[k])
         tilted = f"; {shown(abs(load), 'N', 4)} across them by the forced tilt of the contact"
+    greater, less = (shown(0.5 * each, "N", 4) for each in (both + net, both - net))
     both_sides = f"pushes of {greater} and {less} on opposite sides"
     return (f"{both_sides}; {alone} by the net reaction{tilted}",)
 
@@ -371,7 +406,7 @@ def _pv_in(side: Place) -> Measure:
     def pv(cam: LoadedCam) -> Array:
         """PV value in a bush at each angle, Pa m/s: of the sum of the pushes on both sides."""
         if side == "pivot":
-            power = cam.pivot_load * cam.pin_velocity
+            power = cam.pivot_load * cam.bush_rubbing * cam.pin_velocity
         else:
             power = cam.rubbing[GUIDES.index(side)] * cam.velocity
         return magnitude(power) / cam.numbers[f"{table_of(side)}.area"]
@@ -382,10 +417,13 @@ def _pv_in(side: Place) -> Measure:
 PV: Mapping[Place, Measure] = {side: _pv_in(side) for side in PLACES}
 
 
-def _pv_of_reaction(side: Side, cycle: Cycle) -> float:
+def _pv_of_reaction(side: Place, cycle: Cycle) -> float:
     """PV value by the net reaction, in which loads on opposite sides of the bore cancel, Pa m/s."""
+    machine, guide = cycle.machine, guide_of(cycle.machine, side)
     rubbed = np.mean(np.abs(_reaction(cycle, side) * cycle.loads.velocity))
-    return float(rubbed) / guide_of(cycle.machine, side).projected_area
+    on_pin = side == "pivot" and machine.arm is not None
+    share = 0.5 * guide.diameter / machine.arm.length if on_pin and machine.arm else 1.0
+    return float(rubbed) * share / guide.projected_area
 
 
 def _pv_allowed(side: Place, numbers: Numbers) -> Allowed:
@@ -402,7 +440,8 @@ def _guide_pv(side: Place) -> Declaration:
     seat, speed = SEATS[side], "follower_velocity"
     load = f"guide_normal_load_{side}"
     if side == "pivot":
-        load, speed = "pivot_load", f"follower_velocity {seat.table}.diameter/(2 {ARM_LENGTH})"
+        load = "pivot_rubbing_load"
+        speed = f"follower_velocity {seat.table}.diameter/(2 {ARM_LENGTH})"
 
     def in_words(demand: Demand, solution: Solution) -> Demand:
         """Demand with the lubrication that bears it and the PV value by the net reaction, in words,
@@ -410,9 +449,8 @@ def _guide_pv(side: Place) -> Declaration:
         """
         guide = guide_of(solution.machine, side)
         notes = _lubrication(guide, (demand.at or NOWHERE).value)
-        if side != "pivot":
-            alone = worst_case(solution.cycles, partial(_pv_of_reaction, side))
-            notes.append(f"{shown(alone.value, 'MPa m/s', 3)} by the net reaction")
+        alone = worst_case(solution.cycles, partial(_pv_of_reaction, side))
+        notes.append(f"{shown(alone.value, 'MPa m/s', 3)} by the net reaction")
         return replace(demand, note="; ".join(notes), source=_pv_source(guide))
 
     return check(
@@ -424,7 +462,7 @@ def _guide_pv(side: Place) -> Declaration:
             confirmed=False,
         ),
         method="mean |R v| over the turn over diameter x length; R: sum of the loads on both sides"
-        " of the bore",
+        f" of the bore{TILTED if side == 'pivot' else ''}",
         lift_can_help=True,
         tier=Tier.SCREENING,
         error="sampling" if side == "pivot" else "guides",
@@ -632,7 +670,7 @@ def _guide_temperature(side: Place) -> Declaration:
         unit="degC",
         source=Source("temperature limit of the bush, source of the material", confirmed=True),
         method="ambient plus mean friction power at the greatest friction times the thermal"
-        " resistance of wall and housing, steady state",
+        f" resistance of wall and housing, steady state{TILTED if side == 'pivot' else ''}",
         lift_can_help=True,
         part=seat.part,
         kept_as=f"friction power of {seat.words} at its greatest temperature",

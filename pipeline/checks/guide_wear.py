@@ -28,6 +28,7 @@ from camwright.pipeline.checks.guide_strength import (
     ARM_LENGTH,
     PV,
     SEATS,
+    TILTED,
     Place,
     bush_of,
     guide_of,
@@ -169,12 +170,18 @@ def seizure_temperature(guide: Guide, stem: Material) -> float | None:
     return ROOM + (guide.clearance - cold) / (warm - cold) if warm > cold else None
 
 
+def _of_pushes(side: Place) -> str:
+    """Words of the load that wears the bush of a pivot."""
+    return f"; by the pushes on both sides of the bore{TILTED}" if side == "pivot" else ""
+
+
 def _guide_wear(side: Place) -> Declaration:
     """Check of the wear depth of a bush at the target life."""
     seat = SEATS[side]
     load, speed = f"guide_normal_load_{side}", "follower_velocity"
     if side == "pivot":
-        load, speed = "pivot_load", f"follower_velocity {seat.table}.diameter/(2 {ARM_LENGTH})"
+        load = "pivot_rubbing_load"
+        speed = f"follower_velocity {seat.table}.diameter/(2 {ARM_LENGTH})"
     rate, life = f"{table_of(side)}.wear_rate", f"limits.{TARGET_LIFE.id}"
 
     def depth(worst: Value, numbers: Numbers) -> Value:
@@ -197,7 +204,7 @@ def _guide_wear(side: Place) -> Declaration:
         id=seat.named("wear"),
         title=f"Wear depth of {seat.words} at target life",
         method="wear rate times mean pressure times sliding distance, over the load cases by their"
-        " duty; without a duty all of the life in the worst load case",
+        f" duty; without a duty all of the life in the worst load case{_of_pushes(side)}",
         lift_can_help=True,
         tier=Tier.SCREENING,
         part=seat.part,

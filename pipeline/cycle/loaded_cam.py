@@ -512,10 +512,25 @@ class LoadedCam:
 
     @property
     def pivot_heat(self) -> Array | None:
-        """Friction power of the pivot at maximum friction, W; None where not known."""
+        """Friction power of the pivot at maximum friction, W, of the pushes on both sides of its
+        bush; None where not known.
+        """
         if self.pivoted_worst is None:
             return None
-        return magnitude(self._of_pivot(self.pivoted_worst, "friction") * self.velocity)
+        friction = self._of_pivot(self.pivoted_worst, "friction") * self.bush_rubbing
+        return magnitude(friction * self.velocity)
+
+    @property
+    def bush_rubbing(self) -> Value:
+        """Pushes on both sides of the bush of a pivot over its load; here of a level pin."""
+        return 1.0
+
+    @property
+    def bush_bearing(self) -> Value:
+        """Load on the more loaded side of the bush of a pivot over the loaded share of its length,
+        over the load of the pivot; here of a level pin.
+        """
+        return 1.0
 
     @property
     def pin_velocity(self) -> Array:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.arrays import Array, Value, freeze
 from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
 from camwright.geometry.second_track import relative_radius
@@ -33,7 +33,7 @@ from camwright.pipeline.follower.guide_friction import (
     friction_power,
 )
 from camwright.pipeline.follower.guide_reactions import Guide
-from camwright.pipeline.follower.pivot_bush import bush_lines, pressed_bush
+from camwright.pipeline.follower.pivot_bush import PressedBush, bush_lines, pressed_bush
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls
 from camwright.pipeline.follower.roller import on_second_track
 from camwright.pipeline.follower.spring import end_travel, lever, surge_force
@@ -48,7 +48,7 @@ class PartLoads(Displayed):
     heat_* is the friction power of the guides, heat_max_* that at the greatest friction of both,
     NaN where the follower locks at it.
     pivot_edge_pressure is that of the pin in the bush of an arm's pivot where its line load is
-    greatest.
+    greatest, pivot_rubbing and pivot_bearing are as of `BushLoad`.
     ring_amplitude and ring_mean are of the stress in the groove of the bearing's outer ring, which
     rotates under the load; ring_correction is the relative change of the maximum contact pressure
     from a contact over a ball, as solved, to one between two balls.
@@ -76,6 +76,8 @@ class PartLoads(Displayed):
     ring_mean: Array | None
     ring_correction: Array | None
     pivot_edge_pressure: Array | None = None
+    pivot_rubbing: Array | None = None
+    pivot_bearing: Array | None = None
 
     def __post_init__(self) -> None:
         for name in self.__dataclass_fields__:
@@ -95,6 +97,9 @@ class PartLoads(Displayed):
             Column(
                 "pivot_edge_pressure", "MPa", "Maximum pressure of the pin in the bush of the pivot"
             ): self.pivot_edge_pressure,
+            Column(
+                "pivot_rubbing_load", "N", "Pushes on both sides of the bush of the pivot"
+            ): self.pivot_rubbing,
             Column("guide_friction_power_A", "W", "Friction power of guide A"): self.heat_a,
             Column("guide_friction_power_B", "W", "Friction power of guide B"): self.heat_b,
             Column("viscous_force", "N", "Viscous drag on the follower"): self.viscous_force,
@@ -177,6 +182,7 @@ def part_loads(
     motion = machine.follower.rolling(contour, loads, machine.cam_speed)
     pair = machine.guides
     nominal, worst = machine.guide_friction.nominal, friction.greatest
+    bush = BushLoad.of(machine, loads, moment)
     pivot = PivotPush.of(machine, loads, moment)
     locked = np.where(worst.bounded, np.nan, 0.0)
     return PartLoads(
@@ -208,6 +214,8 @@ def part_loads(
         ring_mean=mean,
         ring_correction=correction,
         pivot_edge_pressure=None if pivot is None else pivot.edge_pressure,
+        pivot_rubbing=None if bush is None else bush.rubbing,
+        pivot_bearing=None if bush is None else bush.bearing,
     )
 
 
@@ -226,11 +234,82 @@ def beside_first(machine: Machine, loads: Loads) -> Array:
     return couple_of_second(loads.normal_force, beyond_first(machine, loads))
 
 
-class PivotPush(NamedTuple):
-    """Load of an arm on the pin of its pivot (n,), in the plane of the contact normal and beside.
+class BushLoad(NamedTuple):
+    """Load of an arm on the bush of its pivot (..., n), in the plane of the contact normal and
+    beside.
 
     force, couple: in that plane, N and N m, >= 0; beside: line load across it, N/m.
     """
+
+    bush: Guide
+    force: Array
+    couple: Array
+    beside: Array
+
+    @classmethod
+    def of(cls, machine: Machine, loads: Loads, moment: Array) -> BushLoad | None:
+        """Load of the bush over a turn, by the forces of the turn; None without one.
+
+        moment : array (n,)   of the contact about the middle of the follower, N m
+        """
+        if machine.arm is None or machine.pivot is None or machine.pivot.bush is None:
+            return None
+        offset, spacing = machine.arm.plane_offset, machine.cam.spacing
+        forces = (np.maximum(loads.normal_force, 0.0),) if spacing is None else loads.track_forces
+        beside = beside_middle(offset, spacing, forces) + beside_first(machine, loads)
+        normal = loads.pressure_angle - loads.turned
+        return cls.under(machine.pivot.bush, loads.pivot_load, normal, moment + beside)
+
+    @classmethod
+    def under(cls, bush: Guide, load: Array, normal: Array, couple: Array) -> BushLoad:
+        """Load of a bush.
+
+        Parameters
+        ----------
+        load : array (2, ..., n)   of the pivot, along the travel of the follower and across it, N
+        normal : array (..., n)    angle of the contact normal from the travel, rad
+        couple : array (..., n)    in the plane of the contact normal, N m
+        """
+        cos, sin = np.cos(normal), np.sin(normal)
+        along, across = load
+        pressed, aside = along * cos + across * sin, across * cos - along * sin
+        return cls(bush, np.abs(pressed), couple, aside / bush.length)
+
+    @property
+    def pressed(self) -> PressedBush:
+        """Pin in the bush, in the plane of the contact normal."""
+        return pressed_bush(self.bush, self.force, self.couple)
+
+    @property
+    def bearing(self) -> Array:
+        """Load (..., n), N, on the more loaded side of the bush over the loaded share of its
+        length: half of the greatest line load where that side is not loaded over the whole length.
+        """
+        length = self.bush.length
+        half = 0.5 * length * self.pressed.line_load
+        return np.hypot(np.maximum(self.force, half), length * self.beside)
+
+    @property
+    def rubbing(self) -> Array:
+        """Pushes on both sides of the bush together (..., n), N: the integral of the line load."""
+        length, beside = self.bush.length, np.abs(self.beside)
+        tilt, end, reach, beyond = self.pressed
+        slope = self.bush.foundation_modulus * tilt
+        pushes = (length - reach - beyond) * beside
+        for side, least in ((reach, end - slope * reach), (beyond, 0.0 * end)):
+            for at, weight in zip(*_ON_A_SIDE, strict=True):
+                pushes = pushes + weight * side * np.hypot(least + at * slope * side, beside)
+        return np.asarray(pushes)
+
+
+_ON_A_SIDE = tuple(0.5 * (shift + each) for shift, each in zip(
+    (1.0, 0.0), np.polynomial.legendre.leggauss(8), strict=True
+))  # fmt: skip
+"""Places along a loaded side of a bush, over its length, and their weights, of its mean."""
+
+
+class PivotPush(NamedTuple):
+    """Load of the pin of a pivot in its bush (n,), see `BushLoad`."""
 
     bush: Guide
     pin: SolidBar
@@ -240,38 +319,16 @@ class PivotPush(NamedTuple):
 
     @classmethod
     def of(cls, machine: Machine, loads: Loads, moment: Array) -> PivotPush | None:
-        """Load of the pin over a turn, by the forces of the turn; None without a bush of the pivot,
-        or the material of its pin.
-
-        moment : array (n,)   of the contact about the middle of the follower, N m
-        """
-        if machine.arm is None or machine.pivot is None:
+        """Load of the pin over a turn; None without a bush, or the material of the pin."""
+        load, pivot = BushLoad.of(machine, loads, moment), machine.pivot
+        if load is None or pivot is None or pivot.bush is None or pivot.pin_material is None:
             return None
-        bush, card = machine.pivot.bush, machine.pivot.pin_material
-        if bush is None or card is None:
-            return None
-        offset, spacing = machine.arm.plane_offset, machine.cam.spacing
-        forces = (np.maximum(loads.normal_force, 0.0),) if spacing is None else loads.track_forces
-        beside = beside_middle(offset, spacing, forces)
-        normal = loads.pressure_angle - loads.turned
-        return cls.under(bush, card, loads.pivot_load, normal, moment + beside)
+        return cls.under(pivot.bush, pivot.pin_material, load)
 
     @classmethod
-    def under(
-        cls, bush: Guide, card: Material, load: Array, normal: Array, couple: Array
-    ) -> PivotPush:
-        """Load of a pin of a material.
-
-        Parameters
-        ----------
-        load : array (2, n)     of the pivot, along the travel of the follower and across it, N
-        normal : array (n,)     angle of the contact normal from the travel, rad
-        couple : array (n,)     in the plane of the contact normal, N m
-        """
-        cos, sin = np.cos(normal), np.sin(normal)
-        along, across = load
-        pressed, aside = along * cos + across * sin, across * cos - along * sin
-        return cls(bush, SolidBar(card.E, card.nu), np.abs(pressed), couple, aside / bush.length)
+    def under(cls, bush: Guide, card: Material, load: BushLoad) -> PivotPush:
+        """Load of a pin of a material, of that of its bush."""
+        return cls(bush, SolidBar(card.E, card.nu), load.force, load.couple, load.beside)
 
     @property
     def size(self) -> Array:
@@ -295,15 +352,15 @@ class PivotPush(NamedTuple):
         return np.asarray(np.where(lines < 0.0, -1.0, 1.0) * np.hypot(lines, self.beside))
 
 
-def beside_middle(offset: float, spacing: float | None, forces: Sequence[Array]) -> Array:
+def beside_middle(offset: Value, spacing: Value | None, forces: Sequence[Array]) -> Array:
     """Moment (n,), N m, of contacts beside the middle of an arm at an offset, m, from its roller;
     of two discs the second is their spacing less the offset from it, and the sum is of their sizes.
 
     forces : sequence of arrays (n,)   normal force on each disc, N
     """
     if spacing is None:
-        return offset * forces[0]
-    return np.asarray(offset * forces[0] + abs(spacing - offset) * forces[1])
+        return np.asarray(offset * forces[0])
+    return np.asarray(offset * forces[0] + np.abs(spacing - offset) * forces[1])
 
 
 def spring_surge(machine: Machine, lift: Array) -> Array | None:

@@ -299,8 +299,22 @@ class SolvedCam(ForcesCam):
     @property
     def pivot_heat(self) -> Array:
         worst = self.cycle.parts.friction.greatest
-        heat = worst.pivot_friction * np.abs(worst.velocity)
+        heat = worst.pivot_friction * self.bush_rubbing * np.abs(worst.velocity)
         return np.where(worst.bounded, np.nan, heat)
+
+    @cached_property
+    def bush_rubbing(self) -> Array:
+        return self._over_load(self.cycle.parts.pivot_rubbing)
+
+    @cached_property
+    def bush_bearing(self) -> Array:
+        return self._over_load(self.cycle.parts.pivot_bearing)
+
+    def _over_load(self, push: Array | None) -> Array:
+        """Push on the bush of a pivot over its load (n,); 1 without a bush or load."""
+        load = self.pivot_load
+        push = load if push is None else push
+        return np.divide(push, load, out=np.ones_like(load), where=load != 0.0)
 
     @property
     def p0(self) -> Array:

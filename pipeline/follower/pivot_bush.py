@@ -13,10 +13,14 @@ _HALVINGS = 60  # of the tilt between its bounds, to round-off
 
 
 class PressedBush(NamedTuple):
-    """Tilt (...), rad, of a pin in its bush, and greatest line load there (...), N/m; both >= 0."""
+    """Rigid pin in its bush, arrays (...), >= 0: tilt, rad; greatest line load, N/m; lengths in
+    contact on the side of the force and on the other side, m.
+    """
 
     tilt: Array
     line_load: Array
+    reach: Array
+    beyond: Array
 
 
 def pressed_bush(bush: Guide, force: Array, couple: Array) -> PressedBush:
@@ -27,7 +31,8 @@ def pressed_bush(bush: Guide, force: Array, couple: Array) -> PressedBush:
 
     - C <= F l/6: the load is linear over the whole length, F/l + 6 C/l^2 at the end
     - beyond: a triangle over a = 3 (l/2 - C/F), with 2 F/a at the end
-    - once the tilt has used the clearance: triangles over a and b at both ends, on either side
+    - once the tilt t has used the clearance: triangles over a and b at both ends, on either side,
+      with the line loads k t a and k t b
 
     The foundation is that of half of the bore in contact: with clearance it is too stiff, and the
     elastic tilt on one side about a third of that in three dimensions; the line load at the end is
@@ -35,14 +40,17 @@ def pressed_bush(bush: Guide, force: Array, couple: Array) -> PressedBush:
 
     Parameters
     ----------
+    bush : Guide                  one, or with the values of many designs, each (m, 1)
     force, couple : array (...)   F, N, in the middle of the bush, and C, N m; >= 0
 
     References
     ----------
     Johnson, Contact Mechanics (1985), sec. 4.3: elastic foundation.
     """
-    push, turn = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (force, couple)))
-    length, modulus, play = bush.length, bush.foundation_modulus, bush.clearance
+    of_bush = bush.length, bush.foundation_modulus, bush.clearance
+    push, turn, length, modulus, play = np.broadcast_arrays(
+        *(np.asarray(each, dtype=float) for each in (force, couple, *of_bush))
+    )
     full = 6.0 * turn <= push * length
     loaded = np.where(push > 0.0, push, 1.0)
     reach = np.where(push > 0.0, 3.0 * (0.5 * length - turn / loaded), 0.0)
@@ -51,10 +59,12 @@ def pressed_bush(bush: Guide, force: Array, couple: Array) -> PressedBush:
     greatest = np.where(full, push / length + 6.0 * turn / length**2, 2.0 * push / some)
     tilt = np.where(full, 12.0 * turn / length**3, greatest / some) / modulus
     both = ~full & ((reach == 0.0) | (tilt * length - greatest / modulus > play))
-    tilt, greatest = tilt.copy(), greatest.copy()
+    values = tilt.copy(), greatest.copy(), np.maximum(reach, 0.0), 0.0 * reach
     if both.any():
-        tilt[both], greatest[both] = _between_edges(bush, push[both], turn[both])
-    return PressedBush(tilt, greatest)
+        at = (each[both] for each in (length, modulus, play, push, turn))
+        for value, solved in zip(values, _between_edges(*at), strict=True):
+            value[both] = solved
+    return PressedBush(*values)
 
 
 def bush_lines(bush: Guide, force: Array, couple: Array, places: Array) -> Array:
@@ -76,17 +86,17 @@ def bush_lines(bush: Guide, force: Array, couple: Array, places: Array) -> Array
     return np.asarray(np.where(pressed.line_load > 0.0, loads, 0.0))
 
 
-def _between_edges(bush: Guide, force: Array, couple: Array) -> tuple[Array, Array]:
-    """Tilt, rad, and greatest line load, N/m, (m,) each, of a rigid pin that presses on both sides
-    of its bush; tilt by bisection.
+def _between_edges(
+    length: Array, modulus: Array, play: Array, force: Array, couple: Array
+) -> PressedBush:
+    """Rigid pin that presses on both sides of its bush; tilt by bisection.
 
     Parameters
     ----------
-    bush : Guide          length, stiffness, clearance
-    force : array (m,)    on the pin, N
-    couple : array (m,)   N m, great enough that both ends touch
+    length, modulus, play : array (m,)   of the bush, m; of its foundation, N/m2; clearance, m
+    force : array (m,)                   on the pin, N
+    couple : array (m,)                  N m, great enough that both ends touch
     """
-    length, modulus, play = bush.length, bush.foundation_modulus, bush.clearance
 
     def ends(tilt: Array) -> tuple[Array, Array]:
         """Lengths in contact on the side of the force, and on the other."""
@@ -108,4 +118,5 @@ def _between_edges(bush: Guide, force: Array, couple: Array) -> tuple[Array, Arr
         less = carried(middle) < couple
         low, high = np.where(less, middle, low), np.where(less, high, middle)
     tilt = 0.5 * (low + high)
-    return tilt, modulus * tilt * ends(tilt)[0]
+    reach, beyond = ends(tilt)
+    return PressedBush(tilt, modulus * tilt * reach, reach, beyond)

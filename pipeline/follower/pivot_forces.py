@@ -67,14 +67,20 @@ class PivotBalance(NamedTuple):
     """Equilibrium of the moments about the pivot, with its friction, (..., n), N.
 
     axial: axial force of the contact; below 0 where the arm locks, or the cam would have to pull;
-    load: of the pivot, magnitude; friction: its moment over the length of the arm; jam_index: the
-    friction over the axial force, of at least 1 N.
+    along, across: load of the pivot, along the travel and across it; friction: its moment over the
+    length of the arm; jam_index: the friction over the axial force, of at least 1 N.
     """
 
     axial: Array
-    load: Array
+    along: Array
+    across: Array
     friction: Array
     jam_index: Array
+
+    @property
+    def load(self) -> Array:
+        """Magnitude of the load of the pivot (..., n), N."""
+        return _size((self.along, self.across))
 
 
 @dataclass(frozen=True)
@@ -255,10 +261,10 @@ class ArmPivot:
         middle = left * required + signed**2 * inwards
         size = pressed.along**2 + pressed.across**2
         axial = (middle + signed * root) / (left**2 - signed**2 * size)
-        load = _size(pressed.total(axial, pull))
-        push = magnitude(axial)
+        load = pressed.total(axial, pull)
+        rubbed, push = k * _size(load), magnitude(axial)
         held = np.where(np.real(push) < _LEAST_FORCE, _LEAST_FORCE, push)
-        return PivotBalance(axial, load, k * load, k * load / held)
+        return PivotBalance(axial, *load, rubbed, rubbed / held)
 
     def clipped(
         self, required: Array, pressed: Pressed, pull: Pull, direction: Array, least: float
@@ -285,7 +291,7 @@ class ArmPivot:
         axial = np.where(required > 0.0, axial, 0.0)
         rubbed = np.abs(pressed.share * axial - required)
         friction = np.where((axial > 0.0) & (direction != 0.0), rubbed, 0.0)
-        return PivotBalance(axial, _size(pressed.total(axial, pull)), friction, free.jam_index)
+        return PivotBalance(axial, *pressed.total(axial, pull), friction, free.jam_index)
 
     def between(
         self, required: Array, pressed: tuple[Pressed, Pressed], pull: Pull, direction: Array
@@ -310,8 +316,7 @@ class ArmPivot:
         wall, axial = np.where(first, 1.0, -1.0), np.where(first, pushed.axial, back)
         one = Pressed(*(np.where(first, *pair) for pair in zip(*pressed, strict=True)))
         rubbed = np.where(direction == 0.0, 0.0, magnitude(one.share * axial - required))
-        load = _size(one.total(axial, pull))
-        return PivotBalance(axial, load, rubbed, self._locking(one)), wall
+        return PivotBalance(axial, *one.total(axial, pull), rubbed, self._locking(one)), wall
 
     def _locking(self, pressed: Pressed) -> Array:
         """Friction of the contact force alone over the axial force."""

@@ -21,6 +21,7 @@ from camwright.pipeline.contact.oil_film import LineFilm, lambda_ratio, minimum_
 from camwright.pipeline.contact.traction import Drag, rolling_slip
 from camwright.pipeline.cycle.contact_heat import flash_rise
 from camwright.pipeline.cycle.loaded_cam import CarriedCam, OfGuides, face_of, roller_of
+from camwright.pipeline.cycle.part_loads import BushLoad, beside_middle
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
@@ -332,6 +333,36 @@ class ScreenedCam(CarriedCam):
         if has_many_shapes(self.block):
             return super().follower_moment
         return moment_on_follower(self.block, self.normal, self._turning, self._factors)
+
+    @cached_property
+    def bush_load(self) -> BushLoad | None:
+        """Load of the bush of a pivot (m, n); None without one."""
+        numbers, held = self.numbers, self.pivoted
+        case = numbers.known_case
+        pivot, pair = case.follower.pivot, case.cam.conjugate
+        if held is None or pivot is None or pivot.bush is None:
+            return None
+        offset = numbers["follower.arm.plane_offset"]
+        spacing = None if pair is None else numbers["cam.conjugate.spacing"]
+        beside = beside_middle(offset, spacing, [self.normal] if pair is None else self.forces)
+        couple = self.follower_moment + beside + self._turning.beside
+        bush = numbers.of_part(pivot.bush, "follower.pivot.bush")
+        normal = self.motion.pressure_angle - self.turned
+        load = np.stack([held.along + 0.0 * couple, held.across + 0.0 * couple])
+        return BushLoad.under(bush, load, np.asarray(normal), couple)
+
+    @cached_property
+    def bush_rubbing(self) -> Value:
+        return 1.0 if self.bush_load is None else self._over_load(self.bush_load.rubbing)
+
+    @cached_property
+    def bush_bearing(self) -> Value:
+        return 1.0 if self.bush_load is None else self._over_load(self.bush_load.bearing)
+
+    def _over_load(self, push: Array) -> Array:
+        """Push on the bush of a pivot over its load (m, n); 1 without load."""
+        load = self.pivot_load
+        return np.divide(push, load, out=np.ones_like(push), where=load != 0.0)
 
     @cached_property
     def _turning(self) -> FollowerTurning:

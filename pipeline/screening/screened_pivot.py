@@ -7,7 +7,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.cycle.part_loads import PivotPush, beside_middle
+from camwright.pipeline.cycle.part_loads import BushLoad, PivotPush
 from camwright.pipeline.follower.follower_forces import JAM_FLOOR, share_left
 from camwright.pipeline.follower.guide_friction import bush_temperature, thermal_resistance
 from camwright.pipeline.follower.guide_reactions import Guide
@@ -36,18 +36,13 @@ def edge_pressure(designs: Designs) -> Judged | None:
 
 def _pressure(cam: ScreenedCam, case: Case, k: int) -> float:
     """Greatest pressure in the bush over the turn of design k, Pa; NaN where it is not known."""
-    arm, pivot = case.follower.arm, case.follower.pivot
-    if arm is None or pivot is None or pivot.bush is None or pivot.pin_material is None:
+    pivot, load = case.follower.pivot, cam.bush_load
+    if load is None or pivot is None or pivot.bush is None or pivot.pin_material is None:
         return np.nan
-    pair, shape = case.cam.conjugate, cam.normal.shape
-    beside = beside_middle(
-        arm.plane_offset, None if pair is None else pair.spacing, [force[k] for force in cam.forces]
-    )
-    normal = np.broadcast_to(cam.motion.pressure_angle - cam.turned, shape)[k]
-    couple = np.broadcast_to(cam.follower_moment, shape)[k] + beside
-    load = np.broadcast_to(cam.pivot_load, (2, *shape))[:, k]
-    push = PivotPush.under(pivot.bush, pivot.pin_material, load, normal, couple)
-    return float(push.edge_pressure.max()) if np.isfinite([load[0], couple]).all() else np.nan
+    force, couple, beside = load.force[k], load.couple[k], load.beside[k]
+    bush = BushLoad(pivot.bush, force, couple, beside)
+    push = PivotPush.under(pivot.bush, pivot.pin_material, bush)
+    return float(push.edge_pressure.max()) if np.isfinite([force, couple]).all() else np.nan
 
 
 def _heat(cam: ScreenedCam) -> Array:

@@ -239,6 +239,14 @@ class ScenarioCam(CarriedCam):
     def follower_moment(self) -> Array:
         return self.fix.lever * not_negative(self.normal)
 
+    @property
+    def bush_rubbing(self) -> Array:
+        return self.fix.bush_rubbing
+
+    @property
+    def bush_bearing(self) -> Array:
+        return self.fix.bush_bearing
+
     def _corrected(self, fix_a: Array, fix_b: Array) -> OfGuides:
         """Loads of the guides over the axial force with corrections."""
         on_a, on_b = self.reactions

@@ -375,6 +375,11 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
     left : pairs         shares of pressure limit and line load of the guides; see `softening`
     """
     guides, contact, machine = cycle.guides, cycle.surface, cycle.machine
+    load, parts = np.hypot(*cycle.loads.pivot_load), cycle.parts
+    of_bush = [
+        np.ones_like(load) if push is None else _ratio(push, load)
+        for push in (parts.pivot_rubbing, parts.pivot_bearing)
+    ]
     worst, friction = cycle.parts.friction.greatest, machine.guide_friction.greatest
     (line_a, line_b), (push_a, push_b) = cycle.guide_lines, cycle.guide_pushes
     surge, spacing = cycle.parts.surge_force, machine.guides.spacing
@@ -394,6 +399,8 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
         edge_b=of_guides.correction(1, line_b * machine.guides.b.length / left[1][1]),
         hot_a=hot.correction(0, _over(worst.friction_force_a, friction[0])),
         hot_b=hot.correction(1, _over(worst.friction_force_b, friction[1])),
+        bush_rubbing=of_bush[0],
+        bush_bearing=of_bush[1],
         surge=np.zeros(cycle.theta.size) if surge is None else surge,
         rolling=np.full(cycle.theta.size, machine.follower.turns(path)),
         least_lift=np.full(cycle.theta.size, cycle.contour.pitch.lift.lowest.value),

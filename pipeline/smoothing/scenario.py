@@ -136,7 +136,7 @@ PRELOADED: Final = "preloaded"
 
 _FACTORS = (
     "contact", "pressure_weight", "force_weight", "guide_a", "guide_b", "rubbing_a", "rubbing_b",
-    "jam", "edge_a", "edge_b", "hot_a", "hot_b",
+    "jam", "edge_a", "edge_b", "hot_a", "hot_b", "bush_rubbing", "bush_bearing",
 )  # fmt: skip
 
 
@@ -160,6 +160,7 @@ class Correction:
     edge_a, edge_b : array      greatest over mean line load of the guides, over the share of the
                                 greatest line load left at the temperature
     hot_a, hot_b : array        normal loads of the guides at maximum friction
+    bush_rubbing, bush_bearing : array   as of `LoadedCam`
     surge : array               force of the surge at the speed of the load case, N
     swept_surge, elastic : array   change of the spring force, N, by the surge, and with an elastic
                                 stem, at the speeds with the least contact force
@@ -181,6 +182,8 @@ class Correction:
     edge_b: Array
     hot_a: Array
     hot_b: Array
+    bush_rubbing: Array
+    bush_bearing: Array
     surge: Array
     swept_surge: Array
     elastic: Array
@@ -196,6 +199,7 @@ class Correction:
         return cls(
             contact=one, pressure_weight=one, force_weight=one, guide_a=one, guide_b=one,
             rubbing_a=one, rubbing_b=one, jam=one, edge_a=one, edge_b=one, hot_a=one, hot_b=one,
+            bush_rubbing=one, bush_bearing=one,
             lever=zero, surge=zero, swept_surge=zero, elastic=zero, swept_speed=zero,
             elastic_speed=zero, rolling=zero, least_lift=zero,
         )  # fmt: skip

@@ -433,7 +433,9 @@ def _parts(base: Cycle) -> PartLoads:
     hot_a, hot_b = (heat, heat) if pivot else (hot(guides, each) for _, each in guides.both)
     speed = np.abs(base.loads.velocity)
     rubs = (
-        np.divide(hot(pivot, pivot.bush), speed, out=0.0 * speed, where=speed > 0) if pivot else 0.0
+        np.divide(hot(pivot, pivot.bush), 1.2 * speed, out=0.0 * speed, where=speed > 0)
+        if pivot
+        else 0.0
     )
     still = np.zeros(POSITIONS)
     roughest = replace(
@@ -449,6 +451,8 @@ def _parts(base: Cycle) -> PartLoads:
         guide_edge_pressure_a=30e6 + 10e6 * WAVE,
         guide_edge_pressure_b=20e6 + 10e6 * WAVE,
         pivot_edge_pressure=25e6 + 10e6 * WAVE,
+        pivot_rubbing=600.0 * np.abs(WAVE),  # of 500 N
+        pivot_bearing=750.0 * np.abs(WAVE),
         heat_a=heat,
         heat_b=heat,
         heat_max_a=hot_a,

@@ -112,7 +112,8 @@ def pivoted(numbers: Numbers) -> dict[str, Any]:
     watts = np.ones(made.POSITIONS)
     if pivot.bush is not None:
         watts *= (330.0 - pivot.ambient_temperature) / thermal_resistance(pivot.bush)
-    return {**LOADED, "pivot_load": 500.0 * np.abs(made.WAVE), "pivot_heat": watts}
+    pushes = {"bush_rubbing": 1.2, "bush_bearing": 1.5}
+    return {**LOADED, **pushes, "pivot_load": 500.0 * np.abs(made.WAVE), "pivot_heat": watts}
 
 
 def in_groove(numbers: Numbers) -> dict[str, Any]:
