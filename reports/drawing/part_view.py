@@ -365,15 +365,18 @@ def _section(part: DrawnCam, left: float, y: float) -> Iterator[Shape]:
             yield from _cut(part, part.groove, box, y)
     yield DrawnOutline((rectangle(left, y - down, right, y + up),), Pen("ink", _EDGE))
     yield _thin(segment((left - 3.0, y), (right + 3.0, y)), dash="dashdot")
-    yield from _dimension(
-        (left, right), y + high, y + high + 9.0, f"{part.thickness:.6g}", above=True
-    )
-    middle = 0.5 * (left + right)
-    around = 0.5 * scale * part.thickness + 3.0
-    yield _thin(circle(around, (middle, y + high)))
+    below = y - low  # the detail, whose circle is about the whole edge, is above
+    yield from _dimension((left, right), below, below - 9.0, f"{part.thickness:.6g}", above=True)
+    shown, edge, depth, width = 0.5 * (left + right), high, 0.0, scale * part.thickness
+    if part.groove is not None:
+        step, depth = part.groove.steps[0], scale * part.groove.steps[-1].depth
+        near, far = (scale * radius_at(wall, 0.5 * np.pi) for wall in (step.inner, step.outer))
+        shown, edge, width = right - 0.5 * depth, 0.5 * (near + far), far - near
+    around = 0.5 * float(np.hypot(width, depth)) + 3.0
+    yield _thin(circle(around, (shown, y + edge)))
     aside = np.sqrt(0.5) * around + 1.0
-    yield Text("D", (middle + aside, y + high + max(aside, 10.2)), _TEXT, bold=True)
-    yield Text("C–C", (0.5 * (left + right), y - low - 8.0), _TEXT, align="middle", bold=True)
+    yield Text("D", (shown + aside, y + edge + aside), _TEXT, bold=True)
+    yield Text("C–C", (0.5 * (left + right), below - 17.0), _TEXT, align="middle", bold=True)
 
 
 def _cut(
