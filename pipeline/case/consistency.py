@@ -440,6 +440,17 @@ def _steps(second: GrooveRoller) -> Iterator[Rule]:
     yield _at_most(spacing, less(depth, wide, fillet), limit)
     limit = "> {cam.groove.clearance}: each roller is clear of the wall of the other"
     yield _more(relief, lambda at: at("cam.groove.clearance"), limit)
+    first, under = "roller.radius", f"{GrooveRoller.table}.undercut"
+
+    def room(at: At) -> Any:
+        apart = abs(at(radius) - at(first)) + 0.5 * at("cam.groove.clearance")
+        return np.round(apart + at(under), _DECIMALS)
+
+    limit = (
+        f"<= {{}}, the difference of {{{radius}}} and {{{first}}} plus half of the clearance and"
+        f" {{{under}}}: beyond it the lower step is under the upper one"
+    )
+    yield _at_most(relief, room, limit)
     rim, prime = "cam.groove.outer_radius", "cam.prime_radius"
     yield _more(rim, lambda at: at(prime) + at(radius), f"> {{}}, {{{prime}}} plus {{{radius}}}")
     limit = f"> {{}}, {{{prime}}} plus {{roller.radius}} and {{{relief}}}"

@@ -173,6 +173,11 @@ class GrooveRoller(Part):
     """depth of the upper step of the groove, below the face of the disc"""
     relief: Annotated[float, In("mm", above=0, at_most=100), Known("drawing", "0.5 mm")]
     """gap between each roller and the wall opposite to that on which it runs"""
+    undercut: Annotated[
+        float, In("mm", at_least=0, at_most=100), Known("drawing, T-slot cutter", "0.5 mm")
+    ] = 0.0
+    """greatest depth by which the lower step may reach under the upper one, as that of equal
+    rollers does: no cutter comes there from the face"""
     bearing: Annotated[Bearing | None, Used("checks of the second roller's bearing")] = None
     """bearing of the second roller; in the use of the first, where it states no other"""
     roller_tolerance: Annotated[FitTolerance | None, Known("drawing of the roller", "0.005 mm")] = (
@@ -193,6 +198,15 @@ class GrooveRoller(Part):
         """
         relieved = np.maximum(self.radius, radius + self.relief)
         return np.where(self.radius > radius, relieved, self.radius)
+
+    def under(self, radius: Value, clearance: Value) -> Value:
+        """Depth, m, by which the relieved wall of the lower step is under the wall of the upper one
+        that bears; not positive without an undercut.
+
+        radius : of the first roller, m; clearance : of the groove, m
+        """
+        lower, upper = np.minimum(self.radius, radius), np.maximum(self.radius, radius)
+        return lower + self.relief - (upper + 0.5 * clearance)
 
     def beyond(self, radius: Value) -> Value:
         """Distance by which it is farther into the groove than the first roller, of a radius, m."""

@@ -411,6 +411,9 @@ def _groove_notes(case: Case, groove: CamGroove) -> Iterator[str]:
             f"walls opposite to each roller {shown(second.relief, 'mm')} from it; middles of the"
             f" rollers {shown(second.spacing, 'mm')} apart along the pin"
         )
+        under = float(second.under(case.roller.radius, groove.clearance))
+        if under > 0.0:
+            yield f"lower step cut {shown(under, 'mm')} under the wall above it: T-slot cutter"
 
 
 def _hardness(material: Material) -> str:

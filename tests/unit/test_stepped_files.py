@@ -19,7 +19,12 @@ from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.hand_check.hand_sheet import SheetRun
 from camwright.pipeline.results.file_differences import Origin, classes_of
-from camwright.pipeline.results.workshop_files import measured_surface, outline_of, write_workshop
+from camwright.pipeline.results.workshop_files import (
+    measured_surface,
+    notes_of,
+    outline_of,
+    write_workshop,
+)
 from camwright.pipeline.run import run_case
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of
 from camwright.reports.report_data import read_material
@@ -101,6 +106,8 @@ def test_solids_of_a_smaller_an_equal_and_a_larger_second_roller(tmp_path, monke
     second = replace(case.cam.groove.second, radius=radius)
     cam = replace(case.cam, groove=replace(case.cam.groove, second=second))
     other = case.model_copy(update={"cam": cam})
+    words = " ".join(notes_of(other))
+    assert ("lower step cut 0.49 mm under the wall above it" in words) == (radius == 0.0235)
     path = tmp_path / "cam.step"
     write_step(path, outline_of(other, contour), cam.width, PartTitle("cam"))
     assert volume_of(path) == pytest.approx(closed_form(other, contour), rel=1e-5)

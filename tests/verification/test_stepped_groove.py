@@ -382,7 +382,7 @@ def test_the_rim_is_judged_where_it_is_thinnest_below_the_second_roller(radius, 
     below has the relieved wall above it, unloaded. Points of both walls, 0.509 F, 1e-9.
     """
     text = FILE.read_text(encoding="utf-8")
-    text = text.replace('radius = "21 mm"', f'radius = "{radius} m"', 1)
+    text = text.replace('radius = "21 mm"', f'undercut = "0.4 mm"\nradius = "{radius} m"', 1)
     whole = preview_case(parse_case(text), corners=False)
     stress = 0.0
     for cycle in whole.cycles:
@@ -451,6 +451,12 @@ SECOND = "cam.groove.second"
         ('spacing = "18 mm"', 'spacing = "17.8 mm"', f"{SECOND}.spacing = 17.8 mm, must be >="),
         ('spacing = "18 mm"', 'spacing = "18.2 mm"', f"{SECOND}.spacing = 18.2 mm, must be <="),
         ('relief = "0.5 mm"', 'relief = "0.01 mm"', f"{SECOND}.relief = 0.01 mm, must be >"),
+        ('relief = "0.5 mm"', 'relief = "2.52 mm"',
+         f"{SECOND}.relief = 2.52 mm, must be <= 2.51 mm"),
+        ('relief = "0.5 mm"', 'relief = "2.72 mm"\nundercut = "0.2 mm"',
+         f"{SECOND}.relief = 2.72 mm, must be <= 2.71 mm"),
+        ('radius = "21 mm"\ns', 'radius = "23.5 mm"\ns',
+         f"{SECOND}.relief = 0.5 mm, must be <= 0.01 mm"),
         ('outer_radius = "125 mm"', 'outer_radius = "91.9 mm"', "cam.groove.outer_radius = 91.9"),
         ('tool_radius = "21 mm"', 'tool_radius = "21.3 mm"', "workshop.tool_radius = 21.3 mm"),
         ('radius = "21 mm"\ns', 'radius = "11 mm"\ns', f"{SECOND}.radius = 11 mm, must be > "),
