@@ -184,11 +184,11 @@ class JudgedRoller(NamedTuple):
         return _greatest([each.carries * magnitude(each.spin) for each in self.rollers(cam)])
 
     def slowest(self, cam: LoadedCam) -> Array:
-        """Speed on the pin, of two preloaded ones the lower at each angle, rad/s.
+        """Speed on the pin in its mean, of two preloaded ones the lower at each angle, rad/s.
 
         Measure: roller speed; demand: viscosity ratio at its mean.
         """
-        return -_greatest([-magnitude(each.spin) for each in self.rollers(cam)])
+        return -_greatest([-each.turning for each in self.rollers(cam)])
 
     def lever(self, rating: str, *, inverse: bool = False) -> Lever:
         """Lever of a rating; inverse: the utilisation is inverse to it."""
@@ -321,7 +321,7 @@ def _film_ratio(mean: Value, numbers: Numbers, at: JudgedRoller) -> Value:
 
 def _with_line_of_viscosity(demand: Demand, solution: Solution, at: JudgedRoller) -> Demand:
     """Demand with factor "a" and power "b" of the rated viscosity at the mean speed "n" of the
-    roller, rpm.
+    roller, rpm, between two tracks not that of the cycle at equal weights.
     """
     noted = replace(demand, figures=(bearing_life.SOURCE, at.bearing_in(solution.case).source))
     if demand.at is None or not demand.at.load_case:
@@ -329,7 +329,7 @@ def _with_line_of_viscosity(demand: Demand, solution: Solution, at: JudgedRoller
     cycle = cycle_of(solution.cycles, demand.at)
     speed = mean_of(solution, at.slowest, cycle) / factor("rpm")
     line = bearing_life.viscosity_line(speed)
-    mean = {} if at.first else {"n": speed}
+    mean = {"n": speed} if solution.machine.cam.clearance > 0.0 else {}
     return replace(noted, stated=dict(zip("ab", line, strict=True)) | mean)
 
 
@@ -823,11 +823,12 @@ def _grease(at: JudgedRoller, name: str) -> Declaration:
             elif all(cycle.machine.duty is None for cycle in solution.cycles):
                 cam = cam_of(solution, cycle_of(solution.cycles, worst))
                 known = {"D": float(_greased_diameter(solution.numbers, at))}
-                if solution.machine.cam.on_pin is None:
-                    known["P"] = float(np.ravel(equivalent_load(cam.normal, cam.spin))[0])
-                else:
-                    (roller,) = at.rollers(cam)
-                    known["P"] = float(np.ravel(equivalent_load(roller.force, roller.spin))[0])
+                roller, fitted = at.rollers(cam)[0], solution.machine.cam
+                of = cam.normal, cam.turning
+                if fitted.on_pin is not None:
+                    of = roller.force, roller.turning
+                known["P"] = float(np.ravel(equivalent_load(*of))[0])
+                if fitted.clearance > 0.0:
                     known["n"] = float(np.ravel(roller.mean)[0]) / factor("rpm")
         return Demand(worst.value, target, worst, missing, note=note, figures=figures, stated=known)
 
@@ -853,7 +854,7 @@ def greased(cam: LoadedCam, at: JudgedRoller) -> Array:
     for roller in at.rollers(cam):
         force = cam.normal if len(cam.rollers) == 1 else roller.force
         loads_finite = np.isfinite(force).all(axis=-1, keepdims=True)
-        load = equivalent_load(np.where(loads_finite, force, 0.0), roller.spin)[..., None]
+        load = equivalent_load(np.where(loads_finite, force, 0.0), roller.turning)[..., None]
         share = np.where(loads_finite, load, np.nan) / rating
         speed = np.asarray(roller.mean / factor("rpm"))
         diameter = _greased_diameter(numbers, at)

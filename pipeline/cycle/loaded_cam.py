@@ -7,6 +7,7 @@ of what enters as data.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple, Self
@@ -29,7 +30,7 @@ from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.camshaft_loads import NO_TORQUE, gear_force
 from camwright.pipeline.follower.disc_preload import Squeezed
-from camwright.pipeline.follower.follower_forces import levers, wall_of
+from camwright.pipeline.follower.follower_forces import Carrying, levers, wall_of
 from camwright.pipeline.follower.follower_tilt import couple_of_second
 from camwright.pipeline.follower.pivot_forces import (
     FRICTION,
@@ -187,12 +188,14 @@ _EVERYWHERE = np.array([True])
 
 
 class TurningRoller(NamedTuple):
-    """Force on a roller with the surge (..., n), N; its speed, and mean over the turn, rad/s;
-    whether it carries (..., n), of two on a pin.
+    """Force on a roller with the surge (..., n), N; its speed, that in its mean, see
+    `LoadedCam.turning`, and the mean over the turn, rad/s; whether it carries (..., n), of two on a
+    pin.
     """
 
     force: Array
     spin: Array
+    turning: Array
     mean: Array
     carries: NDArray[np.bool_] = _EVERYWHERE
 
@@ -325,6 +328,25 @@ class LoadedCam:
         return np.asarray(self.speed * rolling)
 
     @cached_property
+    def turning(self) -> Array:
+        """Speed of the roller without its sign (..., n), rad/s, whose mean over equal cam angles is
+        that of the turn, by the weight of each where another track carries.
+        """
+        return magnitude(self.spin)
+
+    def _turning_by(self, force: Array, on_track: Callable[[Array], Motion]) -> Array:
+        """Turning over a whole turn by the force whose sign says which track carries (..., n), N,
+        and the motion on that track; of preloaded rollers, both of which are pressed, and of one
+        track the speed itself.
+        """
+        case = self.numbers.case
+        if case is None or not case.cam.clearance > 0.0:
+            return magnitude(self.spin)
+        carrying = Carrying.of(force, self.closing, self.slope)
+        spin = np.asarray(self.speed * on_track(carrying.wall).rolling)
+        return magnitude(spin) * carrying.weights
+
+    @cached_property
     def rollers(self) -> tuple[TurningRoller, ...]:
         """The roller that carries; both on a pin, each as it rolls on its own wall all the turn;
         both of preloaded discs, which are pressed at once all the turn.
@@ -334,13 +356,13 @@ class LoadedCam:
             return self._on_walls("roller.radius", "cam.groove.second.radius")
         pair = None if case is None else case.cam.conjugate
         if pair is None or pair.interference is None:
-            return (TurningRoller(self.surged, self.spin, self.spin_mean),)
+            return (TurningRoller(self.surged, self.spin, self.turning, self.spin_mean),)
         turning = list[TurningRoller]()
         for each, carries in zip(self.on_bodies, (self.wall > 0.0, self.wall < 0.0), strict=True):
             spin = np.asarray(self.speed * each.motion.rolling)
             force = np.where(carries, self.surged, each.normal)
             mean = np.mean(magnitude(spin), axis=-1, keepdims=True)
-            turning.append(TurningRoller(force, spin, mean))
+            turning.append(TurningRoller(force, spin, magnitude(spin), mean))
         return tuple(turning)
 
     def _on_walls(self, *radii: str) -> tuple[TurningRoller, ...]:
@@ -352,7 +374,7 @@ class LoadedCam:
             beside = motion.path_speed * (1.0 / size - 1.0 / motion.size)
             spin = np.asarray(self.speed * (motion.rolling + beside))
             mean = np.mean(magnitude(spin), axis=-1, keepdims=True)
-            turning.append(TurningRoller(force, spin, mean, carries))
+            turning.append(TurningRoller(force, spin, magnitude(spin), mean, carries))
         return tuple(turning)
 
     @property

@@ -169,6 +169,13 @@ class ForcesCam(ContourCam):
     def wall(self) -> Array:
         return self.loads.wall
 
+    @cached_property
+    def turning(self) -> Array:
+        second, theta = self.loads.second, self.loads.theta
+        return self._turning_by(
+            self.loads.signed_force, lambda wall: self.on_track(second, theta, wall)
+        )
+
     @property
     def slope(self) -> Array:
         """Slope of the lift, m/rad; zero in a dwell."""
@@ -273,7 +280,7 @@ class SolvedCam(ForcesCam):
 
     @property
     def spin_mean(self) -> Array:
-        return np.asarray(np.mean(np.abs(self.spin)))
+        return np.asarray(np.mean(self.turning))
 
     @property
     def surged(self) -> Array:

@@ -22,6 +22,7 @@ from camwright.pipeline.follower.rocker import RockerOutput
 from camwright.pipeline.follower.spring import Spring
 
 REST = 1e-9  # slope over stroke, 1/rad, up to which a spline is in a dwell
+_DWELLS = 1e-4, 3e-3  # of greatest slope and inertia: those of a spline in a dwell
 LEAVES, LOCKS = "leaves the cam", "locks"
 JAM_FLOOR = 0.01  # lower bound of 1 - jam index in the forces
 
@@ -595,6 +596,42 @@ def wall_of(required: Values, *, held: bool) -> Array:
     """
     pulls = np.real(required) < 0.0 if held else np.zeros(np.shape(required), dtype=bool)
     return np.where(pulls, -1.0, 1.0)
+
+
+class Carrying(NamedTuple):
+    """Track that carries at equal cam angles of a turn (..., n), see `wall_of`, and weights of the
+    angles, of mean 1, in a mean over the turn of what jumps where another track carries.
+    """
+
+    wall: Array
+    weights: Array
+
+    @classmethod
+    def of(cls, force: Array, closing: Array, slope: Array) -> Carrying:
+        """From the force whose sign says which track carries (..., n), N, its part without inertia
+        and damping, which is all of it in a dwell, and the slope of the lift, m/rad.
+
+        The weights are those of the trapezoidal rule of each step between two angles, in two parts
+        where the force is zero between them, by a straight line: of second order in the step. At
+        the end of a dwell, where the third derivative of the lift jumps, the line goes on from the
+        motion beside it.
+        """
+        sizes = np.abs(slope), np.abs(force - closing)
+        small = (
+            each <= share * each.max(axis=-1, keepdims=True)
+            for each, share in zip(sizes, _DWELLS, strict=True)
+        )
+        dwells = np.logical_and(*small)
+        held = np.where(dwells, closing, force)
+        before, after, later = (np.roll(held, shift, axis=-1) for shift in (1, -1, -2))
+        wall = wall_of(held, held=True)
+        start = np.where(dwells, 2.0 * after - later, held)
+        change = start - np.where(np.roll(dwells, -1, axis=-1), 2.0 * held - before, after)
+        part = np.full(wall.shape, 0.5)
+        changes = (wall != np.roll(wall, -1, axis=-1)) & (change != 0.0)
+        np.divide(start, change, out=part, where=changes)
+        late = np.clip(part, 0.0, 1.0) - 0.5
+        return cls(wall, np.asarray(1.0 + late - np.roll(late, 1, axis=-1)))
 
 
 def share_left(lift_slope: Values | float, jam_index: Array, lock: Values | float = 0.0) -> Array:

@@ -20,7 +20,7 @@ from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_sq
 from camwright.pipeline.contact.oil_film import LineFilm, lambda_ratio, minimum_film
 from camwright.pipeline.contact.traction import Drag, rolling_slip
 from camwright.pipeline.cycle.contact_heat import flash_rise
-from camwright.pipeline.cycle.loaded_cam import CarriedCam, OfGuides, face_of, roller_of
+from camwright.pipeline.cycle.loaded_cam import CarriedCam, OfGuides, carried, face_of, roller_of
 from camwright.pipeline.cycle.part_loads import BushLoad, beside_middle
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import (
@@ -212,7 +212,12 @@ class ScreenedCam(CarriedCam):
     @property
     def spin_mean(self) -> Array:
         """Mean speed of the roller over the turn (m, 1), rad/s."""
-        return np.mean(np.abs(self.spin), axis=-1, keepdims=True)
+        return np.mean(self.turning, axis=-1, keepdims=True)
+
+    @cached_property
+    def turning(self) -> Array:
+        force = self.required if self.pivot is None else self.axial
+        return self._turning_by(force, lambda wall: carried(self.first, self.second, wall))
 
     @cached_property
     def _free(self) -> Array:

@@ -478,7 +478,7 @@ def test_a_design_of_unknown_force_leaves_the_others_their_grease_life() -> None
     normal[1, 0] = np.nan
 
     def greased(rows: slice) -> Array:
-        roller = TurningRoller(normal[rows], spin[rows], spin[rows, :1])
+        roller = TurningRoller(normal[rows], spin[rows], spin[rows], spin[rows, :1])
         cam: Any = SimpleNamespace(
             numbers=Numbers({}, case), normal=normal[rows], rollers=(roller,)
         )

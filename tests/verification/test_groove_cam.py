@@ -5,6 +5,7 @@ The case is that of cases/motions/feeder-groove.toml: two strokes a turn, no spr
 
 import re
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
 
@@ -35,7 +36,7 @@ from camwright.pipeline.contact.rolling_envelope import swept as stresses_of_tur
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.crossover_history import flights
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
-from camwright.pipeline.follower.follower_forces import follower_loads, turn_integral
+from camwright.pipeline.follower.follower_forces import Carrying, follower_loads, turn_integral
 from camwright.pipeline.hand_check.hand_sheet import SheetRun
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.run import run_case
@@ -47,6 +48,48 @@ GROOVE = PreviewedFile(FILE)
 # --- forces -----------------------------------------------------------------------------------
 def test_a_strong_spring_makes_the_groove_a_spring_closed_cam():
     assert_as_closed_by_a_strong_spring(*GROOVE.running)
+
+
+def turns_on(path, radius, theta, wall):
+    """Speed of the roller over that of the cam on a wall, from the path of its centre."""
+    lift, slope = path.lift.derivatives(theta, 1)
+    return (np.hypot(path.height_base + lift, slope) - wall * radius) / radius
+
+
+def mean_turns(path, radius):
+    """Mean of `turns_on` over half a turn, which recurs, between the zeros of the acceleration of
+    the law, in the dwells on the inner wall, by midpoints.
+    """
+    ends = np.radians([0, 35, 70, 90, 125, 180])
+    total = 0.0
+    for k, (start, end) in enumerate(pairwise(ends)):
+        theta = start + (end - start) * (np.arange(5000) + 0.5) / 5000
+        total += turns_on(path, radius, theta, 1.0 - 2.0 * (k % 2)).mean() * (end - start)
+    return total / np.pi
+
+
+@pytest.mark.parametrize("count", [45, 77, 90, 181, 360, 500, 720, 1440])
+def test_mean_speed_of_the_roller_knows_the_crossovers(count):
+    """Of second order in the step; the spline of the lift rounds the jump of its third derivative
+    at a dwell over 0.25 deg, 2e-4 of the mean.
+    """
+    cycle, machine = GROOVE.running
+    theta, path, radius = uniform_turn(count), cycle.contour.pitch, machine.roller.radius
+    loads = follower_loads(path, machine.system, machine.cam_speed, theta)
+    at = Carrying.of(loads.signed_force, loads.closing_force, loads.lift_slope)
+    mean = (turns_on(path, radius, theta, at.wall) * at.weights).mean()
+    assert mean == pytest.approx(mean_turns(path, radius), rel=40.0 / count**2 + 2e-4)
+    assert at.weights.mean() == pytest.approx(1.0, rel=1e-12)
+
+
+def test_viscosity_ratio_at_the_mean_speed_of_the_roller():
+    cycle, machine = GROOVE.running
+    bearing = machine.roller.bearing
+    share = mean_turns(cycle.contour.pitch, machine.roller.radius)
+    rpm = share * machine.cam_speed * 60.0 / FULL_TURN
+    rated = 45_000.0 * rpm**-0.83 / np.sqrt(1e3 * bearing.ring.pitch_diameter)
+    check = GROOVE.check("bearing_lubrication")
+    assert check.demand == pytest.approx(1e6 * bearing.viscosity / rated, rel=3e-4)
 
 
 @pytest.mark.parametrize("speed", [10.0, 40.0])
