@@ -20,7 +20,10 @@ DISTANCE, FIRST, SECOND, BETWEEN, STROKE, PRIME = 100.0, 90.0, 85.0, 79.0, 5.5, 
 OWN = {
     # places of the first disc, its arm and its guides, and masses of their parts
     *("arm_cam_gap", "fork_gap", "fork_shaft_gap", "gear_gap", "follower_mass"),
-    *("pivot_edge_pressure", "arm_fatigue_roller", "arm_yield"),
+    *("arm_fatigue_roller", "arm_yield"),
+    # the bush of the pivot is in the plane of the first disc, about which the other's couple is
+    *("pivot_edge_pressure", "pivot_pressure", "pivot_pv", "pivot_wear", "pivot_temperature"),
+    "pivot_expansion",
     # the ring of the seat and the run-out have the radius of the first disc
     *("cam_slip", "fit_yield", "roller_misalignment"),
 }
