@@ -1,8 +1,6 @@
 """`camwright design smoother`: every smoother on one case."""
 
 import csv
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -51,13 +49,9 @@ def one_at_a_time(folder):
 
 
 @pytest.mark.parametrize("case", [one_at_a_time, pytest.param(whole, marks=pytest.mark.slow)])
-def test_compare_tabulates_and_draws(tmp_path, case):
-    done = subprocess.run(
-        [sys.executable, "-m", "camwright", "design", "smoother", str(case(tmp_path)),
-         "--out", str(tmp_path)],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+def test_compare_tabulates_and_draws(tmp_path, case, command):
+    code, said, errors = command("design", "smoother", case(tmp_path), "--out", tmp_path)
+    assert code == 0, errors
     with (tmp_path / "smoothers.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     ours = rows[0]
@@ -68,7 +62,7 @@ def test_compare_tabulates_and_draws(tmp_path, case):
     assert 2.0 * float(ours["residual_std_Nm"]) < min(others)
     counts = [len(row["failing"].split("; ")) if row["failing"] else 0 for row in rows]
     assert counts == sorted(counts)
-    shown = done.stdout.splitlines()
+    shown = said.splitlines()
     assert shown[0].startswith("recommended: constrained: no must-have check fails; ")
     assert [line.split()[1 if line[0] == ">" else 0] for line in shown[2 : 2 + len(rows)]] == [
         row["smoother"] for row in rows

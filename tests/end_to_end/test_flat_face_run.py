@@ -45,7 +45,7 @@ def case_text():
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("flat")
     (place / "flat.toml").write_text(case_text())
-    code, said = camwright("run", place / "flat.toml", "--out", place / "run")
+    code, said = camwright("run", place / "flat.toml", "--out", place / "run", "--jobs", 1)
     assert code == 0, said
     return place / "run"
 

@@ -1,8 +1,6 @@
 """`camwright design parts`: a front of cases that are what it says of them, kept and used again."""
 
 import json
-import subprocess
-import sys
 import tomllib
 from concurrent.futures import Future
 from contextlib import nullcontext
@@ -305,12 +303,9 @@ def test_refuses_what_cannot_be_redesigned(case_file, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_an_error_is_one_line(tmp_path):
-    case = str(CASES / "gx120.toml")
-    done = subprocess.run(
-        [sys.executable, "-m", "camwright", "design", "parts", case, "--jobs", "0"],
-        capture_output=True, text=True, check=False, cwd=tmp_path,
-    )  # fmt: skip
-    assert done.returncode == 2
-    assert done.stderr.startswith("camwright: --jobs = 0") and done.stderr.count("\n") == 1
+def test_an_error_is_one_line(tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    code, _, errors = command("design", "parts", CASES / "gx120.toml", "--jobs", 0)
+    assert code == 2
+    assert errors.startswith("camwright: --jobs = 0") and errors.count("\n") == 1
     assert not list(tmp_path.iterdir())

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import printed_text
 import pytest
-from drawn_run import drawn_run
+from drawn_run import drawn_run, few_remedies
 from record_validation import keeps_schema, schema_errors
 from run_recomputed import RECOMPUTED, RunFiles, line_contact_by_quadrature
 
@@ -80,7 +80,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, Path, dict
     folder = tmp_path_factory.mktemp("run")
     case, out = small(folder), folder / "out"
     with pytest.raises(KeyboardInterrupt):
-        drawn_run(case, out, progress=Recorder(stop_after=3))
+        drawn_run(case, out, jobs=1, progress=Recorder(stop_after=3))
     assert not out.exists()
     run = drawn_run(case, out, resume=True, jobs=1, progress=Silent())
     return case, out, dict(run.summary)
@@ -96,7 +96,8 @@ def out(finished: tuple[Case, Path, dict[str, Any]]) -> Path:
 def straight(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same run without interruption and without its page."""
     folder = tmp_path_factory.mktemp("straight")
-    run_case(small(folder), folder / "out", jobs=1, progress=Silent())
+    with few_remedies():
+        run_case(small(folder), folder / "out", jobs=1, progress=Silent())
     return folder / "out"
 
 
