@@ -33,7 +33,6 @@ _MILLIMETRE = 1e-3
 _METRIC = 4  # code of millimetres in a DXF header
 _LETTER = 2.0  # mm, height of the notes
 _LINE = 3.2  # mm, from note to note
-_HALF_CIRCLE = 1.0  # bulge: tangent of a quarter of the angle of an arc
 
 
 class CurveLike(Protocol):

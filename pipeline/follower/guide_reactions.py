@@ -220,11 +220,6 @@ class GuidePair(Part):
             )
             raise InputError("guides.spacing", shown(self.spacing, "mm"), limit)
 
-    @property
-    def tilt_max(self) -> float:
-        """Greatest tilt of the stem within its clearances, rad."""
-        return float(self.tilt_at(self.spacing))
-
     def tilt_at(self, spacing: Value) -> Value:
         """Greatest tilt of the stem in the clearances at a spacing (...), m, rad.
 

@@ -106,10 +106,6 @@ class ConflictJudgement(ConflictRecord):
     """False: they are not kept together."""
 
 
-JudgementRecord = DraftJudgement | PreviewJudgement | ConflictJudgement | RefusedJudgement
-"""A judgement as deep as its search needs it; the last where a case has no cam."""
-
-
 def is_refused(record: Mapping[str, object]) -> TypeIs[RefusedJudgement]:
     """Whether the record of a judgement says that its case has no cam."""
     return "why" in record

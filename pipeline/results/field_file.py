@@ -41,8 +41,6 @@ _BITS = 8  # dropped from the 23 of the mantissa: relative error of point data a
 _COMPRESSION = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 _UNREADABLE = (OSError, KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError)
 
-_END_LOAD = ("cam_angle_deg", "force_N", "moment_Nmm")
-
 Notes = Mapping[str, ArrayLike | Sequence[str]]
 
 

@@ -204,7 +204,7 @@ def test_greatest_tilt_is_that_of_both_clearances():
     made = machine_with(guides__a__clearance="0.04 mm", guides__b__clearance="0.02 mm")
     guides = made.guides
     length = guides.spacing + 0.5 * (guides.a.length + guides.b.length)
-    assert guides.tilt_max == pytest.approx(0.03e-3 / length)
+    assert guides.tilt_at(guides.spacing) == pytest.approx(0.03e-3 / length)
 
 
 def test_a_part_refuses_keys_of_another_kind():
