@@ -202,7 +202,7 @@ class Kept(NamedTuple):
                          rises, and the limit is not relaxed
     unloaded : bool      the utilisation is that of the shape of the cam, of a measure of its loads
     needs : str          kind of follower with which it is the constraint of its group; "": the
-                         check that names the group is
+                         check that names the group is; "two_rollers": two in a groove
     """
 
     use: Callable[[LoadedCam, float], Array | None] | None = None
@@ -214,7 +214,7 @@ class Kept(NamedTuple):
     unit: str = ""
     falls: float = 1.0
     unloaded: bool = False
-    needs: Kind = ""
+    needs: Kind | Literal["two_rollers"] = ""
 
 
 class Stroke(NamedTuple):

@@ -664,7 +664,7 @@ def _ring_fatigue(at: JudgedRoller) -> Declaration:
         remark=ring.in_words,
         pointwise=True,
         deviation=0.005,
-        kept=Kept(group=NORMAL_FORCE) if at.first else None,
+        kept=at.kept_force(),
     )(at.force_on)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import scipy
@@ -190,6 +190,24 @@ class JudgedRoller(NamedTuple):
         """
         return -_greatest([-each.turning for each in self.rollers(cam)])
 
+    @property
+    def kept_with(self) -> Literal["", "two_rollers"]:
+        """See `Kept.needs`."""
+        return "" if self.first else "two_rollers"
+
+    def kept_force(self, *, limits: bool = False) -> Kept:
+        """Form of a limit of the normal force, of a group of one measure; limits: the constraint of
+        the group.
+        """
+        if self.first:
+            return (
+                Kept(force_over, group=NORMAL_FORCE, unit="N")
+                if limits
+                else Kept(group=NORMAL_FORCE)
+            )
+        group = f"{self.name}_static"
+        return Kept(group=group, unit="N", needs=self.kept_with) if limits else Kept(group=group)
+
     def lever(self, rating: str, *, inverse: bool = False) -> Lever:
         """Lever of a rating; inverse: the utilisation is inverse to it."""
         if self.first:
@@ -259,21 +277,19 @@ def _reliability(numbers: Numbers) -> tuple[float]:
     return (bearing_life.reliability_factor(float(numbers.limit(ROLLER_RELIABILITY))),)
 
 
-def _modified_kept(cam: LoadedCam, limit: float) -> Array | None:
+def _modified_kept(cam: LoadedCam, limit: float, at: JudgedRoller) -> Array | None:
     """Use of the limit of the modified life (n,) as constraint of the synthesis, at a viscosity
     ratio of at least that where ISO 281 begins; None without data.
     """
-    if cam.numbers.get(FIRST_ROLLER.key("viscosity")) is None:
+    if cam.numbers.get(at.key("viscosity")) is None:
         return None
     least = bearing_life.LEAST_VISCOSITY_RATIO
 
     def rate(roller: TurningRoller) -> Array:
-        kappa = _viscosity_ratio(roller.mean, cam.numbers, FIRST_ROLLER)
-        return _damage_rate(
-            cam, roller, np.where(np.real(kappa) > least, kappa, least), FIRST_ROLLER
-        )
+        kappa = _viscosity_ratio(roller.mean, cam.numbers, at)
+        return _damage_rate(cam, roller, np.where(np.real(kappa) > least, kappa, least), at)
 
-    return _greatest([rate(each) for each in FIRST_ROLLER.rollers(cam)]) / limit
+    return _greatest([rate(each) for each in at.rollers(cam)]) / limit
 
 
 def _damage_rate(cam: LoadedCam, roller: TurningRoller, kappa: Array, at: JudgedRoller) -> Array:
@@ -333,10 +349,10 @@ def _with_line_of_viscosity(demand: Demand, solution: Solution, at: JudgedRoller
     return replace(noted, stated=dict(zip("ab", line, strict=True)) | mean)
 
 
-def _film_kept(cam: LoadedCam, limit: float) -> Array:
+def _film_kept(cam: LoadedCam, limit: float, at: JudgedRoller) -> Array:
     """Speed over the least mean speed; no film is necessary at rest."""
-    spin = FIRST_ROLLER.slowest(cam)
-    turns = np.real(cam.spin_mean) >= STANDSTILL
+    spin, (roller, *_) = at.slowest(cam), at.rollers(cam)
+    turns = np.real(roller.mean) >= STANDSTILL
     return np.where(turns, spin / limit, _AMPLE + 0.0 * spin)
 
 
@@ -386,7 +402,7 @@ def _static_safety(at: JudgedRoller) -> Declaration:
     key = at.key("C0")
     return _of_roller(
         ROLLER_STATIC_SAFETY,
-        id=f"{at.name}_static",  # of the first NORMAL_FORCE, the group of all these limits
+        id=f"{at.name}_static",  # the group of all these limits
         title=f"Static safety factor of {at.bearing}",
         method=f"static rating over the {at.force}",
         closed_by=at.closed_by,
@@ -403,7 +419,7 @@ def _static_safety(at: JudgedRoller) -> Declaration:
         needed=(key,),
         remark=at.with_card,
         deviation=0.005,
-        kept=Kept(force_over, group=NORMAL_FORCE, unit="N") if at.first else None,
+        kept=at.kept_force(limits=True),
     )(at.force_on)
 
 
@@ -483,7 +499,7 @@ def _load_share(at: JudgedRoller) -> Declaration:
         needed=(key,),
         remark=at.with_card,
         deviation=0.005,
-        kept=Kept(group=NORMAL_FORCE) if at.first else None,
+        kept=at.kept_force(),
     )(at.force_on)
 
 
@@ -523,7 +539,7 @@ def _rating_life(
         remark=partial(_with_damage, at=at),
         deviation=0.03,
         bounded="surge",
-        kept=Kept(power=1.0 / BALL_LIFE_EXPONENT, unit="N") if at.first else None,
+        kept=Kept(power=1.0 / BALL_LIFE_EXPONENT, unit="N", needs=at.kept_with),
     )(at.damage)
 
 
@@ -588,7 +604,12 @@ def _modified_rating_life(at: JudgedRoller, symbols: Mapping[str, str]) -> Decla
         remark=partial(_with_modified_damage, at=at),
         deviation=0.03,
         bounded="surge",
-        kept=Kept(_modified_kept, power=1.0 / BALL_LIFE_EXPONENT, unit="N") if at.first else None,
+        kept=Kept(
+            partial(_modified_kept, at=at),
+            power=1.0 / BALL_LIFE_EXPONENT,
+            unit="N",
+            needs=at.kept_with,
+        ),
     )(at.modified_damage)
 
 
@@ -626,7 +647,7 @@ def _speed(at: JudgedRoller, radius: str) -> Declaration:
             demand, figures=(at.bearing_in(solution.case).source,)
         ),
         deviation=0.0002,
-        kept=Kept(unit="rpm") if at.first else None,
+        kept=Kept(unit="rpm", needs=at.kept_with),
     )(at.fastest)
 
 
@@ -661,7 +682,7 @@ def _outer_ring(at: JudgedRoller, name: str, words: str, symbol: str, breaks: st
         allowed=of_key(key),
         remark=at.with_card,
         deviation=0.005,
-        kept=Kept(group=NORMAL_FORCE) if at.first else None,
+        kept=at.kept_force(),
     )(at.force_on)
 
 
@@ -714,7 +735,9 @@ def _lubrication(at: JudgedRoller, name: str) -> Declaration:
         needed=(viscosity, circle),
         remark=partial(_with_line_of_viscosity, at=at),
         deviation=0.0001,
-        kept=Kept(_film_kept, power=-1.0, unit="rpm", falls=-1.0) if at.first else None,
+        kept=Kept(
+            partial(_film_kept, at=at), power=-1.0, unit="rpm", falls=-1.0, needs=at.kept_with
+        ),
     )(at.slowest)
 
 

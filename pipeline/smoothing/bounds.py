@@ -15,9 +15,11 @@ from camwright.pipeline.checks.demands import NORMAL_FORCE
 from camwright.pipeline.checks.manufacture import guide_gap
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.checks.roller_bearing import (
-    roller_life,
-    roller_modified_life,
+    FIRST_ROLLER,
+    SECOND_ROLLER,
+    JudgedRoller,
     roller_static,
+    second_roller_static,
 )
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT
@@ -112,7 +114,8 @@ def _of_part(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
 
 def _normal_force(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
     """Of the static rating the rating itself, N."""
-    by_rating = ratings.by.get(one.key, one.check) == roller_static.id
+    statics = roller_static.id, second_roller_static.id
+    by_rating = ratings.by.get(one.key, one.check) in statics
     safety = ratings.numbers.get(f"limits.{ROLLER_STATIC_SAFETY.id}") if by_rating else None
     return _of_part(ratings, one, value if safety is None else value * float(safety))
 
@@ -123,26 +126,28 @@ def _guide_gap(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
     return replace(_of_part(ratings, one, value), slope=-1.0 / size)
 
 
-def _bearing_life(ratings: Ratings, one: AnyConstraint, _: float) -> Bound | None:
+def _bearing_life(ratings: Ratings, one: AnyConstraint, _: float, at: JudgedRoller) -> Bound | None:
     """Bound of the life of the roller bearing, stated as one on its dynamic load rating, N; None
     where the rating is not known.
 
     At the same fatigue load limit the life grows with the cube of the rating. The third argument,
     the life, is not used.
     """
-    rating = ratings.numbers.get(_RATING)
+    rating = ratings.numbers.get(at.key("C"))
     if rating is None:
         return None
-    return replace(_of_part(ratings, one, float(rating)), relaxed=_with_rating)
+    relaxed = partial(_with_rating, at=at)
+    return replace(_of_part(ratings, one, float(rating)), relaxed=relaxed)
 
 
-def _with_rating(ratings: Ratings, factor: float) -> Ratings:
+def _with_rating(ratings: Ratings, factor: float, at: JudgedRoller) -> Ratings:
     """Ratings with the dynamic load rating of the roller bearing times a factor, and the bound of
     its life times the cube of the factor.
     """
-    rated = ratings.numbers | {_RATING: ratings.numbers[_RATING] * factor}
-    with_life = roller_life.id in ratings.bounds
-    life = ratings.times(roller_life.id, factor**BALL_LIFE_EXPONENT) if with_life else ratings
+    rating, name = at.key("C"), f"{at.name}_life"
+    rated = ratings.numbers | {rating: ratings.numbers[rating] * factor}
+    with_life = name in ratings.bounds
+    life = ratings.times(name, factor**BALL_LIFE_EXPONENT) if with_life else ratings
     return replace(life, numbers=rated)
 
 
@@ -166,12 +171,15 @@ def _concave_radius(ratings: Ratings, one: AnyConstraint, value: float) -> Bound
     return replace(_of_part(ratings, one, value / TOOL_ALLOWANCE), slope=slope)
 
 
-_RATING = "roller.bearing.C"
 _OF_PART: Mapping[str, Callable[[Ratings, AnyConstraint, float], Bound | None]] = {
     NORMAL_FORCE: _normal_force,
     guide_gap.id: _guide_gap,
-    roller_life.id: _bearing_life,
-    roller_modified_life.id: _bearing_life,
+    second_roller_static.id: _normal_force,
+    **{
+        f"{at.name}_{name}": partial(_bearing_life, at=at)
+        for at in (FIRST_ROLLER, SECOND_ROLLER)
+        for name in ("life", "modified_life")
+    },
     concave_radius.id: _concave_radius,
 }
 """Bounds by key, where another number is shown, or the utilisation is no power of it."""

@@ -301,15 +301,15 @@ class ScenarioCam(CarriedCam):
 
     @cached_property
     def rollers(self) -> tuple[TurningRoller, ...]:
-        """The mean spin of a second preloaded roller is that on its prime circle."""
+        """The mean spin of a second roller is that on its prime circle."""
         turning, second = super().rollers, self.second
         if len(turning) == 1 or second is None:
             return turning
         path = roller_of(second.motion)
-        far = rolling_share(path.prime_radius[..., :1], path.size)
+        far = np.asarray(self.speed * rolling_share(path.prime_radius[..., :1], path.size))
         return tuple(
             each._replace(mean=mean)
-            for each, mean in zip(turning, (self.spin_mean, self.speed * far), strict=True)
+            for each, mean in zip(turning, (self.spin_mean, magnitude(far)), strict=True)
         )
 
     @property
@@ -512,7 +512,7 @@ class Constraint(Generic[State]):
     utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
     row: AnyLimit | None = None
     kept: Kept = field(default=Kept(), repr=False)
-    needs: Kind | Literal["preloaded"] = ""
+    needs: Kind | Literal["preloaded", "two_rollers"] = ""
     stroke: str = ""
     discs: bool = False
 

@@ -166,6 +166,38 @@ def test_both_preloaded_rollers_press_as_on_the_finished_discs(pair):
     assert loads.idle_force.max() > 50.0
 
 
+def test_the_second_roller_of_a_groove_is_kept_within_the_limits_of_its_bearing():
+    """Its use of each limit by the solved forces on the outer wall, a film of kappa above 4."""
+    case, whole = problem(TWO_ROLLERS)
+    search, machine = Search(whole), machines(case)[0]
+    raised = search.exact + np.ptp(search.exact)
+    cam = search.loads_at(raised, whole.variables, search.turn)
+    lift = Lift(search.turn.theta, readonly(cam.jet.lift))
+    path = case.contour(lift).pitch
+    loads = follower_loads(path, machine.system, machine.cam_speed, lift.theta)
+    k = next(k for k, each in enumerate(whole.scenarios) if each.weight > 0)
+    force = np.where(loads.axial_force < 0.0, loads.normal_force, 0.0)
+    spin = machine.cam_speed * (np.hypot(*path.velocity(lift.theta)) / 0.021 + 1.0)
+    bearing, bounds = machine.roller.bearing, whole.ratings.bounds
+    uses, hours = utilisations_of(cam), 3600.0 * 100.0
+    name = "second_roller_{}".format
+    most = force.max() / bounds[name("static")]
+    assert np.max(uses[name("static")][k]) == pytest.approx(most, rel=1e-5)
+    most = np.max(spin[force > 0.0]) / (0.7 * bearing.speed_limit)
+    assert np.max(uses[name("speed")][k]) == pytest.approx(most, rel=1e-4)
+    damage = np.mean((force / bearing.C) ** 3 * spin) * hours / (2e6 * np.pi)
+    assert np.mean(uses[name("life")].terms[k]) == pytest.approx(damage, rel=1e-4)
+    clean = (0.5 * bearing.fatigue_load_limit / np.maximum(force, 1.0)) ** (1.0 / 3.0)
+    left = np.maximum(1.0 - (2.5671 - 1.9987 / 4.0**0.071739) ** 0.83 * clean, 0.01)
+    longer = np.minimum(0.1 * left**-9.3, 50.0)
+    damage = np.mean((force / bearing.C) ** 3 / longer * spin) * hours / (2e6 * np.pi)
+    assert np.mean(uses[name("modified_life")].terms[k]) == pytest.approx(damage, rel=1e-4)
+    held = np.mean(uses[name("lubrication")].terms[k])
+    assert held == pytest.approx(spin.mean() / bounds[name("lubrication")], rel=1e-4)
+    assert bounds[name("static")] == min(bearing.radial_limit, bearing.static_radial_limit,
+                                         bearing.C0 / 2.0, 0.5 * bearing.C)  # fmt: skip
+
+
 class Finished:
     """Ripple and limits of a cam by its finished contours and the solved forces of its load case.
 
