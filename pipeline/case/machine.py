@@ -64,6 +64,7 @@ from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.follower_stiffness import (
     in_series,
+    shaft_between,
     shaft_compliance,
     stem_compliance_along,
 )
@@ -575,8 +576,9 @@ class Machine(Displayed):
         """Compliances of both rollers of conjugate discs.
 
         On a stem those of roller, pin and fork, of the second with the stem between the rollers,
-        which goes on there with its section: stem and camshaft beyond bear the axial force alone.
-        On arms, and of a stated stiffness, those from each disc to the follower mass.
+        which goes on there with its section: the stem beyond bears the axial force alone. On arms,
+        and of a stated stiffness, those from each disc to the follower mass. The camshaft bends
+        under both forces.
 
         Raises
         ------
@@ -592,10 +594,16 @@ class Machine(Displayed):
             distance = 0.0 if pair is None else pair.distance or 0.0
             second = first + stem_compliance_along(self.stem, distance)
         else:
-            first, second = (sum(self._compliances_to(one).values()) for one in (None, pair))
+            members = [self._compliances_to(one) for one in (None, pair)]
+            first, second = (sum(each.values()) - each.get("camshaft", 0.0) for each in members)
         if not first > 0.0:
             raise InputError("follower.stiffness", "missing", "given with an interference")
-        return Compliances(first, second)
+        if self.camshaft is None or pair is None:
+            return Compliances(first, second)
+        discs = [shaft_compliance(self.camshaft, at) or 0.0 for at in (0.0, pair.spacing)]
+        return Compliances(
+            first, second, discs[0], shaft_between(self.camshaft, pair.spacing), discs[1]
+        )
 
     def clearance_on(self, path: FollowerPath, theta: Array) -> Array:
         """Clearance of the follower between both tracks at cam angles (n,), rad, square to the

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,26 +56,56 @@ class Squeezed(NamedTuple):
         return np.asarray((np.real(first) > 0.0) & (np.real(second) > 0.0))
 
 
+class Pushing(Protocol):
+    """Contact force of a track along and across the travel of the first roller, over the axial
+    force there.
+    """
+
+    @property
+    def pressing(self) -> Value: ...
+    @property
+    def side(self) -> Array: ...
+
+
 class Compliances(NamedTuple):
     """Compliances of both rollers along the travel of each, m/N, > 0: from its disc to where the
     forces of both meet, the mass of arms, or the stem at the first roller.
+
+    at_first, at_second: deflection of the camshaft at each disc per force there, m/N; between: at
+    either per force at the other; 0 of a rigid shaft.
     """
 
     first: Value
     second: Value
+    at_first: Value = 0.0
+    between: Value = 0.0
+    at_second: Value = 0.0
 
 
 def squeezed(
-    interference: Value, compliances: Compliances, touch: Touch, leverage: Value
+    interference: Value, compliances: Compliances, first: Pushing, touch: Touch, leverage: Value
 ) -> Squeezed:
     """Preload (...) of an interference, m, on the compliances of both rollers.
 
+    Both forces bend the camshaft: opposite ones bend it back, each at the disc of the other.
+
+    first : Pushing    of the first track
     touch : Touch      of the second track
     leverage : float   force along the travel of the second over that of the first roller
     """
     closed = interference / (touch.slide.lever * np.cos(touch.pressure_angle))
-    first, second = compliances.first, compliances.second * leverage**2
-    return Squeezed(closed / (first + second), second / (first + second))
+    second = touch.slide
+    # the axial force is negative where the second track carries
+    bent_back = -compliances.between * _product(first, second)
+    near = compliances.first + compliances.at_first * _product(first, first) + bent_back
+    far = compliances.second * leverage**2 + compliances.at_second * _product(second, second)
+    far = far + bent_back
+    return Squeezed(np.asarray(closed / (near + far)), far / (near + far))
+
+
+def _product(one: Pushing, other: Pushing) -> Value:
+    """Scalar product of two contact forces over the axial force at the first roller."""
+    return one.pressing * other.pressing + one.side * other.side
 
 
 @dataclass(frozen=True)
@@ -101,7 +131,7 @@ class DiscPreload:
         """Preload at cam angles (n,), rad, reduced to the first roller.
 
         The interference i opens i/(l_2/l_1 cos alpha_2) along the travel of the first roller; the
-        compliance of the second is (l_1/l_2)^2 of its own there.
+        compliance of the second is (l_1/l_2)^2 of its own there; see `squeezed`.
 
         Raises
         ------
@@ -112,4 +142,5 @@ class DiscPreload:
         if not float(np.min(left)) > 0.0:
             shown = units.shown(float(np.min(left)), "mm")
             raise InputError("cam.conjugate.interference", shown, "> 0 mm at every angle")
-        return squeezed(left, self.compliances, track.touch(theta), track.leverage)
+        first = track.first.slide(theta, 0.0)
+        return squeezed(left, self.compliances, first, track.touch(theta), track.leverage)

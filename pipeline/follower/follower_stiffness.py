@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.contact.rolling_bearing import OuterRing
 from camwright.pipeline.follower.bearing_ring import ball_stiffness
@@ -108,3 +109,30 @@ def shaft_compliance(shaft: Camshaft, spacing: float = 0.0) -> float | None:
     over = -min(first, second)
     bending = over**2 * (span + over) / (3.0 * bar.bending_stiffness)
     return bending + over * (1.0 + over / span) * bar.shear_flexibility
+
+
+def shaft_between(shaft: Camshaft, spacing: float) -> float:
+    """Deflection of the camshaft at the cam per force at a disc a spacing, m, from it, or the other
+    way round, m/N; 0 without diameter or material.
+
+    The bar of `shaft_compliance`; unit-load method, exact, since both moments are linear between
+    the forces.
+    """
+    if shaft.diameter is None or shaft.material is None:
+        return 0.0
+    card, span = shaft.material, shaft.bearing_spacing
+    bar = Stem(shaft.diameter, card.E, card.nu, shear=True)
+    discs = np.array([[shaft.cam_position], [shaft.cam_position + spacing]])
+    corners = np.unique([0.0, span, *discs.ravel()])
+    start, step = corners[:-1], np.diff(corners)
+
+    def moments(places: Array) -> Array:
+        """Bending moments (2, k) of a unit force at each disc."""
+        held = discs / span * np.maximum(places - span, 0.0)
+        held = held + (1.0 - discs / span) * np.maximum(places, 0.0)
+        return np.asarray(held - np.maximum(places - discs, 0.0))
+
+    low, middle, high = (moments(start + share * step) for share in (0.0, 0.5, 1.0))
+    bending = np.prod(low, axis=0) + 4.0 * np.prod(middle, axis=0) + np.prod(high, axis=0)
+    shear = np.prod((high - low) / step, axis=0) * bar.shear_flexibility
+    return float(np.sum(step * (bending / (6.0 * bar.bending_stiffness) + shear)))

@@ -541,7 +541,7 @@ class Designs:
             return None
         interference = self.value("cam.conjugate.interference") + narrower
         second = self.second
-        return squeezed(interference, self.compliances, second.touch, second.leverage)
+        return squeezed(interference, self.compliances, self.motion, second.touch, second.leverage)
 
     def thrown(self, speed: Value) -> tuple[tuple[Array, ...], Array]:
         """Centrifugal forces on each disc and the counterweight (2, m, n), N, at cam speeds (m, 1),

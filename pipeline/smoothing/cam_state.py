@@ -155,7 +155,7 @@ class ScenarioCam(CarriedCam):
         if second is None or compliances is None or self.alone:
             return None
         interference = self.numbers[INTERFERENCE]
-        return squeezed(interference, compliances, second.touch, second.leverage)
+        return squeezed(interference, compliances, self.first, second.touch, second.leverage)
 
     @cached_property
     def _in_guides(self) -> _PressedStem | None:

@@ -24,8 +24,8 @@ OWN = {
     # the bush of the pivot is in the plane of the first disc, about which the other's couple is
     *("pivot_edge_pressure", "pivot_pressure", "pivot_pv", "pivot_wear", "pivot_temperature"),
     "pivot_expansion",
-    # the ring of the seat and the run-out have the radius of the first disc
-    *("cam_slip", "fit_yield", "roller_misalignment"),
+    # the ring of the seat has the radius of the first disc
+    *("cam_slip", "fit_yield"),
 }
 """Checks of what the case states of the first disc alone."""
 
@@ -45,6 +45,7 @@ def named():
         'prime_radius = "62 mm"': f'prime_radius = "{PRIME} mm"',
         'roller_radius = "22 mm"': 'roller_radius = "25 mm"',
         "positions = 720": "positions = 240",
+        "[limits]": '[limits]\ncam_run_out = "0 um"',  # on the radius of the first disc
     })  # fmt: skip
 
 
@@ -76,11 +77,12 @@ def exchanged():
 def square_to_the_first(self, track, theta):
     """Preload of an interference square to the first disc."""
     along = self.interference / np.cos(track.first.pressure_angle(theta))
+    touch, first = track.touch(theta), track.first.slide(theta)
     preload = disc_preload.squeezed(
-        self.interference, self.compliances, track.touch(theta), track.leverage
+        self.interference, self.compliances, first, touch, track.leverage
     )
-    both = self.compliances.first + self.compliances.second * track.leverage**2
-    return Squeezed(along / both, preload.share)
+    square = self.interference / (touch.slide.lever * np.cos(touch.pressure_angle))
+    return Squeezed(preload.preload * along / square, preload.share)
 
 
 @cache

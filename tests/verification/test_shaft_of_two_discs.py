@@ -9,11 +9,13 @@ import pytest
 from scipy.linalg import eigh
 from test_conjugate_cam import uneven
 
+from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.checks.camshaft_strength import _rotor
 from camwright.pipeline.cycle.cam_balance import camshaft_loads, rotor_unbalance, undrilled
 from camwright.pipeline.cycle.cycle import turn_of_line
+from camwright.pipeline.follower.follower_stiffness import shaft_between, shaft_compliance
 from camwright.pipeline.follower.shaft_strength import slopes_of
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening.design_arrays import Designs, LiftOrigin
@@ -144,7 +146,8 @@ def test_each_roller_stands_on_its_own_arm_and_disc(measured):
     members = machine.compliances
     alone = replace(machine.arm_bar, length=0.085, held=0.0).compliance
     wanted = sum(members.values()) - members["camshaft"] - members["arm"] + yielding + alone
-    first, second = machine.roller_compliances
+    own = machine.roller_compliances
+    first, second = own.first + own.at_first, own.second + own.at_second
     assert first == pytest.approx(sum(members.values()), rel=1e-12)
     measured("compliance of a second roller", second, wanted, rtol=1e-9)
     assert yielding > 1.3 * members["camshaft"]
@@ -152,6 +155,60 @@ def test_each_roller_stands_on_its_own_arm_and_disc(measured):
         (1.0 / first, (0.085 / 0.09) ** 2 / second), rel=1e-12
     )
     assert machine.axial_stiffness == min(machine.track_stiffnesses)
+
+
+@pytest.mark.parametrize("spacing", [0.02, 0.04, 0.09])
+def test_deflection_at_one_disc_under_the_other(spacing):
+    """Elements in bending, and the shear of a unit load; beyond a bearing that is none."""
+    shaft = replace(solved("preloaded_arm").machine.camshaft, cam_position=0.035)
+    first, last, span, card = 0.035, 0.035 + spacing, shaft.bearing_spacing, shaft.material
+    kappa, area = 6.0 * (1.0 + card.nu) / (7.0 + 6.0 * card.nu), 0.25 * np.pi * shaft.diameter**2
+    shear = first * max(span - last, 0.0) / span * 2.0 * (1.0 + card.nu) / (kappa * area * card.E)
+    wanted = flexibility(shaft, (first, last))[0, 1] + shear
+    assert shaft_between(shaft, spacing) == pytest.approx(wanted, rel=1e-9)
+    moved = replace(shaft, cam_position=last)
+    assert shaft_between(moved, 0.0) == pytest.approx(shaft_compliance(moved), rel=1e-12)
+
+
+def test_the_preload_bends_the_shaft_under_both_discs(measured):
+    """Place of the arm and of both discs at once, by the normals of the contours, springs of the
+    rollers and the shaft by elements with the shear of a unit load: to round-off.
+    """
+    solution = solved("preloaded_arm")
+    machine, contour = solution.machine, solution.cycles[0].contour
+    shaft, card, theta = machine.camshaft, machine.camshaft.material, uniform_turn(24)
+    kappa, area = 6.0 * (1.0 + card.nu) / (7.0 + 6.0 * card.nu), 0.25 * np.pi * shaft.diameter**2
+    first, last, span = 0.035, 0.075, shaft.bearing_spacing
+    sheared = np.array([[first * (span - first), first * (span - last)],
+                        [first * (span - last), last * (span - last)]])  # fmt: skip
+    sheared *= 2.0 * (1.0 + card.nu) / (span * kappa * area * card.E)
+    bent = np.kron(flexibility(shaft, (first, last))[:2, :2] + sheared, np.eye(2))
+    track, ratio = machine.cam.second.track(contour.pitch), 0.085 / 0.09
+    normals = [each.local_frame(theta).normal for each in (contour, track.contour)]
+    cosines = [np.cos(each.pressure_angle(theta)) for each in (contour.pitch, track.contour.pitch)]
+    squeeze, own = machine.disc_preload.at(track, theta), machine.roller_compliances
+    forces = np.array(squeeze.forces(np.full(24, 40.0)))
+    wanted = np.zeros((2, 24))
+    for k, (one, other) in enumerate(zip(*cosines, strict=True)):
+        # of each roller into its disc, by the arm outwards and the discs along the normals
+        ways = np.zeros((2, 5))
+        ways[0, 0], ways[1, 0] = -one, ratio * other
+        ways[0, 1:3], ways[1, 3:] = normals[0][:, k], normals[1][:, k]
+        springs = np.diag([1.0 / (own.first * one**2), 1.0 / (own.second * other**2)])
+        held = np.zeros((5, 5))
+        held[1:, 1:] = np.linalg.inv(bent)
+        closed = np.array([0.0, machine.cam.conjugate.interference])
+        load = np.array([-40.0, 0.0, 0.0, 0.0, 0.0])
+        system = held + ways.T @ springs @ ways
+        moved = np.linalg.solve(system, load - ways.T @ springs @ closed)
+        pressed = springs @ (closed + ways @ moved)
+        wanted[:, k] = pressed[0] * one, ratio * pressed[1] * other
+    assert (wanted > 0.0).all()
+    assert forces == pytest.approx(wanted, rel=1e-8)
+    measured("force of a preloaded roller", forces[0, 0], wanted[0, 0], rtol=1e-8, unit="N")
+    rigid = machine.disc_preload.compliances._replace(at_first=0.0, between=0.0, at_second=0.0)
+    stiff = replace(machine.disc_preload, compliances=rigid).at(track, theta)
+    assert np.abs(stiff.preload / squeeze.preload - 1.0).max() > 0.01
 
 
 def test_the_unbalance_of_two_discs_is_that_at_both_bearings():
