@@ -20,6 +20,7 @@ HARMONICS_MAX = 60
 _FIT_STEPS_MAX = 50  # of an iteration of phase, size or contact angle
 _LAST_STEP = 1e-13  # m or rad, of a converged fit
 _TURNS_TRIED = 72
+_ALIKE, _EXACT = 1.5, 1e-7  # variance over the least one; m: of phases of a contour that recurs
 _POLYGON = 5760
 _LIFT_SAMPLES = 1440  # of the lift of a real contour
 
@@ -173,7 +174,8 @@ def _checked(points: ArrayLike) -> Array:
 
 def _rough_phase(contour: Contour, measured: Array) -> float:
     """Rotation, rad, of measured points (2, n), m, against the nominal contour, among 72 equal
-    steps of the turn: that of least variance of the radii less the nominal ones.
+    steps of the turn: that of least variance of the radii less the nominal ones; of a contour that
+    recurs within the turn that of the smallest angle.
     """
     theta = uniform_turn(contour.lift.search_count)
     polar, radius = _polar(contour.points(theta))
@@ -186,8 +188,10 @@ def _rough_phase(contour: Contour, measured: Array) -> float:
         radius[order],
         period=FULL_TURN,
     )
-    deviation = measured_radius[None, :] - nominal
-    return float(phases[np.argmin(np.var(deviation, axis=1))])
+    variance = np.var(measured_radius[None, :] - nominal, axis=1)
+    away = np.abs(np.mod(phases + np.pi, FULL_TURN) - np.pi)
+    alike = variance <= _ALIKE * variance.min() + _EXACT**2
+    return float(phases[np.argmin(np.where(alike, away, np.inf))])
 
 
 def _feet(contour: Contour, points: Array) -> tuple[Array, Array]:

@@ -6,12 +6,14 @@ carries.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Self
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.follower_path import FollowerPath
+from camwright.geometry.measured_contour import Inspection
 from camwright.geometry.second_track import SecondFollower, SecondTrack, Touch, touch_of
 
 
@@ -39,9 +41,14 @@ class TrackDeviation:
     turn: float = 0.0
     wear_depth: float = 0.0
 
-    def worn(self, depth: float) -> TrackDeviation:
+    def worn(self, depth: float) -> Self:
         """The deviations with another wear, m."""
         return replace(self, wear_depth=depth)
+
+    def beside(self, other: TrackDeviation) -> Self:
+        """Sum with other deviations, of first order."""
+        names = (each.name for each in fields(TrackDeviation))
+        return replace(self, **{name: getattr(self, name) + getattr(other, name) for name in names})
 
     def opened(self, first: FollowerPath, second: SecondFollower | None, theta: Array) -> Array:
         """Change of the clearance (n,), m, at cam angles (n,), rad, to first order.
@@ -58,8 +65,13 @@ class TrackDeviation:
         if self == EXACT:
             return np.zeros(theta.shape)
         if second is None:
-            return np.full(theta.shape, -2.0 * self._filled)
+            one = np.ones(theta.shape)
+            return np.asarray(-2.0 * self._filled * one - self._measured(theta, theta, one))
         return self.on(second.track(first), theta)
+
+    def _measured(self, first: Array, second: Array, ratio: Array) -> Array:  # noqa: ARG002
+        """By which measured tracks close the clearance (n,), m, at the cam angles of each (n,)."""
+        return np.zeros(first.shape)
 
     @property
     def _filled(self) -> float:
@@ -77,7 +89,25 @@ class TrackDeviation:
         away = _from_the_axis(near, travel) * ratio + _from_the_axis(other, travel)
         displaced = self.apart - self.turn * rise
         opened = displaced * along[1] + self.centre * away - self._filled * (1.0 + ratio)
-        return np.asarray(opened - self.second_roller)
+        opened = opened - self.second_roller
+        return np.asarray(opened - self._measured(theta, theta + track.turn, ratio))
+
+
+@dataclass(frozen=True)
+class MeasuredTracks(TrackDeviation):
+    """Deviations with the form of measured tracks, the other one as drawn.
+
+    first, second : Inspection   of a track; None: it is not measured
+    """
+
+    first: Inspection | None = None
+    second: Inspection | None = None
+
+    def _measured(self, first: Array, second: Array, ratio: Array) -> Array:
+        closed = np.zeros(first.shape)
+        if self.first is not None:
+            closed = closed + ratio * self.first.form(first)
+        return closed if self.second is None else closed + self.second.form(second)
 
 
 def _from_the_axis(touch: Touch, travel: Array) -> Array:

@@ -7,6 +7,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 
 from camwright.geometry.contour import Contour
+from camwright.geometry.track_deviation import EXACT, TrackDeviation
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.verdict import in_order
 from camwright.pipeline.base.worker_processes import Crew, PendingCall, crew
@@ -38,6 +39,7 @@ def solve(
     positions: int | None = None,
     corners: bool = True,
     synthesis_gain: float | None = None,
+    deviation: TrackDeviation = EXACT,
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
     jobs: int | None = 1,
@@ -54,6 +56,7 @@ def solve(
     positions : int       per cam turn; None: those of the case
     corners : bool        judge each check at its worst tolerance corner; not in a screening
     synthesis_gain : float   see `Solution`
+    deviation : TrackDeviation   of measured tracks
     store : ContactStore  of partial contact solutions, to resume an interrupted run
     progress : Progress
     jobs : int            processes for corners and certificate; None: one a processor, at most 4
@@ -72,13 +75,14 @@ def solve(
     with crew(jobs) if workers is None else nullcontext(workers) as hands:
         tried: PendingCall | None = None
         if corners and tier > Tier.SCREENING:
-            tried = hands.submit(outcomes, case, machines(case, known), contour)
+            tried = hands.submit(outcomes, case, machines(case, known, deviation), contour)
         solved = solution(
             case,
             contour,
             min(tier, Tier.CYCLE),
             torques=known,
             positions=positions,
+            deviation=deviation,
             store=store,
             progress=progress,
         )

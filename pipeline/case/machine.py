@@ -641,18 +641,22 @@ class Machine(Displayed):
             friction=self.friction.scaled(corner.friction_a, corner.friction_b),
             pivot=self.pivot and self.pivot.with_mass(corner.mass),
             crankshaft=shaft and replace(shaft, inertia=shaft.inertia * corner.inertia),
-            deviation=corner.deviation,
+            deviation=self.deviation.beside(corner.deviation),
         )
 
 
-def machines(case: Case, torques: Mapping[str, Torque] = NO_TORQUES) -> tuple[Machine, ...]:
+def machines(
+    case: Case, torques: Mapping[str, Torque] = NO_TORQUES, deviation: TrackDeviation = EXACT
+) -> tuple[Machine, ...]:
     """Machines of all judged load cases, the design load case first.
 
     Parameters
     ----------
     torques : mapping   engine torque by load case, such as of `engine_torques`
+    deviation : TrackDeviation   of measured tracks
     """
-    return tuple(machine(case, state, torques.get(state.name)) for state in judged_load_cases(case))
+    every = (machine(case, each, torques.get(each.name)) for each in judged_load_cases(case))
+    return tuple(replace(each, deviation=deviation) for each in every)
 
 
 def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:

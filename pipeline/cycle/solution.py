@@ -14,6 +14,7 @@ from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import TIE, first_greatest
 from camwright.geometry.second_track import CamDisc, discs_of
+from camwright.geometry.track_deviation import EXACT, TrackDeviation
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
 from camwright.pipeline.base.kept_results import KeptResult
@@ -236,6 +237,7 @@ def solution(
     positions: int | None = None,
     coarse: bool = False,
     bounds: bool = True,
+    deviation: TrackDeviation = EXACT,
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
 ) -> Solution:
@@ -247,6 +249,7 @@ def solution(
     positions : int       per cam turn; None: those of the case
     coarse : bool         coarse guide mesh, constant crank speed: for ratios of demands
     bounds : bool         see `turns`
+    deviation : TrackDeviation   of measured tracks
     store : ContactStore  of the pieces of the contact, to resume an interrupted solution
 
     Raises
@@ -255,7 +258,8 @@ def solution(
         If a mesh, the contact or the guides cannot be solved.
     """
     count = case.solver.positions if positions is None else positions
-    turns = turns_of(machines(case, torques), contour, count, coarse=coarse, bounds=bounds)
+    states = machines(case, torques, deviation)
+    turns = turns_of(states, contour, count, coarse=coarse, bounds=bounds)
     return solved_turns(case, contour, turns, tier, coarse=coarse, store=store, progress=progress)
 
 

@@ -35,6 +35,9 @@ class InspectionDocument(TypedDict):
 
     track: NotRequired[str]
     """Measured wall of a groove or disc of a pair, where it was stated."""
+    clearance_um: NotRequired[list[float]]
+    """Least and greatest clearance between two tracks over the turn, the other one as drawn; of an
+    interference below zero."""
     phase_deg: float
     """Angle by which the measured contour is turned."""
     size_um: float

@@ -50,6 +50,8 @@ _WALLS: Mapping[str, Side] = MappingProxyType({"": "inner", _OUTER: "outer"})
 """Walls of a groove by the ending of their files."""
 _DISCS = MappingProxyType({"": "first", _SECOND: "second"})
 """Discs of a conjugate pair by the ending of their files."""
+SECOND_TRACKS = _WALLS[_OUTER], _DISCS[_SECOND]
+"""Tracks that pull the follower back, as measured."""
 RADII_STEP = 10
 """deg, between the radii of the dimensions."""
 _CROWN_SHARES = (0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)  # of half the flat
@@ -155,7 +157,7 @@ def measured_surface(case: Case, contour: Contour, track: str | None) -> Contour
 
 def real_cam(case: Case, contour: Contour, track: str | None, measured: Contour) -> Contour:
     """Contour under the first roller of a cam with the measured surface of one track; the other
-    track matches it.
+    track matches it, but for the clearance.
     """
     second = case.cam.second
     path = measured.pitch

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.measured_contour import Inspection, inspected, real_contour, surface_of_lift
+from camwright.geometry.track_deviation import EXACT, MeasuredTracks, TrackDeviation
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
@@ -25,7 +26,7 @@ from camwright.pipeline.records.run_summary import HeadlineRecord
 from camwright.pipeline.results import check_records, run_reader
 from camwright.pipeline.results.run_records import cycle_columns, headline
 from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.results.workshop_files import measured_surface, real_cam
+from camwright.pipeline.results.workshop_files import SECOND_TRACKS, measured_surface, real_cam
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.angle_trace import read_trace
 from camwright.pipeline.torque.trace_file import trace_text
@@ -106,7 +107,8 @@ def inspect_part(
     case : Case               of the cam
     contour : Contour         nominal
     measured : array (2, n)   surface points, m
-    track : str               which is measured, see `measured_surface`; the other one matches it
+    track : str               which is measured, see `measured_surface`; the motion is that of it,
+                              the clearance that of both
     keep_phase : bool         measured angles are relative to the keyway
     jobs : int                processes of the certificate; None: number of cores, at most 4
     progress : Progress       told each stage
@@ -121,8 +123,31 @@ def inspect_part(
     fit = inspected(surface, measured)
     real = real_contour(surface, fit, keep_phase=keep_phase)
     real = real_cam(case, contour, track, real)
-    trial = solve(case, real, jobs=jobs, progress=progress)
+    deviation = measured_tracks(case, track, fit, keep_phase=keep_phase)
+    trial = solve(case, real, deviation=deviation, jobs=jobs, progress=progress)
     return RealPart(fit, surface, real, replace(trial, why="measured contour"), track)
+
+
+def measured_tracks(
+    case: Case, track: str | None, fit: Inspection, *, keep_phase: bool = False
+) -> TrackDeviation:
+    """Deviations of a cam that pulls with one measured track: the other one is as drawn. Both faces
+    of a yoke run on the measured one.
+    """
+    if not case.cam.pulls:
+        return EXACT
+    ahead = fit.phase if keep_phase and case.cam.spacing is not None else 0.0
+    if track in SECOND_TRACKS:
+        return MeasuredTracks(turn=-ahead, second=fit)
+    return MeasuredTracks(turn=ahead, first=fit, second=fit if case.cam.yoke is not None else None)
+
+
+def _clearance(part: RealPart) -> Array:
+    """Clearance between two tracks over the turn (n,), m; of an interference below zero."""
+    machine, path = part.trial.solution.machine, part.contour.pitch
+    cam, theta = machine.cam, uniform_turn(path.lift.search_count)
+    drawn = cam.clearance if cam.conjugate is None else cam.conjugate.gap
+    return drawn + machine.deviation.opened(path, cam.second, theta)
 
 
 def write_inspection(
@@ -175,6 +200,9 @@ def write_inspection(
     }
     if part.track is not None:
         record["track"] = part.track
+    if part.trial.case.cam.pulls:
+        left = _clearance(part)
+        record["clearance_um"] = [in_unit(float(each), "um") for each in (left.min(), left.max())]
     write_atomic(folder / "inspection.json", json_text(record) + "\n")
     return record
 
@@ -200,6 +228,16 @@ def _figures_of(key_figures: HeadlineRecord) -> CycleFigures:
     return figures
 
 
+def _fit_of(record: InspectionDocument) -> list[str]:
+    """Line of the clearance or interference of two tracks."""
+    if "clearance_um" not in record:
+        return []
+    least, greatest = record["clearance_um"]
+    if greatest > 0.0:
+        return [f"clearance {least:.2f} to {greatest:.2f} um over the turn"]
+    return [f"interference {-greatest:.2f} to {-least:.2f} um over the turn"]
+
+
 def lines(record: InspectionDocument) -> list[str]:
     """Lines of text of an inspection record."""
     side = "within" if record["within_tolerance"] else "outside"
@@ -209,6 +247,7 @@ def lines(record: InspectionDocument) -> list[str]:
         f"deviation {record['deviation_min_um']:+.2f} to {record['deviation_max_um']:+.2f} um, "
         f"{side} the tolerance zone of {record['tolerance_um']:g} um; scatter "
         f"{record['scatter_rms_um']:.2g} um rms",
+        *_fit_of(record),
         "waves per turn: " + ", ".join(f"{k}: {v:.2f} um" for k, v in record["waves_um"].items()),
     ]
     nominal: Mapping[str, Any] = record["nominal"]

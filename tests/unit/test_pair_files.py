@@ -20,6 +20,7 @@ from camwright.meshes.step_solid import write_step
 from camwright.meshes.step_text import PartTitle
 from camwright.pipeline.base.tables import read_table
 from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import headline
@@ -32,8 +33,13 @@ from camwright.pipeline.results.workshop_files import (
     second_track_notes,
     write_workshop,
 )
+from camwright.pipeline.solver import solve
 from camwright.pipeline.studies import cam_inspection
-from camwright.pipeline.studies.cam_inspection import RealPart, write_inspection
+from camwright.pipeline.studies.cam_inspection import (
+    RealPart,
+    measured_tracks,
+    write_inspection,
+)
 
 DATA = Path(__file__).parents[1] / "data"
 PAIRS = ("conjugate_feeder", "conjugate_arm")
@@ -209,7 +215,8 @@ def test_the_record_of_an_inspection_has_the_nominal_of_the_measured_disc(tmp_pa
     case, contour = judged("conjugate_feeder")
     surface, theta = measured_surface(case, contour, "second"), uniform_turn(360)
     fit = inspected(surface, surface.points(theta) + 4e-6 * surface.normal(theta))
-    trial = preview_case(case, corners=False)
+    deviation = measured_tracks(case, "second", fit)
+    trial = solve(case, contour, tier=Tier.PREVIEW, corners=False, deviation=deviation)
     part = RealPart(fit, surface, contour, trial, "second")
     run = SimpleNamespace(summary={"headline": headline(trial.solution)})
     monkeypatch.setattr(cam_inspection.run_reader, "read_run", lambda _: run)
@@ -220,6 +227,13 @@ def test_the_record_of_an_inspection_has_the_nominal_of_the_measured_disc(tmp_pa
         record["measured"]["normal_force_min_N"] == 0.0 == record["nominal"]["normal_force_min_N"]
     )
     assert (record["track"], record["size_um"]) == ("second", pytest.approx(4.0, abs=0.01))
+    # of 0.02 mm less 4 um, by which the landing is judged, too
+    assert record["clearance_um"] == pytest.approx([16.0, 16.0], abs=0.01)
+    assert "clearance 16.00 to 16.00 um over the turn" in cam_inspection.lines(record)
+    (landing,) = (each.demand for each in trial.checks if each.id == "landing_speed")
+    drawn = preview_case(case, corners=False)
+    (nominal,) = (each.demand for each in drawn.checks if each.id == "landing_speed")
+    assert landing == pytest.approx(nominal * 0.8 ** (2.0 / 3.0), rel=0.01)  # of small clearances
     written = read_table(tmp_path / "deviation.csv")
     path = case.cam.second.path(contour.pitch)
     at = np.radians(written["cam_angle_deg"])

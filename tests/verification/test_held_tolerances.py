@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.arrays import rotation, uniform_turn
 from camwright.geometry.errors import InputError
+from camwright.geometry.measured_contour import inspected
 from camwright.geometry.track_deviation import TrackDeviation
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
@@ -23,6 +24,8 @@ from camwright.pipeline.checks.tolerance_corners import POSITIONS, corners_of, o
 from camwright.pipeline.cycle.crossover_history import impacts
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.workshop_files import measured_surface, real_cam
+from camwright.pipeline.studies.cam_inspection import measured_tracks
 
 ROOT = Path(__file__).parents[2]
 GROOVE = ROOT / "cases" / "motions" / "feeder-groove.toml"
@@ -74,14 +77,17 @@ def nearest(point, curve):
     return np.sqrt(here - (before - after) ** 2 / (8.0 * (before - 2.0 * here + after)))
 
 
-def gap(name, theta, deviation):
-    """Clearance of the second roller while the first touches, m, but for that of the drawing."""
+def gap(name, theta, deviation, made=None):
+    """Clearance of the second roller while the first touches, m, but for that of the drawing.
+
+    made : tuple   points (2, n), m, of both discs as made; None: as drawn
+    """
     case, contour, track = pair(name)
     place = on_stem if case.follower.arm is None else on_arms
     path = contour.pitch
     at = path.height(theta) if place is on_stem else path.start + path.lift(theta) / path.arm.length
     filled = deviation.rollers + deviation.tracks - deviation.wear_depth
-    first, second = contour.points(FINE), track.contour.points(FINE)
+    first, second = made or (contour.points(FINE), track.contour.points(FINE))
     turned = np.array([axes(-deviation.turn)[0], axes(-deviation.turn)[1]]).T @ second
 
     def inside(where):
@@ -287,3 +293,64 @@ def test_profile_tolerance_is_judged_against_the_interference_left():
     pressed = np.minimum(*here.forces(loads.axial_force)) - here.preload + there.preload
     least = (pressed / here.preload).min()
     assert tried.demands["preload_least"] == pytest.approx(least, rel=1e-6)
+
+
+def made(contour, theta):
+    """Points (2, n), m, of a contour that is 3 um proud, with a form of 2 um, and 50 urad ahead."""
+    proud = 3e-6 + 2e-6 * np.cos(3.0 * theta + 0.4)
+    return rotation(50e-6) @ (contour.points(theta) + proud * contour.normal(theta))
+
+
+@pytest.mark.parametrize("name", ["conjugate_arm", "conjugate_feeder"])
+@pytest.mark.parametrize("measured", ["first", "second"])
+def test_a_measured_disc_opens_or_closes_the_clearance_as_it_is(name, measured):
+    """By points of both discs, the other one as drawn; of first order, within 0.5 %."""
+    case, contour, track = pair(name)
+    drawn = [contour, track.contour]
+    surface = drawn[("first", "second").index(measured)]
+    fit = inspected(surface, made(surface, uniform_turn(720)))
+    deviation = measured_tracks(case, measured, fit, keep_phase=True)
+    discs = tuple(made(each, FINE) if each is surface else each.points(FINE) for each in drawn)
+    for theta in (0.3, 0.9, 2.0):
+        change = gap(name, theta, TrackDeviation(), discs) - gap(name, theta, TrackDeviation())
+        opened = deviation.opened(contour.pitch, case.cam.second, np.array([theta]))
+        assert opened[0] == pytest.approx(change, rel=5e-3, abs=1e-9)
+        there = deviation.beside(TrackDeviation(rollers=2e-6))
+        alone = TrackDeviation(rollers=2e-6).opened(
+            contour.pitch, case.cam.second, np.array([theta])
+        )
+        both = there.opened(contour.pitch, case.cam.second, np.array([theta]))
+        assert both == pytest.approx(opened + alone, rel=1e-12)
+
+
+@pytest.mark.parametrize("track", ["inner", "outer"])
+def test_a_measured_wall_narrows_the_groove(track):
+    """By 5 um: the landings of the drawing with that clearance, the path as measured; 0.2 %."""
+    case, contour, machine = groove()
+    surface = measured_surface(case, contour, track)
+    theta = uniform_turn(720)
+    fit = inspected(surface, surface.points(theta) + 5e-6 * surface.normal(theta))
+    real = real_cam(case, contour, track, replace(surface, pitch=surface.pitch))
+    there = impacts(replace(machine, deviation=measured_tracks(case, track, fit)), real)
+    narrow = replace(machine.cam, groove=replace(machine.cam.groove, clearance=15e-6))
+    drawn = impacts(replace(machine, cam=narrow), contour)
+    assert len(there) == len(drawn) > 3
+    for one, other in zip(there, drawn, strict=True):
+        assert one.flight.speed == pytest.approx(other.flight.speed, rel=2e-3)
+
+
+def test_both_faces_of_a_yoke_run_on_the_measured_cam():
+    case = read_case(DATA / "yoke_pump.toml")
+    contour, theta = case.contour(given_lift(case)), uniform_turn(72)
+    proud = 4e-6 * (1.0 + np.cos(2.0 * theta))
+    dense = uniform_turn(720)
+    points = contour.points(dense) + 4e-6 * (1.0 + np.cos(2.0 * dense)) * contour.normal(dense)
+    fit = inspected(contour, points)
+    deviation = measured_tracks(case, None, fit)
+    opened = deviation.opened(contour.pitch, case.cam.second, theta)
+    assert opened == pytest.approx(-proud - np.roll(proud, -36), abs=2e-7)
+
+
+def test_a_spring_closed_cam_has_no_clearance_to_measure():
+    case = read_case(ROOT / "cases" / "gx120.toml")
+    assert measured_tracks(case, None, None) == TrackDeviation()
