@@ -147,7 +147,7 @@ _CLOSURES: dict[str, dict[str, Filling]] = {
     "spring": {
         "held_by": None, "prime_radius": "60 mm", "at": "smallest radius of the roller's CENTRE",
         "width": "15.5 mm", "wide": "within the flat of the roller at its axial offset",
-        "counterweight": {"residual": "20 g mm", "position": "35 mm"},
+        "counterweight": {"residual": "20 g mm", "position": "35 mm"}, "beside": "16 mm",
         "mounting": None, "span": "23 mm", "spanned": "between the middles of the cheeks",
         "cheek_width": "5 mm", "cheek_height": "22 mm",
         "tool": "25 mm", "landing": None, "slip": None, "room": "90 mm",
@@ -155,7 +155,7 @@ _CLOSURES: dict[str, dict[str, Filling]] = {
     "groove": {
         "held_by": "groove", "prime_radius": "68 mm", "at": "to the middle of the groove",
         "width": "28 mm", "wide": "18 mm of groove on a web of 10 mm",
-        "counterweight": None,
+        "counterweight": None, "beside": "0 mm",
         "mounting": "overhung", "span": "14 mm", "spanned": "middle of the roller to the cheek's",
         "cheek_width": "10 mm", "cheek_height": "30 mm",
         "tool": None, "landing": "50 mm/s", "slip": "7 m/s", "room": "125 mm",
@@ -414,7 +414,7 @@ bending_limit = "430 MPa"
 contact_limit = "1500 MPa"
 pinion_bending_limit = "430 MPa"
 pinion_contact_limit = "1500 MPa"
-machine_shaft_diameter = "16 mm"      # beside the cam; 0 mm where it ends at its pinion
+machine_shaft_diameter = @beside@ # beside the cam; 0 mm where it ends at its pinion
 source = { text = "ISO 6336-5, case-hardened steel, quality MQ", confirmed = false }
 
 [roller]

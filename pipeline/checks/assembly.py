@@ -379,7 +379,7 @@ def _of_shaft(demand: Demand, solution: Solution) -> Demand:
     diameter of the shaft.
     """
     numbers, limit = solution.numbers, solution.machine.limits[ASSEMBLY_GAP]
-    shaft, tip = camshaft_of(solution.machine), solution.contour.radius_max().value
+    shaft, tip = camshaft_of(solution.machine), solution.greatest_radius
     stated = gear_of(shaft).machine_shaft_diameter
     numbers = numbers | with_swing(solution.cams.values())
     gaps = _beside_shaft(tip, numbers)
@@ -437,6 +437,40 @@ machine_shaft_gap = check(
     remark=_of_shaft,
     deviation=1e-4,
 )(contour_radius)
+
+
+@check(
+    ASSEMBLY_GAP,
+    id="groove_shaft_gap",
+    title="Gap between the disc of a groove or {follower} and the machine shaft",
+    tier=Tier.SCREENING,
+    formula="min(a - R, b) - r >= g; a: centre distance, gear and pinion radius, R:"
+    " cam.groove.outer_radius, b: distance of the machine shaft, at camshaft.mesh_angle, from the"
+    " follower at its lowest, of an arm from arm, hub, fork, roller and linked spring over the"
+    " swing, r: half of camshaft.gear.machine_shaft_diameter, else at most the pinion radius, g:"
+    " limits.assembly_gap; none where the diameter is 0, as the shaft ends at its pinion",
+    symbols={**dict.fromkeys(("a", "b", "r"), f"{STATED} [mm]"), "R": "cam.groove.outer_radius"},
+    reason="A disc that strikes the machine shaft does not turn.",
+    method="centre distance less the radius of the disc, and distance from the roller with fork,"
+    " less the radius of the machine shaft",
+    moved_by_tolerance=False,
+    part="gear",
+    needs="roller",
+    closed_by="groove",
+    load_cases=NONE,
+    levers=(levers.one("cam.groove.outer_radius", -1, 1.5),),
+    page="Camshaft",
+).measured(
+    "case",
+    value=_with_shaft,
+    applies=lambda _, numbers: np.array(numbers.get(_DIAMETER) != 0.0),
+    known=with_swing,
+    remark=_of_shaft,
+    deviation=1e-4,
+)
+def groove_shaft_gap(cam: LoadedCam) -> Array:
+    """Radius of the disc around the groove, m."""
+    return np.asarray(cam.numbers["cam.groove.outer_radius"])
 
 
 _WEIGHT = "camshaft.counterweight"

@@ -144,6 +144,14 @@ class Solution(Displayed):
         """Minimum radius of the contour of all discs, m."""
         return min(float(each.contour.radius_min().value) for each in self.discs)
 
+    @property
+    def greatest_radius(self) -> float:
+        """Maximum radius of all discs, m: of their contours, or of the disc around a groove."""
+        groove = self.machine.cam.groove
+        if groove is not None:
+            return groove.outer_radius
+        return max(float(each.contour.radius_max().value) for each in self.discs)
+
     @cached_property
     def numbers(self) -> Numbers:
         """Numbers of the machine in the design load case, and the greatest cam speed."""

@@ -262,8 +262,9 @@ def headline(solution: Solution) -> HeadlineRecord:
         "torque_p2p_after_Nm": None if after is None else float(np.ptp(after)),
         "torque_mean_Nm": None if design is None else design.mean,
         "lift_max_mm": _MM * contour.lift.highest.value,
-        "pressure_angle_max_deg": float(np.degrees(contour.pressure_angle_max().value)),
-        "pitch_radius_of_curvature_min_mm": _MM * contour.least_convex_pitch_radius().value,
+        "pressure_angle_max_deg": _steepest(solution),
+        "pitch_radius_of_curvature_min_mm": _MM
+        * min(each.contour.least_convex_pitch_radius().value for each in solution.discs),
         "normal_force_min_N": min(map(_least_force, solution.cycles)),
         "normal_force_max_N": over(lambda c: c.loads.normal_force),
         "p0_max_MPa": contact(lambda h: h.p0, _MPA),
@@ -290,15 +291,25 @@ def _least_force(cycle: Cycle) -> float:
     return float(loads.normal_force.min())
 
 
+def _steepest(solution: Solution) -> float:
+    """Maximum pressure angle on all discs, deg."""
+    return max(
+        float(np.degrees(each.contour.pressure_angle_max().value)) for each in solution.discs
+    )
+
+
 def figures(trial: Trial) -> CamFigures:
     """Figures of a cam and of its load cases, in mm, deg, rpm, N, N m and MPa.
 
-    Extremes are refined between the samples. Of a load case in which the follower leaves the cam
-    or locks the speed and the least contact force alone are stated, the others are None.
+    Those of the cam are the worst of all its discs. Extremes are refined between the samples. Of a
+    load case in which the follower leaves the cam or locks the speed and the least contact force
+    alone are stated, the others are None.
     """
-    contour, groove = trial.contour, trial.case.cam.groove
-    disc = None if groove is None else groove.outer_radius
-    convex = greatest(contour.curvature, contour.lift.search_count).value
+    solution = trial.solution
+    convex = max(
+        greatest(each.contour.curvature, each.contour.lift.search_count).value
+        for each in solution.discs
+    )
 
     def peak(values: Array, scale: float = 1.0) -> float | None:
         value = scale * sampled_peak(values).value
@@ -329,9 +340,9 @@ def figures(trial: Trial) -> CamFigures:
         )
     return {
         "lift_max_mm": _MM * trial.lift.highest.value,
-        "pressure_angle_max_deg": float(np.degrees(contour.pressure_angle_max().value)),
+        "pressure_angle_max_deg": _steepest(solution),
         "convex_radius_min_mm": _MM / convex if convex > 0.0 else None,
-        "cam_radius_max_mm": _MM * (contour.radius_max().value if disc is None else disc),
+        "cam_radius_max_mm": _MM * solution.greatest_radius,
         "load_cases": rows,
     }
 

@@ -34,6 +34,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_GROOVE, "test_walls_by_points_and_distances"): (
         "outer_undercut", "outer_second_contact", "groove_radius", "groove_clearance",
     ),
+    (_GROOVE, "test_the_disc_clears_the_machine_shaft"): ("groove_shaft_gap",),
     (_GROOVE, "test_landings_by_an_adaptive_integrator"): (
         "landing_speed", "landing_pressure",
     ),

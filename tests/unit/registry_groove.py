@@ -27,6 +27,14 @@ def changed(**values) -> Solution:
     return made.changed_solution(base, case=made.changed(base.case, cam=cam))
 
 
+def beside(diameter: float | None, outer: float = 0.060) -> Solution:
+    """A disc of an outer radius, m, with a machine shaft 75 mm from the camshaft."""
+    base = changed(outer_radius=outer)
+    gear = made.changed(made.case().camshaft.gear, machine_shaft_diameter=diameter)
+    shaft = made.changed(made.case().camshaft, gear=gear, gear_radius=0.05)
+    return made.changed_solution(base, case=made.changed(base.case, camshaft=shaft))
+
+
 def spaced(spacing: float) -> Solution:
     """The pair of discs at another distance along the shaft, m."""
     base = made.on_two_discs()
@@ -529,6 +537,15 @@ by_limit(
     90.0,
     "as stated",
     base=made.in_groove,
+)
+by_limit(
+    "groove_shaft_gap",
+    "assembly_gap",
+    lambda: beside(0.02, np.nan),
+    5.0,
+    "75 mm of centre distance less 60 of the disc and 10 of the shaft",
+    base=lambda: beside(0.02),
+    missing=lambda: beside(None),
 )
 by_limit(
     "second_disc_gap",

@@ -114,8 +114,8 @@ DRAWN = {
     "key_corner", "minimum_wall",
     "pressure_angle", "second_contact", "self_intersection", "spring_buckling", "tool_gouge",
     "tooth_count", "tooth_ratio", "torsion_gap", "undercut",
-    "groove_radius", "second_disc_gap", "second_track_gap", "outer_second_contact",
-    "outer_undercut",
+    "groove_radius", "groove_shaft_gap", "second_disc_gap", "second_track_gap",
+    "outer_second_contact", "outer_undercut",
 }  # fmt: skip
 """Checks of lengths alone, which the drawing fixes."""
 

@@ -23,7 +23,7 @@ from scipy.integrate import quad, solve_ivp
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.pipeline.base.tables import Table
-from camwright.pipeline.case.case_file import case_of, parse_case, read_case
+from camwright.pipeline.case.case_file import case_of, parse_case, read_case, with_values
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.form_closure import PLATE_MOMENT
@@ -315,6 +315,17 @@ def test_walls_by_points_and_distances():
     assert GROOVE.check("outer_second_contact").demand == 0.0
     assert GROOVE.check("groove_radius").demand == 0.125
     assert GROOVE.check("groove_clearance").demand == pytest.approx(8.0 / 20.0)
+
+
+def test_the_disc_clears_the_machine_shaft():
+    """groove_shaft_gap by hand: both shafts turn at one speed, so their distance is twice 60 mm."""
+    case = GROOVE.trial.case
+    beside = with_values(case, {"camshaft.gear.machine_shaft_diameter": "16 mm"})
+    gap = next(
+        each for each in preview_case(beside, corners=False).checks if each.id == "groove_shaft_gap"
+    )
+    assert gap.status == "fail"
+    assert gap.demand == pytest.approx(0.120 - 0.125 - 0.008, abs=1e-12)
 
 
 def test_landings_by_an_adaptive_integrator():
