@@ -34,6 +34,7 @@ from camwright.pipeline.follower.follower_forces import (
     share_left,
     wall_of,
 )
+from camwright.pipeline.follower.friction_coupling import balanced
 from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany, bearing_under_couple
 from camwright.pipeline.follower.pivot_forces import ArmPivot, PivotBalance, Pressed, Pull
 from camwright.pipeline.screening.design_lengths import (
@@ -276,8 +277,8 @@ class ScreenedCam(CarriedCam):
         (m, n), with the friction of the guides.
 
         The axial force is that without friction over the share that the friction leaves of it, and
-        the load ratios are those of the table at that force: repeated until the force settles. They
-        change little with the force, so that a few rounds do; NaN where they do not.
+        the load ratios are those of the table at that force. They change little with it, so that a
+        few rounds do, but for some near the lock.
 
         Parameters
         ----------
@@ -291,20 +292,26 @@ class ScreenedCam(CarriedCam):
         )
         free = self._free.ravel()
         direction = np.broadcast_to(self.direction, shape).ravel()
-        axial, left = free.copy(), np.flatnonzero((free * load > 0.0) & (direction != 0.0))
-        for _ in range(_FRICTION_ROUNDS):
-            if not left.size:
-                break
-            now, place = axial[left], supports.place.of(left)
-            ratios = supports.table.rubbing(now * load[left], place)
-            jam = ratios[0] * rubs[0][left] + ratios[1] * rubs[1][left]
-            axial[left] = free[left] / share_left(direction[left], jam)
-            left = left[np.abs(axial[left] - now) > _FRICTION_SETTLED * now]
-        unsettled = np.zeros(free.size)
-        unsettled[left] = np.nan
-        factor = supports.factor + unsettled.reshape(shape)
+
+        rubbed = np.flatnonzero((free * load > 0.0) & (direction != 0.0))
+
+        def following(axial: Array, of: NDArray[np.intp]) -> Array:
+            """Axial force with the friction at an axial force, N, at places of `rubbed`."""
+            at = rubbed[of]
+            ratios = supports.table.rubbing(axial * load[at], supports.place.of(at))
+            jam = ratios[0] * rubs[0][at] + ratios[1] * rubs[1][at]
+            return np.asarray(free[at] / share_left(direction[at], jam))
+
+        least, outward, axial = free[rubbed], direction[rubbed] > 0.0, free.copy()
+        axial[rubbed], _ = balanced(
+            following,
+            np.where(outward, least, 0.0),
+            np.where(outward, least / JAM_FLOOR, least),
+            least,
+            _FRICTION_SETTLED * least,
+        )
         on_a, on_b = supports.rubbing(axial.reshape(shape))
-        return OfGuides(on_a * factor, on_b * factor)
+        return OfGuides(on_a * supports.factor, on_b * supports.factor)
 
     @cached_property
     def guides(self) -> GuideLoads:

@@ -250,6 +250,23 @@ def test_a_few_designs_agree_with_their_previews(name: str, count: int, judged: 
     assert exceeded(worst) == {}
 
 
+def test_a_follower_near_the_lock_has_a_jam_index() -> None:
+    """Its friction and axial force raise each other, so that plain rounds on both never settle."""
+    near = {
+        "spring.rate": 16.8e3, "spring.preload": 244.0, "cam.prime_radius": 51.1e-3,
+        "cam.offset": -4.49e-3, "follower.mass": 0.136, "guides.spacing": 0.1146,
+        "guides.a.friction": 0.0388, "guides.b.friction": 0.1117,
+        "follower.overhang_at_max_lift": 26.8e-3,
+    }  # fmt: skip
+    factors = {key: np.array([value]) for key, value in near.items()}
+    case, key = read_case(CASES / "gx120.toml"), "jam_index_friction_max"
+    row = screen_designs(case, factors, positions=180)
+    (preview,) = previewed(case, factors)
+    index = next(check.demand for check in preview.checks if check.id == key)
+    assert index is not None and 1.0 < index == pytest.approx(row[f"{key}.demand"][0], rel=0.01)
+    assert row[f"{key}.status"][0] == "fail"
+
+
 def test_many_shapes_of_contact_fail_by_plane_strain_alone() -> None:
     """Beyond 16 shapes the pressure along the line is bounded by plane strain, from below."""
     case = read_case(CASES / "gx120.toml")
