@@ -299,6 +299,10 @@ def _closure(case: Case) -> None:
         if case.spring.absent and bearing.ring is not None and bearing.C0 is None:
             limit = "given with a ring and without a spring"
             raise InputError(f"{table}.C0", "missing", limit)
+        for name in ("drag_torque", "friction") if table == SECOND_BEARING else ():
+            if getattr(bearing, name) is not None:
+                limit = f"left out: the drag of both rollers is that of {Bearing.table}"
+                raise InputError(f"{table}.{name}", "stated", limit)
 
 
 def _stores(case: Case, stated_as: str) -> None:

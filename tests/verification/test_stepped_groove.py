@@ -465,6 +465,8 @@ SECOND = "cam.groove.second"
         ('radius = "21 mm"\ns', 'radius = "70 mm"\ns', f"{SECOND}.radius = 70 mm, must be < "),
         ('relief = "0.5 mm"', 'relief = "0.5 mm"\nbearing = { name = "b", C0 = "200 kN" }',
          f"{SECOND}.bearing.C0 = 200 kN, must be <="),
+        ('relief = "0.5 mm"', 'relief = "0.5 mm"\nbearing = { name = "b", friction = 0.002 }',
+         f"{SECOND}.bearing.friction = stated, must be left out: the drag of both rollers"),
         ('relief = "0.5 mm"', 'relief = "0.5 mm"\nbearing.card = "track_roller_47x18"',
          f"{SECOND}.radius = 21 mm, must be >= 23.5 mm, half of {SECOND}.bearing.ring"),
         ('radius = "21 mm"\nspacing', 'spacing', f"{SECOND}.radius = missing"),
