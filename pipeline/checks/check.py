@@ -307,7 +307,9 @@ class Measured(NamedTuple):
         return measure(cam) / limit if self.worst == "greatest" else 1.0 + limit - measure(cam)
 
 
-ClosedBy = Literal["", "force", "form", "plate", "groove", "rollers", "conjugate", "yoke"]
+ClosedBy = Literal[
+    "", "force", "form", "plate", "groove", "rollers", "conjugate", "preload", "yoke"
+]
 HELD = ("form", *TWO_TRACKS)
 """Of them those of a cam that pulls its follower."""
 
@@ -342,7 +344,8 @@ class Declaration:
     closed_by : str            what keeps the follower on the cam: "force", of a spring or weight,
                                or "form", of a second track;
                                "plate": any cam of plates; "groove", "conjugate", "yoke": that
-                               closure; "rollers": two rollers in a groove;
+                               closure; "rollers": two rollers in a groove; "preload": discs
+                               with an interference;
                                "": any
     part : str                 part of the scope that it judges; "": cam or follower
     if_limited : bool          it is made only where the case sets its limit

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_greatest
+from camwright.geometry.follower_path import Motion
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -22,7 +24,8 @@ from camwright.pipeline.checks import demands
 from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.cam_shape import contour_radius
 from camwright.pipeline.checks.check import FACTOR_MAX, NONE, RIPPLE, STATED, Demand, Kept, check
-from camwright.pipeline.checks.extremes import Extreme, cycle_of
+from camwright.pipeline.checks.extremes import Extreme, cycle_of, row_of
+from camwright.pipeline.checks.form_closure import INTERFERENCE
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.checks.torque_balance import least_reduction
 from camwright.pipeline.contact.tiers import Tier
@@ -99,11 +102,11 @@ cam_radius = check(
 _HEIGHT, _LENGTH = "cam.waviness", "cam.waviness_length"
 
 
-def _wave_force(cam: LoadedCam) -> Array:
-    """Amplitude of the inertia force of the follower on the waves of the track (..., n), N, at the
-    speed of the contour.
+def _wave_force(cam: LoadedCam, motion: Motion) -> Array:
+    """Amplitude of the inertia force of the follower on the waves of a track (..., n), N, at the
+    speed of its contour.
     """
-    numbers, speed = cam.numbers, cam.speed * cam.motion.contour_speed
+    numbers, speed = cam.numbers, cam.speed * motion.contour_speed
     amplitude = 0.5 * numbers[_HEIGHT]
     square: Array = (FULL_TURN * speed / numbers[_LENGTH]) ** 2
     return numbers["follower.mass"] * amplitude * square
@@ -113,7 +116,7 @@ def _force_of_waves(cam: LoadedCam, limit: float) -> Array | None:
     """No constraint without a height of the waves."""
     if cam.numbers.get(_HEIGHT) is None:
         return None
-    return demands.over_normal_force(cam, _wave_force(cam) / limit)
+    return demands.over_normal_force(cam, _wave_force(cam, cam.motion) / limit)
 
 
 def _waves_in_words(demand: Demand, solution: Solution) -> Demand:
@@ -153,7 +156,107 @@ def _waves_in_words(demand: Demand, solution: Solution) -> Demand:
 )
 def profile_waviness(cam: LoadedCam) -> Array:
     """Inertia force of the follower by contour waviness over the contact force."""
-    return demands.over_contact_force(_wave_force(cam), cam.normal, cam.least_spring)
+    waves = _wave_force(cam, cam.motion)
+    return demands.over_contact_force(waves, cam.normal, cam.least_spring)
+
+
+class _PressedWaves(NamedTuple):
+    """Waves on both of preloaded discs (..., n), N: inertia force of the follower on them along the
+    travel of the first roller, shares of it that each disc bears, and force left on each.
+    """
+
+    inertia: Array
+    shares: tuple[Value, Value]
+    left: tuple[Array, Array]
+    preload: Array
+
+    @classmethod
+    def of(cls, cam: LoadedCam) -> _PressedWaves | None:
+        """Of a cam; None without an interference.
+
+        The mass on both tracks as springs follows the waves of a track by its share of their
+        stiffness; their phases are the worst.
+        """
+        squeeze, numbers = cam.squeeze, cam.numbers
+        if squeeze is None:
+            return None
+        shares, forces = (squeeze.share, 1.0 - squeeze.share), squeeze.forces(cam.axial)
+        damping, amplitude = numbers["follower.damping_ratio"], 0.5 * numbers[_HEIGHT]
+        inertia: Array = np.zeros(squeeze.preload.shape)
+        for body, force, share in zip(cam.on_bodies, forces, shares, strict=True):
+            pressed = np.real(force) > 0.0
+            along = np.where(pressed, body.normal, 1.0) / np.where(pressed, force, 1.0)
+            rigid = _wave_force(cam, body.motion)
+            square = rigid / (amplitude * squeeze.stiffness)
+            grown = np.sqrt((1.0 - square) ** 2 + (2.0 * damping) ** 2 * square)
+            inertia = inertia + share * along * rigid / grown
+        lost = squeeze.preload * numbers["cam.profile_tolerance"] / numbers[INTERFERENCE]
+        return cls(inertia, shares, (forces[0] - lost, forces[1] - lost), squeeze.preload)
+
+    @property
+    def used(self) -> tuple[Array, Array]:
+        """Change of the force on each disc over the force left, the latter at least a share of the
+        preload.
+        """
+        first, second = (
+            demands.over_contact_force(share * self.inertia, left, self.preload)
+            for share, left in zip(self.shares, self.left, strict=True)
+        )
+        return first, second
+
+
+def _pressed_waves_in_words(demand: Demand, solution: Solution) -> Demand:
+    worded = _waves_in_words(demand, solution)
+    if demand.at is None:
+        return worded
+    cycle, k = row_of(solution.cycles, demand.at)
+    waves = _PressedWaves.of(solution.cams[cycle])
+    if waves is None:
+        return worded
+    disc = first_greatest([float(each[k]) for each in waves.used])
+    share = float(np.broadcast_to(waves.shares[disc], waves.inertia.shape)[k])
+    stated = {"b": share, "I": float(waves.inertia[k]), "F": float(waves.left[disc][k])}
+    return replace(worded, stated=stated)
+
+
+@check(
+    WAVINESS,
+    id="preload_waviness",
+    title="Waviness inertia force / force left on either preloaded disc",
+    tier=Tier.SCREENING,
+    formula="max b I/F <= c; b: share of an axial force that a disc bears, k/K, k: stiffness of its"
+    " roller with what holds it along the travel of the first roller, K: sum of both, I: sum of b m"
+    " w W^2/sqrt((1 - r^2)^2 + (2 zeta r)^2) over both discs, m: follower.mass, w: a along that"
+    " travel, a: half of cam.waviness_height as of profile_waviness, W: 2 pi v/lambda, v: speed of"
+    " the contact along the contour, lambda: cam.waviness_length, r: W/sqrt(K/m), zeta:"
+    " follower.damping_ratio, F: force on the disc along the travel, with an interference less by"
+    " cam.profile_tolerance, c: limits.waviness",
+    symbols={"b": STATED, "I": f"{STATED} [N]", "F": f"{STATED} [N]"},
+    reason="Waves of the surface unload the contact and mark it; how far they narrow the"
+    " interference by themselves is within the profile tolerance, see preload_least.",
+    method="mass on the springs of both rollers over sine waves of both discs in the worst phase",
+    values=(
+        *given.LOADS,
+        *("cam.process", "cam.waviness_*", "cam.profile_tolerance", "follower.damping_ratio"),
+        INTERFERENCE,
+    ),
+    levers=(
+        levers.one(INTERFERENCE),
+        levers.one("cam.profile_tolerance", -1, 10.0),
+        levers.MASS,
+        *levers.GENTLER,
+    ),
+    needs="roller",
+    closed_by="preload",
+    page="Cam",
+).measured("angles", needed=(_HEIGHT,), remark=_pressed_waves_in_words, deviation=0.05)
+def preload_waviness(cam: LoadedCam) -> Array:
+    """Change of the force on either preloaded disc by contour waviness over the force left."""
+    waves = _PressedWaves.of(cam)
+    if waves is None:
+        return np.full(np.shape(cam.normal), np.nan)
+    first, second = waves.used
+    return np.where(np.real(first) > np.real(second), first, second)
 
 
 @check(

@@ -461,6 +461,8 @@ class CamBody(Part):
         force = "form" if self.pulls else "force"
         if self.on_pin is not None:
             return self.closure, force, "rollers"
+        if self.conjugate is not None and self.conjugate.interference is not None:
+            return self.closure, force, "plate", "preload"
         return (self.closure, force) if self.groove is not None else (self.closure, force, "plate")
 
     @property

@@ -382,6 +382,11 @@ class LoadedCam:
         """The cam seen from the track that bears less, of preloaded discs; None of others."""
         return None
 
+    @property
+    def squeeze(self) -> Squeezed | None:
+        """Preload of both discs with their interference; None without one."""
+        return None
+
     @cached_property
     def reactions(self) -> tuple[Reaction, Reaction]:
         """Loads of guides on points over the axial force."""
@@ -958,11 +963,6 @@ class CarriedCam(LoadedCam):
     @property
     def second(self) -> SecondMotion | None:
         """Motion of a second roller or face; None without one."""
-        return None
-
-    @property
-    def squeeze(self) -> Squeezed | None:
-        """Preload of both discs with their interference; None without one."""
         return None
 
     @cached_property

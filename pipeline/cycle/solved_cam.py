@@ -20,6 +20,7 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import BodyContact, LoadedCam, OfGuides, on_wall
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.speed_sweep import highest_speed
+from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import Loads
 
 
@@ -268,6 +269,13 @@ class SolvedCam(ForcesCam):
     def shaft_tilts(self) -> tuple[Array, ...]:
         other = self.cycle.on_other_track
         return (self.shaft_tilt,) if other is None else (self.shaft_tilt, other.shaft_tilt)
+
+    @property
+    def squeeze(self) -> Squeezed | None:
+        preload, second = self.cycle.machine.disc_preload, self.loads.second
+        if preload is None or second is None:
+            return None
+        return preload.at(second.track(self.contour.pitch), self.loads.theta)
 
     @property
     def on_other_track(self) -> Self | None:

@@ -26,10 +26,13 @@ class Squeezed(NamedTuple):
     ----------
     preload : array (n,)          P, N, > 0
     share : float or array (n,)   b, of the axial force that the first bears
+    stiffness : float or array (n,)   of both tracks together against the follower mass, along the
+                                  travel of the first roller, N/m
     """
 
     preload: Array
     share: Value
+    stiffness: Value = np.inf
 
     @classmethod
     def joined(cls, every: Sequence[Squeezed]) -> Squeezed:
@@ -39,7 +42,9 @@ class Squeezed(NamedTuple):
 
     def part(self, at: NDArray[np.intp]) -> Squeezed:
         """Preload at the positions of these numbers."""
-        return Squeezed(self.preload[at], np.broadcast_to(self.share, self.preload.shape)[at])
+        shape = self.preload.shape
+        others = (np.broadcast_to(each, shape)[at] for each in (self.share, self.stiffness))
+        return Squeezed(self.preload[at], *others)
 
     def forces(self, axial: Array) -> tuple[Array, Array]:
         """Forces (n,) of the first and of the second track at axial forces (n,), N, >= 0."""
@@ -100,7 +105,9 @@ def squeezed(
     near = compliances.first + compliances.at_first * _product(first, first) + bent_back
     far = compliances.second * leverage**2 + compliances.at_second * _product(second, second)
     far = far + bent_back
-    return Squeezed(np.asarray(closed / (near + far)), far / (near + far))
+    both = near + far
+    stiffness = both / (near * far - bent_back * both)
+    return Squeezed(np.asarray(closed / both), far / both, stiffness)
 
 
 def _product(one: Pushing, other: Pushing) -> Value:

@@ -59,6 +59,7 @@ _CLOSED = {
     "groove": "; in a groove only",
     "rollers": "; of two rollers in a groove only",
     "conjugate": "; of a conjugate pair only",
+    "preload": "; of preloaded discs only",
     "yoke": "; in a yoke only",
 }
 """Words by what keeps the follower on the cam, see `Declaration.closed_by`."""

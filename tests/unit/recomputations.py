@@ -49,6 +49,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "second_track_gap",
     ),
     (_PAIR, "test_the_preload_is_judged_on_both_discs"): ("preload_least", "preload_pressure"),
+    (_PAIR, "test_waves_of_preloaded_discs_by_an_integrator"): ("preload_waviness",),
     (_GROOVE, "test_the_rim_is_a_cantilever_plate"): ("groove_wall",),
     (_STEPS, "test_the_bearing_of_each_roller_by_its_own_forces"): (
         "second_roller_static", "second_roller_life", "second_roller_load_share",

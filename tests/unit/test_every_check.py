@@ -75,7 +75,7 @@ MUST_HAVE = {
     *("shaft_bearing_static", "shaft_bearing_life", "gear_bending", "pinion_bending"),
     *("gear_contact", "gear_impact", "cam_unbalance"),
     # manufacture
-    *("profile_waviness", "chord_error"),
+    *("profile_waviness", "preload_waviness", "chord_error"),
     # verification
     *("guide_equilibrium_force", "guide_equilibrium_moment", "contact_equilibrium"),
     *("contact_complementarity", "certificate_spread", "certificate_gci", "mesh_angle"),

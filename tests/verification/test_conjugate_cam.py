@@ -20,7 +20,7 @@ from held_cams import (
     running_in,
     turned_by_friction,
 )
-from scipy.integrate import cumulative_trapezoid
+from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.form_closure import groove_wall
@@ -451,6 +451,51 @@ def test_the_film_of_each_preloaded_disc_goes_on_where_the_other_bears_more():
         assert np.abs(first - second)[changes].min() > 0.0
     checks = {each.id: each for each in trial("pressed").checks}
     assert checks["film_ratio"].demand == pytest.approx(min(thinnest), rel=1e-12)
+
+
+def test_waves_of_preloaded_discs_by_an_integrator():
+    """The mass between both rollers over the sine of each disc, on the camshaft that both bend,
+    integrated until it recurs: what it adds to the forces of a slow motion over the same sines, in
+    the worst phase; 1e-3.
+    """
+    checks = {each.id: each for each in trial("pressed").checks}
+    judged = checks["preload_waviness"]
+    cycle = next(c for c in trial("pressed").cycles if c.load_case == judged.load_case)
+    machine, track = cycle.machine, cycle.machine.cam.second.track(cycle.contour.pitch)
+    theta, scales, step = np.array([judged.cam_angle]), (1.0, 90.0 / 85.0), 1e-5
+    near, far, *bent = machine.roller_compliances
+    pushes, waves, speeds = [], [], []
+    for contour, scale in zip((cycle.contour, track.contour), scales, strict=True):
+        outward = (contour.pitch.points(theta) - contour.points(theta))[:, 0]
+        along = contour.points(theta + step) - contour.points(theta - step)
+        speeds.append(machine.cam_speed * np.hypot(*along)[0] / (2.0 * step))
+        waves.append(scale / np.cos(contour.pitch.pressure_angle(theta))[0])
+        pushes.append(waves[-1] * outward / np.hypot(*outward))
+    at_first, between, at_second = bent
+    beside = between * pushes[0] @ pushes[1]
+    own = near + at_first * pushes[0] @ pushes[0]
+    other = far * scales[1] ** 2 + at_second * pushes[1] @ pushes[1]
+    springs, ways = np.linalg.inv([[own, beside], [beside, other]]), np.array([1.0, -1.0])
+    whole, added = ways @ springs @ ways, 0.0
+    damper = 2.0 * machine.damping_ratio * np.sqrt(whole * machine.mass)
+    for disc, (wave, speed) in enumerate(zip(waves, speeds, strict=True)):
+        rate, sine = 2.0 * np.pi * speed / 5e-3, 2e-6 * wave * np.eye(2)[disc]
+
+        def rates(time, state, rate=rate, sine=sine):
+            forces = springs @ (np.sin(rate * time) * sine - state[0] * ways)
+            return state[1], (ways @ forces - damper * state[1]) / machine.mass
+
+        turns = 2.0 * np.pi / rate * np.linspace(60.0, 61.0, 400)
+        swung = solve_ivp(
+            rates, (0.0, turns[-1]), (0.0, 0.0), "DOP853", turns, rtol=1e-8, atol=1e-14
+        )
+        added += machine.mass * rate**2 * np.abs(swung.y[0]).max()
+    squeeze = machine.disc_preload.at(track, theta)
+    axial = np.interp(theta, cycle.theta, cycle.loads.axial_force)
+    left = np.array(squeeze.forces(axial))[:, 0] - squeeze.preload[0] * 8.0 / 20.0
+    used = np.abs(springs @ ways) / whole * added / left
+    assert judged.demand == pytest.approx(used.max(), rel=1e-3)
+    assert 0.02 < judged.demand < judged.limit == 0.2
 
 
 def test_the_preload_is_judged_on_both_discs():

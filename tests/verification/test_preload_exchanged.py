@@ -12,18 +12,15 @@ import pytest
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.cycle.certificate_angles import length_loads
 from camwright.pipeline.follower import disc_preload
-from camwright.pipeline.follower.disc_preload import DiscPreload, Squeezed
+from camwright.pipeline.follower.disc_preload import DiscPreload
 from camwright.pipeline.preview import preview_case
 
 FILE = Path(__file__).parents[1] / "data" / "preloaded_arm.toml"
 DISTANCE, FIRST, SECOND, BETWEEN, STROKE, PRIME = 100.0, 90.0, 85.0, 79.0, 5.5, 64.0  # mm, deg
 OWN = {
-    # places of the first disc, its arm and its guides, and masses of their parts
-    *("arm_cam_gap", "fork_gap", "fork_shaft_gap", "gear_gap", "follower_mass"),
-    *("arm_fatigue_roller", "arm_yield"),
-    # the bush of the pivot is in the plane of the first disc, about which the other's couple is
-    *("pivot_edge_pressure", "pivot_pressure", "pivot_pv", "pivot_wear", "pivot_temperature"),
-    "pivot_expansion",
+    # places of the first disc and its arm, and masses of their parts
+    *("arm_gap", "arm_cam_gap", "fork_gap", "fork_shaft_gap", "gear_gap", "second_track_gap"),
+    *("follower_mass", "arm_fatigue_roller"),
     # the ring of the seat has the radius of the first disc
     *("cam_slip", "fit_yield"),
 }
@@ -38,12 +35,15 @@ def changed(text, pairs):
 
 
 def named():
-    """Rollers that differ, without a weight beside the pivot, which the first arm places."""
+    """Rollers that differ, both arms as far from the middle of the pivot; without a weight beside
+    the pivot, which the first arm places.
+    """
     return changed(FILE.read_text(encoding="utf-8"), {
         'mass_distance = "60 mm"': 'mass_distance = "1e-9 mm"',
         '[roller]\nradius = "23.5 mm"': '[roller]\nradius = "26 mm"',
         'prime_radius = "62 mm"': f'prime_radius = "{PRIME} mm"',
         'roller_radius = "22 mm"': 'roller_radius = "25 mm"',
+        'swing = "with"': 'swing = "with"\nplane_offset = "20 mm"',
         "positions = 720": "positions = 240",
         "[limits]": '[limits]\ncam_run_out = "0 um"',  # on the radius of the first disc
     })  # fmt: skip
@@ -82,7 +82,7 @@ def square_to_the_first(self, track, theta):
         self.interference, self.compliances, first, touch, track.leverage
     )
     square = self.interference / (touch.slide.lever * np.cos(touch.pressure_angle))
-    return Squeezed(preload.preload * along / square, preload.share)
+    return preload._replace(preload=preload.preload * along / square)
 
 
 @cache
@@ -103,6 +103,8 @@ def test_the_order_of_the_discs_changes_no_check():
     for name in set(judged) - OWN:
         assert other[name].demand == pytest.approx(one[name].demand, rel=2e-5, abs=1e-12), name
         assert other[name].status == one[name].status, name
+    gaps = [each[name].demand for each in (one, other) for name in ("arm_gap", "second_track_gap")]
+    assert gaps[:2] == pytest.approx(gaps[:1:-1], rel=1e-6)
 
 
 def test_the_contacts_of_either_disc_are_certified_by_their_own():
