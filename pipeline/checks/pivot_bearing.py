@@ -24,8 +24,8 @@ from camwright.pipeline.checks.check import (
     check,
 )
 from camwright.pipeline.checks.demands import rating_over
-from camwright.pipeline.checks.extremes import row_of
-from camwright.pipeline.checks.guide_strength import ARM_LENGTH
+from camwright.pipeline.checks.extremes import cam_of, row_of
+from camwright.pipeline.checks.guide_strength import ARM_LENGTH, TILTED
 from camwright.pipeline.checks.jump_and_jamming import outward
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
@@ -60,27 +60,30 @@ def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
         return demand
     cycle, k = row_of(solution.cycles, demand.at)
     loads, mu = cycle.parts.friction.greatest, cycle.machine.friction.greatest[0]
-    forces = {"R": float(np.hypot(*loads.pivot_load[:, k])), "F_a": float(loads.axial_force[k])}
+    pushes = np.hypot(*loads.pivot_load[:, k]) * cam_of(solution, cycle).bush_rubbing[k]
+    forces = {"R": float(pushes), "F_a": float(loads.axial_force[k])}
     return replace(demand, stated={**demand.stated, "mu": mu, **forces})
 
 
 def _friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     """Jam index over its limit; no constraint of a stem, whose guides have that limit, too."""
-    return None if cam.pivot is None else outward(cam, cam.jam) / limit
+    if cam.pivot is None:
+        return None
+    return outward(cam, np.asarray(cam.jam * cam.bush_rubbing)) / limit
 
 
 @check(
     JAM_INDEX,
     title="Maximum jam index of the pivot",
     method="greatest moment of the friction in the pivot over that of the axial cam force about it"
-    " on the rise; an axial force below 1 N counts as 1 N",
+    f" on the rise{TILTED}; an axial force below 1 N counts as 1 N",
     lift_can_help=True,
     tier=Tier.SCREENING,
     part="pivot",
     formula="max(mu d R/(2 l F_a)) <= j on the rise; mu: nominal friction of the pivot, d: diameter"
-    " of its pin, R: load of the pivot, l: length of the arm, F_a: axial force of the cam, j:"
-    " limits.jam_index.",
-    symbols=_FRICTION | {"R": "pivot_load", "F_a": "axial_force"},
+    " of its pin, R: pushes on both sides of its bush, or load of its needles, l: length of the"
+    " arm, F_a: axial force of the cam, j: limits.jam_index.",
+    symbols=_FRICTION | {"R": "pivot_rubbing_load", "F_a": "axial_force"},
     reason=_LOCKING,
     rests_on="contact",
     values=given.LOADS,
@@ -92,27 +95,30 @@ def _friction_kept(cam: LoadedCam, limit: float) -> Array | None:
 )
 def pivot_jam_index(cam: LoadedCam) -> Array:
     """Moment of the friction in the pivot over that of the cam on the rise."""
-    return outward(cam, cam.jam)
+    return outward(cam, np.asarray(cam.jam * cam.bush_rubbing))
 
 
 def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     """No constraint of a stem, and where the maximum friction is not known."""
     worst = cam.jam_worst
-    return None if cam.pivot is None or worst is None else outward(cam, worst) / limit
+    if cam.pivot is None or worst is None:
+        return None
+    return outward(cam, np.asarray(worst * cam.bush_rubbing)) / limit
 
 
 @check(
     JAM_INDEX,
     title="Maximum jam index of the pivot at maximum friction",
     method="greatest moment of the friction in the pivot over that of the axial cam force about it"
-    " on the rise, at its maximum friction; an axial force below 1 N counts as 1 N",
+    f" on the rise, at its maximum friction{TILTED}; an axial force below 1 N counts as 1 N",
     lift_can_help=True,
     tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="pivot",
     formula="max(mu d R/(2 l F_a)) <= j on the rise; mu: friction_max of the pivot or its friction"
-    " with the tolerance, d: diameter of its pin, R: load of the pivot and F_a: axial force of the"
-    " cam, both under it, l: length of the arm, j: limits.jam_index.",
+    " with the tolerance, d: diameter of its pin, R: pushes on both sides of its bush, or load of"
+    " its needles, and F_a: axial force of the cam, both under it, l: length of the arm, j:"
+    " limits.jam_index.",
     symbols=_FRICTION | {"R": f"{STATED} [N]", "F_a": f"{STATED} [N]"},
     reason=_LOCKING,
     rests_on="contact",
@@ -124,7 +130,9 @@ def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
 def pivot_jam_index_friction_max(cam: LoadedCam) -> Array:
     """Jam index of the pivot at its maximum friction."""
     worst = cam.jam_worst
-    return np.full_like(cam.jam, np.nan) if worst is None else outward(cam, worst)
+    if worst is None:
+        return np.full_like(cam.jam, np.nan)
+    return outward(cam, np.asarray(worst * cam.bush_rubbing))
 
 
 def _with_maker(demand: Demand, solution: Solution) -> Demand:

@@ -98,7 +98,9 @@ class PartLoads(Displayed):
                 "pivot_edge_pressure", "MPa", "Maximum pressure of the pin in the bush of the pivot"
             ): self.pivot_edge_pressure,
             Column(
-                "pivot_rubbing_load", "N", "Pushes on both sides of the bush of the pivot"
+                "pivot_rubbing_load",
+                "N",
+                "Pushes on both sides of the bush of the pivot, load of needles",
             ): self.pivot_rubbing,
             Column("guide_friction_power_A", "W", "Friction power of guide A"): self.heat_a,
             Column("guide_friction_power_B", "W", "Friction power of guide B"): self.heat_b,
@@ -214,9 +216,14 @@ def part_loads(
         ring_mean=mean,
         ring_correction=correction,
         pivot_edge_pressure=None if pivot is None else pivot.edge_pressure,
-        pivot_rubbing=None if bush is None else bush.rubbing,
+        pivot_rubbing=_rubbing(machine, loads) if bush is None else bush.rubbing,
         pivot_bearing=None if bush is None else bush.bearing,
     )
+
+
+def _rubbing(machine: Machine, loads: Loads) -> Array | None:
+    """Load of the needles of a pivot (n,), N; None without a pivot."""
+    return None if machine.pivot is None else np.hypot(*loads.pivot_load)
 
 
 def beyond_first(machine: Machine, loads: Loads) -> Array:

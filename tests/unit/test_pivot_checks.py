@@ -147,7 +147,9 @@ def test_bush_of_a_solved_arm_by_the_balance_of_its_forces():
 
 
 def test_jam_indices_of_a_solved_arm_by_moments():
-    """pivot_jam_index, nominal and at friction_max: moment of the friction over the contact's."""
+    """pivot_jam_index, nominal and at friction_max: moment of the friction over the contact's,
+    at the nominal share of the pushes on both sides of the bush in its load.
+    """
     for declared, friction, worst in (
         (pivot_bearing.pivot_jam_index, 0.1, False),
         (pivot_bearing.pivot_jam_index_friction_max, 0.2, True),
@@ -157,6 +159,7 @@ def test_jam_indices_of_a_solved_arm_by_moments():
             loads = each.parts.friction.greatest if worst else each.loads
             load, lever = carried(each, loads.normal_force)
             share = friction * 0.5 * PIN * load / (loads.normal_force * lever)
+            share = share * pushes_of(each)[0] / loads_of(each)
             greatest = max(greatest, share[np.sin(each.theta) > 1e-6].max())
         assert demand(declared) == pytest.approx(greatest, rel=5e-4)
 

@@ -65,6 +65,7 @@ LOADED = {
     "surged": by_hand.surged_force(),
     "torque": by_hand.DRIVE,
     "jam": 0.2 + 0.1 * made.WAVE,
+    "bush_rubbing": 1.2,
     "jam_worst": 0.3 + 0.1 * made.WAVE,
     "p0": PRESSURE,
     "p0_signed": 1.25 * PRESSURE,
@@ -112,8 +113,8 @@ def pivoted(numbers: Numbers) -> dict[str, Any]:
     watts = np.ones(made.POSITIONS)
     if pivot.bush is not None:
         watts *= (330.0 - pivot.ambient_temperature) / thermal_resistance(pivot.bush)
-    pushes = {"bush_rubbing": 1.2, "bush_bearing": 1.5}
-    return {**LOADED, **pushes, "pivot_load": 500.0 * np.abs(made.WAVE), "pivot_heat": watts}
+    load = 500.0 * np.abs(made.WAVE)
+    return {**LOADED, "bush_bearing": 1.5, "pivot_load": load, "pivot_heat": watts}
 
 
 def in_groove(numbers: Numbers) -> dict[str, Any]:
