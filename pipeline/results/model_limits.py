@@ -106,7 +106,8 @@ MODEL_LIMITS = (
         " independent slices. Over finite elements it has,"
         " under a load in the plane of the couple, 0.99 to 1.08 of the edge pressure on one side of"
         " the bush, 1.37 between both edges and a third of the elastic tilt; under a load beside"
-        " that plane 0.78 to 2.0 of the pressure, shown for a lined bush of 20 mm."
+        " that plane 0.78 to 2.0 of the pressure; and 0.97 to 1.23 of the pushes on both sides,"
+        " shown for a lined bush of 20 mm."
     ),
     ModelLimit(
         "An extension spring has no surge, and its hooks are bent by closed formulas; buckling,"

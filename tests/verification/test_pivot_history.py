@@ -12,7 +12,7 @@ from camwright.geometry.errors import ContactError
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.elasticity.radial_compliance import SolidBar
 from camwright.pipeline.contact.pin_in_bush import BushedPin, PinLoad, pin_in_bush
-from camwright.pipeline.cycle.part_loads import PivotPush, bore_of
+from camwright.pipeline.cycle.part_loads import BushLoad, PivotPush, bore_of
 from camwright.pipeline.cycle.pivot_history import BushGrid, pin_slopes, pivot_history
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -125,17 +125,28 @@ def test_a_contact_narrower_than_the_finest_grid_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("away", "share", "ratio"),
-    [(0, 0.0, 0.99), (0, 0.45, 1.08), (0, 0.5, 1.37), (45, 0.25, 0.78), (80, 0.25, 2.0)],
-)
-def test_slices_over_elements_are_as_stated(away, share, ratio):
-    """The ratios of the limits of the model, at 640 N."""
+    ("away", "share", "ratio", "pushes"),
+    [
+        (0, 0.0, 0.99, 1.0), (0, 0.45, 1.08, 1.0), (0, 0.5, 1.37, 0.97), (0, 1.0, 1.33, 0.97),
+        (45, 0.25, 0.78, 1.08), (80, 0.25, 2.0, 1.23),
+    ],
+)  # fmt: skip
+def test_slices_over_elements_are_as_stated(away, share, ratio, pushes):
+    """The ratios of the limits of the model, of the edge pressure and of the pushes on both sides,
+    at 640 N.
+    """
     force, aside = 640.0 * np.array([np.cos(np.radians(away)), np.sin(np.radians(away))])
     bush, couple = push().bush, share * 640.0 * push().bush.length
-    one = (np.array([each]) for each in (force, couple, aside / bush.length))
+    one = [np.array([each]) for each in (force, couple, aside / bush.length)]
     slices = PivotPush(bush, push().pin, *one).edge_pressure[0]
-    made = solid(1.5).pressed(PinLoad(force, aside, couple))
+    pin = solid(1.5)
+    made = pin.pressed(PinLoad(force, aside, couple))
+    along = np.linspace(pin.places[0], pin.places[-1], 2001)
+    line = np.hypot(*(np.interp(along, pin.places, each) for each in made.line))
     assert slices / made.peak == pytest.approx(ratio, rel=0.02)
+    assert BushLoad(bush, *one).rubbing[0] == pytest.approx(
+        pushes * np.trapezoid(line, along), rel=0.01
+    )
 
 
 def test_a_couple_without_a_force_and_angles_without_load():
