@@ -17,7 +17,7 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
 from camwright.geometry.contour import Contour
-from camwright.geometry.extrema import first_least
+from camwright.geometry.extrema import first_greatest, first_least
 from camwright.pipeline.base import disk_cache, levers
 from camwright.pipeline.base.material import Endurance, Material
 from camwright.pipeline.base.source import Source
@@ -41,7 +41,7 @@ from camwright.pipeline.checks.extremes import (
     greatest,
     on_both_tracks,
     pressed_row,
-    row_of,
+    tracks_of,
 )
 from camwright.pipeline.checks.missing_keys import (
     lacking,
@@ -391,7 +391,8 @@ def _of_the_line(solution: Solution) -> str:
     """Sentence on the middle of a crowned line, or else on conforming contacts."""
     if not solution.machine.is_crowned:
         return conforming_sentence(solution)
-    most = max((float(c.length.centre.max()) for c in solution.cycles if c.length), default=np.nan)
+    lines = [each.length for each in tracks_of(solution.cycles)]
+    most = max((float(each.centre.max()) for each in lines if each), default=np.nan)
     return f"in the middle of the crowned line, up to {most:.4g} times plane strain"
 
 
@@ -399,15 +400,16 @@ def conforming_sentence(solution: Solution) -> str:
     """Sentence on the conforming contacts of a preview: the greatest pressure among them, its error
     bar, half contact angle and pressure of Hertz, or where they are not known; "" without one.
     """
-    solved = [each for each in solution.cycles if each.contact.conforming.any()]
+    solved = [each for each in tracks_of(solution.cycles) if each.contact.conforming.any()]
     lost = sum(int(each.contact.unsolved.sum()) for each in solved)
     if lost:
         widest = shown(ANGLE_MAX, "deg", 3)
         return f"not known at {lost} angles, where the half contact angle exceeds {widest}"
     if not solved:
         return ""
-    worst = greatest(solved, lambda each: np.where(each.contact.conforming, each.contact.p0, 0.0))
-    cycle, k = row_of(solved, worst)
+    pressures = [np.where(each.contact.conforming, each.contact.p0, 0.0) for each in solved]
+    number = first_greatest([each.max() for each in pressures])
+    cycle, k = solved[number], first_greatest(pressures[number])
     contact = cycle.contact
     loaded = contact.line_load[[k]], contact.relative_radius[[k]]
     _, line = in_full(cycle.pair, cycle.theta[[k]], *loaded)

@@ -25,7 +25,9 @@ from scipy.integrate import cumulative_trapezoid, solve_ivp
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.form_closure import groove_wall
 from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.checks import contact_strength
 from camwright.pipeline.checks.arm_strength import arm_forces, bars_of
+from camwright.pipeline.checks.contact_strength import conforming_sentence
 from camwright.pipeline.checks.extremes import cam_of
 from camwright.pipeline.contact.closed_form import in_full
 from camwright.pipeline.contact.hertz import line_contact
@@ -432,6 +434,24 @@ def test_the_harder_pressed_disc_is_judged():
     assert headline(trial("pressed").solution)["p0_hertz_max_MPa"] == pytest.approx(
         1e-6 * greatest, rel=1e-9
     )
+
+
+def test_the_conforming_contact_of_either_disc_is_named(monkeypatch):
+    """At the greatest pressure of the disc whose contacts conform, that which bears less too."""
+    cycle = trial("pressed").cycles[0]
+    idle, seen = cycle.idle, []
+    conforming = replace(idle, tau_max=0.9 * idle.tau_max)
+    assert conforming.conforming.all() and not cycle.contact.conforming.any()
+    solution = replace(trial("pressed").solution, cycles=(replace(cycle, idle=conforming),))
+
+    def solved(pair, theta, *loaded):
+        seen.append((float(theta[0]), float(pair.carrying(float(theta[0])).follower.radius)))
+        return None, SimpleNamespace(p0=[1e9], error=[0.01], half_angle=[0.1], p0_hertz=[2e9])
+
+    monkeypatch.setattr(contact_strength, "in_full", solved)
+    assert "up to 1000 MPa" in conforming_sentence(solution)
+    k = int(np.argmax(idle.p0))
+    assert seen == [(cycle.theta[k], 23.5e-3 if cycle.loads.wall[k] < 0.0 else 22e-3)]
 
 
 def test_the_film_of_each_preloaded_disc_goes_on_where_the_other_bears_more():
