@@ -169,6 +169,8 @@ class ScenarioCam(CarriedCam):
     def wall(self) -> Array:
         if self.alone:
             return np.full(np.shape(self.required), self.alone)
+        if self.scenario.wall is not None:
+            return self.scenario.wall
         if self.facing is None and self._in_guides is not None:
             return wall_of(self.axial, held=True)
         return super().wall
@@ -218,6 +220,11 @@ class ScenarioCam(CarriedCam):
         reach = 0.5 * cell * magnitude(self.jet.lift_d2)
         within = np.abs(np.real(self.slope)) < np.real(reach)
         return np.where(within, self.slope / np.where(within, reach, 1.0), sharp)
+
+    @property
+    def crosses(self) -> bool:
+        """Whether its force changes the track where it changes its sign, whatever the friction."""
+        return self.pulls and self.pivot is None and self.squeeze is None
 
     @property
     def surge(self) -> Array:

@@ -74,9 +74,29 @@ class Reach:
 
 
 @dataclass(frozen=True, eq=False)
+class IdleForces:
+    """Forces y on the track that does not carry, further unknowns of a cone program after x: y >= 0
+    and y >= level + entries @ x[columns]; (m,), (m, w).
+
+    by_torque : array         change of the crank torque at its angle by y, N m
+    by_loss : array           that of the charged friction
+    scenario, point : array   of each force
+    """
+
+    level: Array
+    entries: Array
+    columns: NDArray[np.intp]
+    by_torque: Array
+    by_loss: Array
+    scenario: NDArray[np.intp]
+    point: NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
 class ConeSolution:
     """Solution of a cone program: step x, slack by limit, multipliers.
 
+    unknowns: x, and forces of the track that does not carry, see `IdleForces`.
     rows: multipliers (m,) of each of the rows, in their order; norms: of each norm in the objective
     and of its ceiling.
     """
@@ -87,6 +107,7 @@ class ConeSolution:
     rows: list[Array]
     norms: list[tuple[float, float]]
     objective: float
+    unknowns: Array
 
 
 class _Block(NamedTuple):
@@ -245,6 +266,7 @@ def solved(
     penalty: float,
     ripple_weight: float = 1.0,
     reach: Reach | None = None,
+    idle: IdleForces | None = None,
 ) -> ConeSolution | None:
     """Step of least objective by a cone program: w (max weighted |norm| + costs) + x'Hx/2 + h'x +
     penalty x slacks.
@@ -260,6 +282,7 @@ def solved(
     penalty : float                          of a unit of slack
     ripple_weight : float                    w, 0: feasibility alone
     reach : Reach or None                    trust region within the box; None: the box alone
+    idle : IdleForces or None            further unknowns of norms and costs
 
     Returns
     -------
@@ -274,7 +297,7 @@ def solved(
     chosen = sorted(order[:_FIRST_NORMS].tolist())
     while True:
         some = [norms[k] for k in chosen]
-        solution = _solved(some, rows, curvature, slope, box, penalty, ripple_weight, reach)
+        solution = _solved(some, rows, curvature, slope, box, penalty, ripple_weight, reach, idle)
         if solution is None:
             return None
         beyond = [k for k, norm in enumerate(norms) if k not in chosen and _exceeds(norm, solution)]
@@ -288,7 +311,7 @@ def _exceeds(norm: Norm, solution: ConeSolution) -> bool:
     """Whether a ripple that a cone program left out is, after the step of its solution, above its
     ceiling or, weighted, above the greatest ripple of the program.
     """
-    value = norm.after(solution.step)
+    value = norm.after(solution.unknowns)
     allowed = solution.slack.get(TORQUE_REDUCTION.id, 0.0) + _NORM_TOLERANCE
     over = norm.ceiling is not None and value > norm.ceiling + allowed
     return over or norm.weight * value > solution.ripple + _NORM_TOLERANCE
@@ -303,11 +326,13 @@ def _solved(
     penalty: float,
     ripple_weight: float,
     reach: Reach | None,
+    idle: IdleForces | None,
 ) -> ConeSolution | None:
     """Solution of the cone program of `solved`, with the same arguments, with all of `norms` in it;
     None where the solver finds none.
     """
-    size = slope.size
+    moved, forces = slope.size, 0 if idle is None else idle.level.size
+    size = moved + forces
     costs = list(dict.fromkeys(row.name for row in rows if row.cost))
     names = costs + list(dict.fromkeys(r.name for r in rows if r.elastic and not r.cost))
     if any(norm.ceiling is not None for norm in norms):
@@ -316,7 +341,8 @@ def _solved(
     program = Cones(bounded + len(norms))  # x, ripple, slacks, bound of each norm
     program.charge_square(curvature)
     charges = [ripple_weight] * (1 + len(costs)) + [penalty] * (len(names) - len(costs))
-    program.charge(np.concatenate([slope, charges]))
+    program.charge(slope)
+    program.charge(charges, size)
     for row in rows:
         entries, columns = row.entries, row.columns
         if row.elastic:
@@ -330,14 +356,21 @@ def _solved(
             columns = np.array([[bounded + k, bounded - 1]])
             program.rows_at_most([[1.0, -1.0]], columns, norm.ceiling)
     every = np.arange(bounded)[:, None]
-    program.rows_at_most(1.0, every[:size], box[1])
-    program.rows_at_most(-1.0, every[:size], -box[0])
+    program.rows_at_most(1.0, every[:moved], box[1])
+    program.rows_at_most(-1.0, every[:moved], -box[0])
     program.rows_at_most(-1.0, every[size + 1 + len(costs) :], 0.0)
     if reach is not None:
         rows_of = reach.slopes.shape[0]
         program.norm_at_most(reach.slopes, np.zeros(rows_of), None, reach.bound)
         if reach.still is not None:
             program.zero(reach.still)
+    if idle is not None:
+        program.rows_at_most(-1.0, every[moved:size], 0.0)
+        program.rows_at_most(
+            np.hstack([idle.entries, np.full((forces, 1), -1.0)]),
+            np.hstack([idle.columns, every[moved:size]]),
+            -idle.level,
+        )
     for k, norm in enumerate(norms):
         program.norm_at_most(norm.slopes, norm.level, bounded + k)
     result = program.solved()
@@ -347,7 +380,7 @@ def _solved(
     parts = np.split(duals, np.cumsum([row.level.size for row in rows]))
     cones = iter(parts[-1])
     return ConeSolution(
-        step=values[:size],
+        step=values[:moved],
         ripple=float(values[size]),
         slack={name: float(values[size + 1 + k]) for k, name in enumerate(names)},
         rows=parts[:-1],
@@ -356,4 +389,5 @@ def _solved(
             for norm in norms
         ],
         objective=objective,
+        unknowns=values[:size],
     )

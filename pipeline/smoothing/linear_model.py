@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.smoothing.cone_program import Linear, Norm
+from camwright.pipeline.smoothing.cone_program import IdleForces, Linear, Norm
 from camwright.pipeline.smoothing.energy_spline import Grid
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE
@@ -83,6 +83,7 @@ class Model(NamedTuple):
     means: Mapping[str, tuple[NDArray[np.intp], Array]]
     curvature: Array
     slope: Array
+    idle: IdleForces | None = None
 
     def slopes_of(self, name: str, scenarios: NDArray[np.intp]) -> Array | None:
         """Derivatives (m, size), by the scaled unknowns, of the means over the turn from which a

@@ -16,7 +16,7 @@ from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
 from camwright.pipeline.checks.cam_shape import spring_travel
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.smoothing.cam_state import Mean, ScenarioCam, lift_jet, loaded
-from camwright.pipeline.smoothing.cone_program import Linear, Norm
+from camwright.pipeline.smoothing.cone_program import IdleForces, Linear, Norm
 from camwright.pipeline.smoothing.constraints import (
     SHAPE,
     delivered_torque,
@@ -41,7 +41,13 @@ from camwright.pipeline.smoothing.gradients import (
     differentiated,
 )
 from camwright.pipeline.smoothing.linear_model import Model, State, Summit
-from camwright.pipeline.smoothing.objective import Cost, costs, torque_ripple
+from camwright.pipeline.smoothing.objective import (
+    LOSS,
+    Cost,
+    costs,
+    residuals_slope,
+    torque_ripple,
+)
 from camwright.pipeline.smoothing.scenario import (
     DesignVariables,
     Ratings,
@@ -66,6 +72,8 @@ SHAPE_LIMITS = frozenset(each.name for each in SHAPE)
 _NEAR_LIMIT, _BEHIND_WORST = 0.05, 0.01
 _RIPPLE_BEHIND = 0.005  # of the engine's ripple: the same for the ripples of the scenarios
 _PEAKS = 0.1  # of the range of the energy, below its maximum, of peaks that may become the highest
+_NEAR_CROSSING = 0.02  # of the greatest force, below which a step may change the track
+_FORCE_STEP = 1e-30  # N, complex step of a force
 _FARTHEST = 1.0  # greatest step of a coefficient, of the scale
 _SIGN_SLOPE = 1e-6  # of the greatest slope of the energy: least slope where its sign is to be kept
 
@@ -513,6 +521,7 @@ class Search:
         if np.isfinite(excess).any():
             most[TORQUE_REDUCTION.id] = 1.0 - RESERVE + float(excess.max())
         jerk = self._jerk_scale * lift_jet(energy, variables).jerk
+        charged = LOSS.key in self.costs
         return State(
             coefficients=coefficients,
             variables=variables,
@@ -526,7 +535,7 @@ class Search:
             means=means,
             members={name: each.members for name, each in totals.items()},
             grid=grid,
-            stack=stack,
+            stack=replace(stack, wall=loads.wall) if charged and loads.crosses else stack,
         )
 
     def residual_torque(self, state: State) -> Array:
@@ -584,13 +593,87 @@ class Search:
         jerk = self._jerk_scale * self._dense(gradient.local, gradient.shared, state, summit)
         rows = self.rows(state, summit, self.near(state))
         means, slopes = self.means(state, summit, self.near_means(state))
+        idle = self._idle_forces(state, summit)
+        if idle is not None:
+            means = [self._crossed(each, idle) if each.name == LOSS.key else each for each in means]
         return Model(
             summit=summit,
-            norms=self.norms(state, summit, self._near_ripples(state)),
+            norms=self.norms(state, summit, self._near_ripples(state), idle),
             limits=[*rows, *means, *self._least_energy(state), *self._lower_peaks(state)],
             means=slopes,
             curvature=jerk.T @ jerk,
             slope=jerk.T @ (self._jerk_scale * gradient.terms),
+            idle=idle,
+        )
+
+    def _idle_forces(self, state: State, summit: Summit) -> IdleForces | None:
+        """Forces on the track that does not carry, at the points of the turn at which a step may
+        change the track; None of a search that charges no friction, and of cams of one track.
+
+        The friction has a kink where the force is zero: it is that of the track that carries plus
+        the change of its slope times the force on the other track, which a program that charges
+        it leaves at zero unless that track carries. So is the torque where the ripple rises with
+        that force; elsewhere it is that of the track that carries.
+        """
+        if state.stack.wall is None:
+            return None
+        jet, top, variables = _of_point(self.point(state, summit.lift, self.every))
+        stack, ratings = self._weighted_stack(state), self.problem.ratings
+        force = loaded(jet, top, variables, ratings, stack).required
+        most = np.abs(force).max(axis=1, keepdims=True)
+        row, point = np.nonzero(np.abs(force) < _NEAR_CROSSING * most)
+        if not row.size:
+            return None
+        at = self.point(state, summit.lift, point)
+        stack = taken(state.stack, self.pairs(state, np.array(self.weighted)[row], point))
+        weights = self._weights[self.weighted][row, 0]
+        by_torque, by_loss = self._kinks(stack, weights, *_of_point(at))
+        left = self.residual_torque(state)
+        rise = [
+            residuals_slope(self.problem.objective, self.problem.scenarios[k], values)
+            for k, values in zip(self.weighted, left, strict=True)
+        ]
+        by_torque = np.where(np.array(rise)[row, point] * by_torque < 0.0, by_torque, 0.0)
+        gradient = differentiated(partial(_required, stack, ratings), at, self.freed)["force"]
+        entries, columns = self._entries(point, gradient.local, gradient.shared, state, summit)
+        size = -most[row, 0] * stack.wall  # towards the other track
+        return IdleForces(
+            gradient.terms / size,
+            entries / size[:, None],
+            columns,
+            np.abs(size) * by_torque,
+            np.abs(size) * np.maximum(by_loss, 0.0) / self.every.size,
+            np.array(self.weighted)[row],
+            point,
+        )
+
+    def _kinks(
+        self, stack: Scenario, weights: Array, jet: Jet, top: float, variables: DesignVariables
+    ) -> tuple[Array, Array]:
+        """Changes, by the track, of the slopes of crank torque and charged friction by the force
+        (m,), at pairs of scenario, with its weight, and cam angle.
+        """
+        slopes = list[tuple[Array, Array]]()
+        for wall in (1.0, -1.0):
+            external: Array = np.add(stack.external, 1j * _FORCE_STEP)
+            there = replace(stack, wall=np.full(weights.size, wall), external=external)
+            loads = loaded(jet, top, variables, self.problem.ratings, there)
+            loss = self._charged(frozenset({LOSS.key}), weights, loads, variables)[LOSS.key]
+            terms = loss.terms if isinstance(loss, Mean) else loss
+            slopes.append((np.imag(loads.torque), np.imag(terms)))
+        by_torque, by_loss = (
+            (push - pull) / _FORCE_STEP for push, pull in zip(*slopes, strict=True)
+        )
+        return by_torque / self.problem.gear_ratio, by_loss
+
+    def _crossed(self, cost: Linear, idle: IdleForces) -> Linear:
+        """Row of the charged friction with the forces on the track that does not carry."""
+        slopes = idle.by_loss * (idle.scenario == cost.scenario[:, None])
+        columns = self.size + np.arange(idle.level.size)
+        return replace(
+            cost,
+            entries=np.hstack([cost.entries, slopes]),
+            columns=np.hstack([cost.columns, np.broadcast_to(columns, slopes.shape)]),
         )
 
     def _near_ripples(self, state: State) -> NDArray[np.intp]:
@@ -599,14 +682,21 @@ class Search:
         most = max(float(state.excess.max(initial=-np.inf)), -_NEAR_LIMIT)
         return np.flatnonzero(greatest | (state.excess >= most - _RIPPLE_BEHIND))
 
-    def norms(self, state: State, summit: Summit, wanted: NDArray[np.intp]) -> list[Norm]:
+    def norms(
+        self,
+        state: State,
+        summit: Summit,
+        wanted: NDArray[np.intp],
+        idle: IdleForces | None = None,
+    ) -> list[Norm]:
         """Linear models of the ripples of some scenarios, as cones.
 
         Parameters
         ----------
-        state : State     at which they are linearised
-        summit : Summit   maximum lift there
-        wanted : array    indices of the scenarios among the weighted ones
+        state : State           at which they are linearised
+        summit : Summit         maximum lift there
+        wanted : array          indices of the scenarios among the weighted ones
+        idle : IdleForces   unknowns after those of the step
         """
         problem, variables = self.problem, state.variables
         at = self.point(state, summit.lift, self.every)
@@ -622,6 +712,11 @@ class Search:
             if "phase" in problem.freed:
                 column = problem.coefficients + list(problem.freed).index("phase")
                 slopes[:, column] += item.torque_at(float(variables.phase))[1]
+            if idle is not None:
+                of_item = idle.scenario == self.weighted[k]
+                forces = np.zeros((self.every.size, of_item.size))
+                forces[idle.point, np.arange(of_item.size)] = of_item * -idle.by_torque
+                slopes = np.hstack([slopes, forces])
             columns = np.column_stack([slopes, left])
             charged = triangle(ripple_of(problem, item, columns))
             ceiling = problem.ceiling_of(item)
@@ -930,6 +1025,17 @@ def _lift(jet: Jet, _top: float, _variables: DesignVariables) -> Mapping[str, Ar
 
 def _jerk(jet: Jet, _top: float, _variables: DesignVariables) -> Mapping[str, Array | Mean]:
     return {"jerk": jet.jerk}
+
+
+def _of_point(at: Point) -> tuple[Jet, float, DesignVariables]:
+    """Lift, maximum lift and variables of arguments."""
+    return lift_jet(at.energy, at.variables), at.highest, at.variables
+
+
+def _required(
+    scenario: Scenario, ratings: Ratings, jet: Jet, top: float, variables: DesignVariables
+) -> Mapping[str, Array | Mean]:
+    return {"force": loaded(jet, top, variables, ratings, scenario).required}
 
 
 def _torque(

@@ -255,6 +255,8 @@ class Scenario:
     swept : bool             limits over the speed range hold in it: those of the first load case
                              of each preload
     correction : Correction
+    wall : array             track that carries, held while derivatives are taken; None: that of
+                             the force
     cell : float or array    cam angle, rad, for which each cam angle stands: the friction of the
                              guides is the mean over it; 0: the angle alone
     """
@@ -275,6 +277,7 @@ class Scenario:
     swept: Value = True
     correction: Correction = field(default_factory=lambda: Correction.none(8))
     cell: Value = 0.0
+    wall: Array | None = None
 
     def at(self, numbers: Mapping[str, Value]) -> Scenario:
         """Scenario with other machine numbers."""
@@ -349,9 +352,10 @@ def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
     def of(value: Value | None) -> Array | None:
         return None if value is None else take(np.asarray(value))
 
+    names = *_NUMBERS, "external", "cell", "duty", "wall"
     return replace(
         stack,
-        **{name: of(getattr(stack, name)) for name in (*_NUMBERS, "external", "cell", "duty")},  # type: ignore[arg-type]
+        **{name: of(getattr(stack, name)) for name in names},  # type: ignore[arg-type]
         numbers=Numbers({key: of(value) for key, value in stack.numbers.changed.items()}),
         correction=stack.correction.each(lambda one: take(one[0])),
     )

@@ -265,7 +265,7 @@ def _corrected(search: Search, model: Model, program: ConeSolution, there: State
         else:
             limits.append(each)
             continue
-        level = search.level(each.name, value) - each.change(program.step)
+        level = search.level(each.name, value) - each.change(program.unknowns)
         limits.append(replace(each, level=level))
     return model._replace(limits=limits)
 
@@ -315,7 +315,7 @@ def _program(
     for left in reversed(range(_ADDITIONS)):
         program = solved(
             model.norms, model.limits,
-            model.curvature, model.slope, box, penalty, ripple_weight, reach,
+            model.curvature, model.slope, box, penalty, ripple_weight, reach, model.idle,
         )  # fmt: skip
         if program is None:
             return None, state, model
@@ -330,7 +330,7 @@ def _program(
         sides = search.kept_sides(state, new)
         model = model._replace(
             limits=[*model.limits, *search.rows(state, model.summit, rows), *sides],
-            norms=[*model.norms, *search.norms(state, model.summit, ripples)],
+            norms=[*model.norms, *search.norms(state, model.summit, ripples, model.idle)],
         )
     return program, there, model
 

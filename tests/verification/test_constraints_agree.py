@@ -465,7 +465,8 @@ def test_second_derivatives_of_the_lagrangian_match_its_differences(free, duty, 
     norms = search.norms(state, summit, np.arange(2))
     model = Model(summit, norms, limits, slopes, np.zeros((0, 0)), np.zeros(0))
     prices = [random.random(limit.level.size) for limit in limits]
-    program = ConeSolution(np.zeros(0), 0.0, {}, prices, [(0.6, 0.0), (0.0, 0.3)] * 2, 0.0)
+    none = np.zeros(0)
+    program = ConeSolution(none, 0.0, {}, prices, [(0.6, 0.0), (0.0, 0.3)] * 2, 0.0, none)
     exact = lagrangian_curvature(search, state, model, model, program)
     again = lagrangian_curvature(search, state, model._replace(means={}), model, program)
     np.testing.assert_allclose(exact, again, rtol=0, atol=1e-12 * np.abs(exact).max())
