@@ -28,10 +28,12 @@ from camwright.pipeline.checks.contact_strength import (
     LoadCycles,
     endurance_allowed,
     life_turns,
+    middle_pressure,
     passes,
     pressure_allowables,
 )
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
+from camwright.pipeline.checks.extremes import on_both_tracks
 from camwright.pipeline.checks.form_closure import preload_least, preload_pressure
 from camwright.pipeline.checks.guide_strength import pivot_temperature, power_at
 from camwright.pipeline.checks.guide_wear import pivot_expansion, seizure_temperature
@@ -344,9 +346,11 @@ def weights_of(solved: Solution, ratings: Ratings) -> Weights:
 LOADED_SHARE = 0.05  # of the maximum: least load of a meaningful ratio
 _GROUPS: Mapping[str, Callable[[Cycle], Array]] = {
     NORMAL_FORCE: lambda cycle: cycle.loads.normal_force,
-    PRESSURE: lambda cycle: cycle.surface.p0,
+    PRESSURE: lambda cycle: on_both_tracks(cycle, middle_pressure),
 }
-"""Load of a group at each cam angle of a cycle (n,), N or Pa."""
+"""Load of a group at each cam angle of a cycle (n,), N or Pa; of preloaded discs the greater
+pressure of both.
+"""
 
 
 def _travel_limit(case: Case, surge: Surge | None = None) -> dict[str, float]:

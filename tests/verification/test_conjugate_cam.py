@@ -28,6 +28,7 @@ from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.checks import contact_strength
 from camwright.pipeline.checks.arm_strength import arm_forces, bars_of
 from camwright.pipeline.checks.contact_strength import conforming_sentence
+from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.extremes import cam_of
 from camwright.pipeline.contact.closed_form import in_full
 from camwright.pipeline.contact.hertz import line_contact
@@ -50,6 +51,7 @@ from camwright.pipeline.follower.shaft_strength import (
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.search.crown.solved_lines import SolvedLines
+from camwright.pipeline.smoothing.allowables import weights_of
 
 DATA = Path(__file__).parents[1] / "data"
 STEM, ARM = DATA / "conjugate_feeder.toml", DATA / "conjugate_arm.toml"
@@ -452,6 +454,22 @@ def test_the_conforming_contact_of_either_disc_is_named(monkeypatch):
     assert "up to 1000 MPa" in conforming_sentence(solution)
     k = int(np.argmax(idle.p0))
     assert seen == [(cycle.theta[k], 23.5e-3 if cycle.loads.wall[k] < 0.0 else 22e-3)]
+
+
+def test_the_weights_of_a_synthesis_are_over_the_greater_pressure_of_both_discs():
+    """Weight times pressure is the limit times the greatest utilisation at its own angle."""
+    solution, limit = trial("pressed").solution, 1.5e9
+    weights = weights_of(solution, SimpleNamespace(bounds={PRESSURE: limit})).values[PRESSURE]
+    weighted = [
+        weights[each.load_case] * np.maximum(each.contact.p0, each.idle.p0)
+        for each in solution.cycles
+    ]
+    used = max(
+        each.utilisation
+        for each in trial("pressed").checks
+        if each.declaration.scales_with == (PRESSURE, 1.0) and each.declaration.along
+    )
+    assert max(each.max() for each in weighted) == pytest.approx(limit * used, rel=1e-9)
 
 
 def test_the_film_of_each_preloaded_disc_goes_on_where_the_other_bears_more():
