@@ -22,7 +22,6 @@ TOLD = {
     "pipeline/follower/crossover.py: lands": "the end of its bracket, beyond the wall",
     "pipeline/screening/live_preview.py: _in_range": "a preview without factors",
     "pipeline/screening/live_preview.py: with_torques": "without a range of speeds",
-    "pipeline/screening/screened_cam.py: _settled": "NaN of what has not settled",
     "pipeline/screening/screened_cam.py: _pressed_at": "NaN of what has not settled",
     "pipeline/search/crown/least_crown.py: within": "its lowest ratio, which is judged",
     "pipeline/search/machine/synthesised_points.py: promising": "a count of designs",
