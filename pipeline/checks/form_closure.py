@@ -565,11 +565,11 @@ _CLEARANCE = (
     lift_can_help=True,
     closed_by="form",
     if_limited=True,
-    formula="v <= limits.landing_speed; v: greatest speed of the roller against the wall at the end"
-    " of a flight through the clearance, along the travel; of a small clearance c under inertia"
-    " alone (9/2 c^2 j)^(1/3), j: jerk of the follower where its acceleration is zero",
+    formula="v <= limits.landing_speed; v: greatest speed of roller or face against the track at"
+    " the end of a flight through the clearance, along the travel; of a small clearance c under"
+    " inertia alone (9/2 c^2 j)^(1/3), j: jerk of the follower where its acceleration is zero",
     symbols={"v": f"{STATED} [mm/s]"},
-    reason="The noise and the wear of a groove cam grow with it.",
+    reason="The noise and the wear of a cam that pulls grow with it.",
     values=(*given.LOADS, *_CLEARANCES),
     levers=_CLEARANCE,
     page="Follower",
@@ -584,7 +584,7 @@ def landing_speed(solution: Solution) -> Demand:
 
 
 @check(
-    title="Contact pressure at the landing on a wall",
+    title="Contact pressure at the landing on a track",
     unit="MPa",
     source=Source("surface endurance of cam and follower, once a turn", confirmed=True),
     tier=Tier.SCREENING,
@@ -592,17 +592,17 @@ def landing_speed(solution: Solution) -> Demand:
     " force",
     lift_can_help=True,
     closed_by="form",
-    formula="p <= p_E / S; p: sqrt(N E*/(pi b R)) on the wall of the landing, or of the conforming"
+    formula="p <= p_E / S; p: sqrt(N E*/(pi b R)) on the track of the landing, or of the conforming"
     " contact where it is concave, N: F + sqrt(F^2 + k m"
     " v^2) over cos(alpha), F: axial force at the landing, v: landing speed, k: follower.stiffness"
     " or that of the parts between cam and mass in series, m: follower.mass, p_E: least endurance"
-    " pressure of cam and roller, S: limits.contact_safety",
+    " pressure of cam and follower, S: limits.contact_safety",
     symbols={
         "p": f"{STATED} [MPa]",
         "p_E": f"{STATED} [MPa]",
         "S": "limits.contact_safety",
     },
-    reason="Each landing is a blow on the same places of the walls.",
+    reason="Each landing is a blow on the same places of the tracks.",
     values=(*given.LOADS, *given.CONTACT, *_CLEARANCES, "follower.stiffness"),
     levers=_CLEARANCE,
     page="Contact",

@@ -64,14 +64,14 @@ class LineTilt:
             yield self.words.turned, float(np.broadcast_to(self.twist, self.shaft.shape)[place])
 
     def sentence(self, place: int) -> str:
-        """Tilt and its parts at one angle, in words."""
-        parts = ", ".join(
-            f"{name} {in_unit(angle, 'mrad'):.3g}" for name, angle in self.parts(place)
-        )
-        greatest, forced = (
-            in_unit(float(each[place]), "mrad") for each in (self.greatest, self.forced)
-        )
-        return f"tilt of up to {greatest:.3g} mrad ({parts}), {forced:.3g} mrad of it forced"
+        """Tilt and its parts at one angle, in words; round-off is zero."""
+
+        def milli(angle: float) -> str:
+            return f"{round(in_unit(angle, 'mrad'), 9):.3g}"
+
+        parts = ", ".join(f"{name} {milli(angle)}" for name, angle in self.parts(place))
+        greatest, forced = (milli(float(each[place])) for each in (self.greatest, self.forced))
+        return f"tilt of up to {greatest} mrad ({parts}), {forced} mrad of it forced"
 
 
 def line_tilt(

@@ -49,7 +49,7 @@ from camwright.pipeline.follower.shaft_strength import (
     torque_at,
 )
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.results.run_records import headline
+from camwright.pipeline.results.run_records import figures, headline
 from camwright.pipeline.search.crown.solved_lines import SolvedLines
 from camwright.pipeline.smoothing.allowables import weights_of
 
@@ -866,3 +866,20 @@ def test_the_seat_of_a_disc_bears_the_torque_of_its_own_contact(name):
     at = np.argmin(np.abs(turned.theta - judged.cam_angle))
     beyond = torque - np.abs(turned.cam_torque[at])
     assert judged.stated["T_p"] == pytest.approx(beyond, abs=1e-9 * torque)
+
+
+@BOTH
+def test_the_figures_of_a_pair_are_the_worst_of_both_discs(name):
+    """Radii and curvature by differences of the points of each contour, no formula of either."""
+    shown = figures(trial(name))
+    least, reach = [], []
+    for disc in trial(name).solution.discs:
+        points = disc.contour.points(uniform_turn(14400))
+        step = 0.5 * (np.roll(points, -1, axis=1) - np.roll(points, 1, axis=1))
+        bend = np.roll(points, -1, axis=1) - 2.0 * points + np.roll(points, 1, axis=1)
+        curvature = (step[0] * bend[1] - step[1] * bend[0]) / np.hypot(*step) ** 3
+        least.append(1.0 / np.max(curvature * np.sign(np.median(curvature))))
+        reach.append(np.max(np.hypot(*points)))
+    assert 1e-3 * shown["convex_radius_min_mm"] == pytest.approx(min(least), rel=2e-3)
+    assert 1e-3 * shown["cam_radius_max_mm"] == pytest.approx(max(reach), rel=1e-6)
+    assert least[1] < least[0] or reach[1] > reach[0]  # the second disc is one of the worst
