@@ -81,6 +81,18 @@ def modules() -> dict[str, Path]:
     return found
 
 
+@cache
+def tree(path: Path) -> ast.Module:
+    """Syntax tree of a file, parsed once for all tests of this one."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def nodes(path: Path) -> tuple[ast.AST, ...]:
+    """Nodes of the syntax tree of a file, in the order of `ast.walk`."""
+    return tuple(ast.walk(tree(path)))
+
+
 def package(name: str) -> str:
     """The package of a module as `ORDER` has it."""
     known = [each for each in ORDER if name == each or name.startswith(f"{each}.")]
@@ -92,7 +104,7 @@ def imports() -> frozenset[tuple[str, str, int]]:
     """Importer, imported and line; those in functions and type blocks included."""
     found = set()
     for name, path in modules().items():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             for target in _targets(node):
                 if target in modules() and target != name:
                     found.add((name, target, node.lineno))  # type: ignore[attr-defined]
@@ -167,7 +179,7 @@ def test_no_class_name_stands_twice() -> None:
     names = Counter(
         node.name
         for path in modules().values()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in nodes(path)
         if isinstance(node, ast.ClassDef)
     )
     assert [name for name, count in names.items() if count > 1] == []
@@ -176,7 +188,7 @@ def test_no_class_name_stands_twice() -> None:
 def test_the_table_of_a_package_names_its_modules() -> None:
     """Rows of the table in a package's docstring; the table of `pipeline` names packages too."""
     for name, path in modules().items():
-        text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+        text = ast.get_docstring(tree(path)) or ""
         if path.name != "__init__.py" or "| module" not in text:
             continue
         inside = {p.stem for p in path.parent.glob("*.py")} - {"__init__"}
@@ -185,7 +197,7 @@ def test_the_table_of_a_package_names_its_modules() -> None:
 
 
 def test_the_table_of_the_pipeline_is_the_order_of_the_packages() -> None:
-    text = ast.get_docstring(ast.parse(modules()["pipeline"].read_text(encoding="utf-8"))) or ""
+    text = ast.get_docstring(tree(modules()["pipeline"])) or ""
     flat = {p.stem for p in modules()["pipeline"].parent.glob("*.py")} - {"__init__", "cli"}
     rows = re.findall(r"^\| `([\w.]+)`", text, re.MULTILINE)
     assert flat < set(rows)
@@ -199,7 +211,7 @@ def test_every_module_named_as_text_is_there() -> None:
     wrong = []
     places = [ROOT / name for name in ("tests", "benchmarks", *FOLDERS, BESIDE)]
     for path in sorted(file for place in places for file in place.rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 wrong += [
                     f"{path.relative_to(ROOT)}, line {node.lineno}: {text}"
@@ -254,7 +266,7 @@ def test_no_value_is_written_past_its_fields() -> None:
     wrong = [
         f"{name}, line {node.lineno}"  # type: ignore[attr-defined]
         for name, path in modules().items()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in nodes(path)
         if _written_past_the_fields(node)
     ]
     assert wrong == []
@@ -309,7 +321,7 @@ def test_units_are_converted_at_the_rim() -> None:
         for name, path in modules().items()
         if name not in NO_UNIT
         if package(name) in INSIDE or package(name).startswith("pipeline.contact")
-        for line in _unit_factors(ast.parse(path.read_text(encoding="utf-8")))
+        for line in _unit_factors(tree(path))
     ]
     assert found == []
 
@@ -360,7 +372,7 @@ def naming_checks() -> tuple[dict[str, str], dict[str, set[str]]]:
             for each in registry.declared_in(module)}  # fmt: skip
     named: dict[str, set[str]] = {name: set() for name in home}
     for module, path in modules().items():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.Constant) and node.value in home:
                 named[node.value].add(module)
     return home, named
@@ -473,9 +485,6 @@ def test_a_branch_on_a_kind_is_seen(text: str) -> None:
 def test_a_part_is_asked_for_its_members_and_not_for_its_kind(kinds: Kinds) -> None:
     """A new branch is a member of the kinds; a module that loses its last leaves the list."""
     asking = {
-        name
-        for name, path in modules().items()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if kinds.branches(node)
+        name for name, path in modules().items() for node in nodes(path) if kinds.branches(node)
     }
     assert asking == set(ASK_FOR_A_KIND[kinds])

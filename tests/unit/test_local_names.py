@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -50,11 +51,17 @@ MOST = {
 """Assignments to the names of `VAGUE` by folder; a folder without an entry has none."""
 
 
+@cache
+def tree(text: str) -> ast.Module:
+    """Syntax tree of a module, parsed once for both counts."""
+    return ast.parse(text)
+
+
 def assignments(text: str) -> list[int]:
     """Lines in which a name of `VAGUE` is assigned, by a statement, a loop or a field."""
     return [
         node.lineno
-        for node in ast.walk(ast.parse(text))
+        for node in ast.walk(tree(text))
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in VAGUE
     ]
 
@@ -80,7 +87,7 @@ SHARED = 20
 def numbers(text: str) -> dict[str, str]:
     """Values, as source, of the private numeric constants of a module by name."""
     values: dict[str, str] = {}
-    for node in ast.parse(text).body:
+    for node in tree(text).body:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name | ast.Tuple):
             target = node.targets[0]
             names = target.elts if isinstance(target, ast.Tuple) else [target]
