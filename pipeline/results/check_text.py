@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from fnmatch import fnmatchcase
+from functools import cache
 from typing import NamedTuple, get_args
 
 from camwright.pipeline.base.source import Source
@@ -128,6 +129,7 @@ def checks_with(key: Key) -> tuple[str, ...]:
     )
 
 
+@cache
 def _of_card(rest: str) -> str:
     """A key on which a check rests as that of the material card, where it is one."""
     before, name, last = rest.rpartition("material.")
@@ -135,8 +137,10 @@ def _of_card(rest: str) -> str:
 
 
 def _named(path: str, formula: str) -> bool:
-    words = re.escape(re.sub(r"^guides\.[ab]\.", "guides.*.", path))
-    return "." in path and re.search(rf"(?<![\w.]){words}(?![\w])", formula) is not None
+    name = re.sub(r"^guides\.[ab]\.", "guides.*.", path)
+    if "." not in path or name not in formula:
+        return False
+    return re.search(rf"(?<![\w.]){re.escape(name)}(?![\w])", formula) is not None
 
 
 def program_sources() -> Iterator[tuple[str, Source]]:
