@@ -350,7 +350,9 @@ LIGHT_PUMP = motor((4.0, 5.0), (4.25, 0.0))  # rad/s, on a crank of 0.05 kg m2
 def test_the_speed_on_a_motor_line_is_that_of_the_equation_of_motion(
     line: MotorLine, size: float, share: float, load: tuple[float, float, float], start: float
 ) -> None:
-    """Against a Runge-Kutta integration to the periodic motion; 1e-9 is that of its steps."""
+    """Against a Runge-Kutta integration of up to 20 turns, until one ends where it began; 1e-9 is
+    that of its steps.
+    """
     theta, count = grid(720), 720
 
     def loaded(angle: Array) -> Array:
@@ -374,6 +376,8 @@ def test_the_speed_on_a_motor_line_is_that_of_the_equation_of_motion(
             t_eval=[*theta, TURN],
         )
         energy = last.y[:, -1]
+        if abs(energy[0] / last.y[0, 0] - 1.0) < 1e-12:
+            break
     expected = np.sqrt(2.0 * last.y[0, :count] / inertia(theta))
     at = Inertia(size, share * np.sin(theta) ** 2)
     motion = crank_motion(loaded(theta), at, start, load=line, span=TURN)
