@@ -92,10 +92,10 @@ class Bearing(Part):
     """Bearing of the roller with the ratings of its manufacturer."""
 
     table: ClassVar[str] = "roller.bearing"
+    # Keys of its use, which a second bearing beside it has, too, where it states no others.
     of_use: ClassVar[tuple[str, ...]] = (
         *("viscosity", "contamination", "lubrication", "temperature", "relubrication_interval"),
     )
-    """Keys of its use, which a second bearing beside it has, too, where it states no others."""
     resolved: ClassVar[Mapping[str, Resolved]] = card_of(
         "card of the bearing, which fills the keys left out", "bearings.toml", "track_roller_47x18"
     )
