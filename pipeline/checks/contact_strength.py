@@ -275,6 +275,18 @@ def load_cycles(machines: tuple[Machine, ...], contour: Contour) -> LoadCycles:
     return LoadCycles(turns, turns * passes(machines[0].follower, path))
 
 
+def cycles_in_life(solution: Solution) -> LoadCycles:
+    """`load_cycles`; those of rollers between two tracks by the mean speed of the fastest, which
+    turns faster on an outer wall than on an inner one.
+    """
+    cycles = load_cycles(solution.machines, solution.contour)
+    if solution.machine.follower.slides or not solution.machine.cam.pulls:
+        return cycles
+    running = [each for each in solution.cams.values() if each.speed > 0.0]
+    turns = (float(np.max(one.mean / each.speed)) for each in running for one in each.rollers)
+    return cycles._replace(follower=cycles.cam * max(turns, default=0.0))
+
+
 def passes(follower: FollowerKind, path: Array | float) -> float:
     """Load cycles of the follower per cam turn, see `FollowerKind.turns`."""
     return FACE_PASSES if follower.slides else follower.turns(path)
@@ -679,7 +691,7 @@ def contact_pressure_at_life(solution: Solution) -> Demand:
         missing = unset(machine.limits, TARGET_LIFE)
         figures = tuple(f"{card.name}: {card.source}" for card in machine.bodies.values())
         return Demand(worst.value, None, worst, (*missing, *lacks), figures=figures)
-    limit = _life_limit(machine, load_cycles(solution.machines, solution.contour))
+    limit = _life_limit(machine, cycles_in_life(solution))
     note = signed_sentence(solution, worst, signed_pressure)
     judged = _judged(worst, limit, missing=lacks, note=note)
     stated = replace(judged, stated=of_elements(solution, worst, signed_pressure))

@@ -26,6 +26,7 @@ from camwright.pipeline.base.tables import Table
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case, with_values
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks.contact_strength import cycles_in_life
 from camwright.pipeline.checks.form_closure import PLATE_MOMENT
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.closed_form import closed_form_history
@@ -80,6 +81,13 @@ def test_mean_speed_of_the_roller_knows_the_crossovers(count):
     mean = (turns_on(path, radius, theta, at.wall) * at.weights).mean()
     assert mean == pytest.approx(mean_turns(path, radius), rel=40.0 / count**2 + 2e-4)
     assert at.weights.mean() == pytest.approx(1.0, rel=1e-12)
+
+
+def test_load_cycles_of_the_roller_are_its_turns_on_both_walls():
+    cycle, machine = GROOVE.running
+    cycles = cycles_in_life(GROOVE.trial.solution)
+    turns = mean_turns(cycle.contour.pitch, machine.roller.radius)
+    assert cycles.follower / cycles.cam == pytest.approx(turns, rel=3e-4)
 
 
 def test_viscosity_ratio_at_the_mean_speed_of_the_roller():
