@@ -166,10 +166,9 @@ def descended(
                 )
                 tries += 1
                 if other[0] is not None:
-                    gain = now - other[1].merit(penalty, ripple_weight)
-                    if gain > actual:
-                        (_, there, _), actual = other, gain
-                    gain /= scale
+                    decrease = now - other[1].merit(penalty, ripple_weight)
+                    if decrease > actual:
+                        (_, there, _), actual = other, decrease
             if not outside and least < actual < _BENT * predicted:
                 nearer = _nearer(search, state, program.step, there, penalty, ripple_weight)
                 there, actual = nearer, now - nearer.merit(penalty, ripple_weight)
