@@ -71,7 +71,7 @@ TINY = 1e-12
 
 
 _BORE = "cam.bore_radius", "cam.width"
-_RING = "cam.prime_radius", "roller.radius"
+_RING = "cam.prime_radius", "roller.radius", "cam.second_base_radius"
 _REVERSES = "cam.torque_reverses"
 PRESSED = "T_p: with which preloaded discs turn against one another then, else 0, "
 
@@ -384,7 +384,8 @@ def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
     """Demand with the pressure of the fit, yield strength and source of the cam material."""
     card, pressure = solution.case.cam.material, solution.numbers.get("cam.fit.greatest_pressure")
     note = "" if pressure is None else f"pressure of the fit {shown(float(pressure), 'MPa')}"
-    stated = {"R_e": card.core_yield}
+    ring = fitted_ring(solution.numbers)
+    stated = {"R_e": card.core_yield} | ({} if ring is None else {"b": float(ring.outer)})
     return replace(demand, note=note, figures=(f"{card.name}: {card.source}",), stated=stated)
 
 
@@ -400,14 +401,13 @@ def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
     load_cases=NONE,
     formula="sqrt(t^2 + t p + p^2) <= R_e; p: pressure of cam.fit at its greatest interference on"
     " the ring of the least radius, t = p (b^2 + a^2)/(b^2 - a^2), a, b: radius of the bore and"
-    " least radius of the contour, R_e: core yield strength of the cam",
+    " least radius of the contour, of two discs the lesser, R_e: core yield strength of the cam",
     symbols={
         "p": "cam.fit.ring_pressure [MPa]",
         "t": "[MPa]",
         "a": "cam.bore_radius",
-        "b": "cam.prime_radius - roller.radius [mm]",
+        "b": f"{STATED} [mm]",
         "R_e": f"{STATED} [MPa]",
-        "?": "follower.kind roller",
     },
     reason="a wall that yields loses its fit",
     values=("cam.material.E", "cam.material.nu", "cam.material.*yield_strength", "cam.fit.*"),

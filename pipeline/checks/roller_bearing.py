@@ -64,7 +64,7 @@ from camwright.pipeline.contact.rolling_bearing import Bearing
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, TurningRoller, not_negative
-from camwright.pipeline.cycle.numbers import Numbers, base_radius
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import bearing_life
 from camwright.pipeline.follower.roller import Roller, on_second_track
@@ -379,11 +379,15 @@ def _with_slope(demand: Demand, solution: Solution) -> Demand:
     if demand.at is None or not demand.at.load_case:
         return demand
     cycle, row = row_of(solution.cycles, demand.at)
-    tilts = cam_of(solution, cycle).shaft_tilts
-    slope = max(float(abs(each[row])) for each in tilts)
+    cam, run_out = cam_of(solution, cycle), solution.machine.limits[CAM_RUN_OUT]
+    discs = [
+        (float(abs(tilt[row])), float(np.broadcast_to(base, tilt.shape)[row]))
+        for tilt, base in zip(cam.shaft_tilts, cam.base_radii, strict=True)
+    ]
+    slope, base = max(discs, key=lambda disc: disc[0] + run_out / (2.0 * disc[1]))
     figures = tuple(map(solution.machine.limits.source, (AXIS_PARALLELISM, CAM_RUN_OUT)))
     note = f"{shown(slope, 'mrad', 3)} of it by the camshaft"
-    return replace(demand, note=note, figures=figures, stated={"phi": slope})
+    return replace(demand, note=note, figures=figures, stated={"phi": slope, "r_b": base})
 
 
 _of_roller = partial(
@@ -441,12 +445,13 @@ _AXES = f"limits.{AXIS_PARALLELISM.id}", f"limits.{CAM_RUN_OUT.id}"
     formula="phi + p + r/(2 r_b) + (c_A + c_B)/(2 (b + (L_A + L_B)/2)) <="
     " limits.roller_misalignment; phi: greatest slope of the camshaft at the cam over the turn, 0"
     " where its diameter or material is not stated, p: limits.axis_parallelism, r:"
-    " limits.cam_run_out, r_b: base radius, c, L, b: clearances, lengths and spacing of the guides",
+    " limits.cam_run_out, r_b: base radius of the disc, c, L, b: clearances, lengths and"
+    " spacing of the guides",
     symbols={
         "phi": f"{STATED} [mrad]",
         "p": _AXES[0],
         "r": _AXES[1],
-        "r_b": "cam.prime_radius - roller.radius [mm]",
+        "r_b": f"{STATED} [mm]",
         **{f"c_{each}": f"guides.{each.lower()}.clearance" for each in "AB"},
         **{f"L_{each}": f"guides.{each.lower()}.length" for each in "AB"},
         "b": "guides.spacing",
@@ -472,9 +477,11 @@ def roller_misalignment(cam: LoadedCam) -> Array:
     """
     numbers = cam.numbers
     guides = numbers.known_case.guides.tilt_at(numbers["guides.spacing"])
-    run_out = numbers.limit(CAM_RUN_OUT) / (2.0 * base_radius(numbers))
-    tilt = _greatest([magnitude(each) for each in cam.shaft_tilts])
-    return tilt + (numbers.limit(AXIS_PARALLELISM) + run_out + guides)
+    parallel, run_out = numbers.limit(AXIS_PARALLELISM), numbers.limit(CAM_RUN_OUT)
+    discs = zip(cam.shaft_tilts, cam.base_radii, strict=True)
+    return _greatest(
+        [magnitude(tilt) + (parallel + run_out / (2.0 * base) + guides) for tilt, base in discs]
+    )
 
 
 def _load_share(at: JudgedRoller) -> Declaration:

@@ -696,9 +696,11 @@ def turn_of_line(cycle: Cycle) -> TurnOfLine:
     force = cycle.loads.normal_force
     turn = cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt
     slopes = slopes_of(cycle.machine.camshaft, cycle.machine.cam.spacing)
-    compliance = couple_compliance(slopes, cycle.loads.wall < 0.0)
+    pulls, other = cycle.loads.wall < 0.0, cycle.machine.with_second_in_place(cycle.contour)
+    base = np.where(pulls, other.base_radius, cycle.machine.base_radius)
+    compliance = couple_compliance(slopes, pulls)
     pivot, beyond = np.hypot(*cycle.loads.pivot_load), beyond_first(cycle.machine, cycle.loads)
-    return TurnOfLine(*turn, pivot, compliance, cycle.pin_slope, np.abs(beyond))
+    return TurnOfLine(*turn, pivot, compliance, base, cycle.pin_slope, np.abs(beyond))
 
 
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:

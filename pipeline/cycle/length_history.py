@@ -215,6 +215,7 @@ class TurnOfLine(NamedTuple):
     force (n,): normal force, N; shaft (n,): slope of the camshaft at the cam, rad, as of
     `Cycle.shaft_tilt`; pivot (n,): load of an arm on its pivot, N, 0 without one;
     shaft_compliance: slope of the camshaft at the disc that carries per moment there, rad/(N m);
+    base_radius (n,): of the base circle of that disc, m;
     pin (n,): slope of the pin per couple, rad/(N m), by finite elements; None: on a foundation;
     beyond (n,): distance of the roller that carries from the first along their pin, m.
     """
@@ -226,6 +227,7 @@ class TurnOfLine(NamedTuple):
     shaft: Array
     pivot: Array
     shaft_compliance: Value
+    base_radius: Value
     pin: Array | None = None
     beyond: Value = 0.0
 
@@ -249,7 +251,7 @@ class TurnOfLine(NamedTuple):
             self.shaft,
             parallelism=machine.limits[AXIS_PARALLELISM],
             run_out=machine.limits[CAM_RUN_OUT],
-            base_radius=machine.base_radius,
+            base_radius=self.base_radius,
             clearance=machine.limits[ROLLER_CLEARANCE],
             bearing_length=None if follower.slides else follower.line_width,
             guides=self.tilting.within(machine.guides.spacing),

@@ -57,7 +57,7 @@ class LineTilt:
         """Name and size, rad, of each part of the tilt at the position of this number."""
         yield "camshaft", abs(float(self.shaft[place]))
         yield "parallelism", float(self.parallelism)
-        yield "run-out", float(self.run_out)
+        yield "run-out", float(np.broadcast_to(self.run_out, self.shaft.shape)[place])
         yield self.words.clearance, float(self.guides)
         yield "roller bearing", float(self.roller)
         if np.any(self.twist):
@@ -93,7 +93,7 @@ def line_tilt(
     shaft : array (..., n)     slope of the camshaft at the cam, rad
     parallelism : float        of the axes, rad
     run_out : float            axial, of the cam at its base circle, m: full reading
-    base_radius : float        m
+    base_radius : float, array of the base circle of the disc, m
     clearance : float          radial internal clearance of the roller's bearing, m: full play
     bearing_length : float     m; None: a follower without a bearing
     guides : float             tilt of the stem in its guides, or of an arm in its pivot, rad

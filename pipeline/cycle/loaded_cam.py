@@ -27,7 +27,7 @@ from camwright.geometry.second_track import SecondMotion
 from camwright.pipeline.case.case_values import wound_spring
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.traction import Drag
-from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.numbers import Numbers, base_radii
 from camwright.pipeline.follower.camshaft_loads import NO_TORQUE, gear_force
 from camwright.pipeline.follower.disc_preload import Squeezed
 from camwright.pipeline.follower.follower_forces import Carrying, levers, wall_of
@@ -815,6 +815,17 @@ class LoadedCam:
         As of `Cycle.shaft_tilt`.
         """
         return np.asarray(of_disc(self._disc_tilts, self.wall < 0.0))
+
+    @property
+    def base_radii(self) -> tuple[Value, ...]:
+        """Radius of the base circle, m, of each disc of `shaft_tilts`."""
+        return (self.base_radius,) if len(self.shaft_tilts) == 1 else base_radii(self.numbers)
+
+    @property
+    def base_radius(self) -> Array:
+        """Radius of the base circle of the disc that carries (..., n), m."""
+        first, second = base_radii(self.numbers)
+        return np.where(self.wall < 0.0, second, first)
 
     @property
     def shaft_tilts(self) -> tuple[Array, ...]:

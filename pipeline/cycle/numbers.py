@@ -358,15 +358,16 @@ def _outer_radius(numbers: Numbers) -> Value | None:
     return numbers.get("roller.radius") if stated is None else stated
 
 
-def base_radius(numbers: Numbers) -> Value:
-    """Least radius of the contour at zero lift, m."""
-    least: Value = numbers["cam.prime_radius"] - numbers["follower.surface"]
-    return least
+def base_radii(numbers: Numbers) -> tuple[Value, Value]:
+    """Radii of the base circles of the first disc and of a second, else of the first again, m."""
+    first: Value = numbers["cam.prime_radius"] - numbers["follower.surface"]
+    second = numbers.get("cam.second_base_radius")
+    return first, first if second is None else second
 
 
 def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
-    """Cam on its shaft as a ring of its least radius or, if `thick`, of that and the travel of the
-    spring, a bound of its greatest; None without a fit.
+    """Cam on its shaft as a ring of its least radius, of two discs the lesser, or, if `thick`, of
+    that and the travel of the spring, a bound of its greatest; None without a fit.
 
     None without the material of the camshaft, too. The least radius has the lower pressure and,
     of one interference, the greater hoop stress.
@@ -374,7 +375,7 @@ def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
     case = numbers.case
     if case is None or case.cam.fit is None or case.camshaft is None:
         return None
-    shaft, outer = case.camshaft.material, base_radius(numbers)
+    shaft, outer = case.camshaft.material, np.minimum(*base_radii(numbers))
     if shaft is None:
         return None
     if thick:

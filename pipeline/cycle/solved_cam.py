@@ -41,12 +41,17 @@ def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
 
 
 def numbers_of_discs(case: Case, machines: Sequence[Machine], contour: Contour) -> Numbers:
-    """`numbers_of`, of a cam without a spring or with two tracks with its greatest radius."""
+    """`numbers_of`, of a cam without a spring or with two tracks with its greatest radius and the
+    base radius of a second disc.
+    """
     numbers, machine = numbers_of(case, machines), machines[0]
     if machine.cam.second is None and not machine.spring.absent:
         return numbers
-    tips = [each.contour.radius_max().value for each in discs_of(contour, machine.cam.second)]
-    return numbers | {"cam.greatest_radius": max(tips)}
+    discs = [each.contour for each in discs_of(contour, machine.cam.second)]
+    radii = {"cam.greatest_radius": max(each.radius_max().value for each in discs)}
+    if len(discs) > 1:
+        radii["cam.second_base_radius"] = discs[1].radius_min().value
+    return numbers | radii
 
 
 def in_load_case(numbers: Numbers, machine: Machine) -> Numbers:
@@ -267,8 +272,7 @@ class SolvedCam(ForcesCam):
 
     @property
     def shaft_tilts(self) -> tuple[Array, ...]:
-        other = self.cycle.on_other_track
-        return (self.shaft_tilt,) if other is None else (self.shaft_tilt, other.shaft_tilt)
+        return self.cycle.on_each_disc(lambda each: each.shaft_tilt)
 
     @property
     def squeeze(self) -> Squeezed | None:

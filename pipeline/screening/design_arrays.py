@@ -160,7 +160,11 @@ class Designs:
         second = self.second_of(first) if self.case.cam.conjugate is not None else None
         discs = (first,) if second is None else (first, second.motion)
         widest = np.max([sampled_greatest(each.contour_radius) for each in discs], axis=0)
-        return numbers | {"cam.greatest_radius": widest[:, None]}
+        radii: dict[str, Value | None] = {"cam.greatest_radius": widest[:, None]}
+        if second is not None:
+            roller = roller_of(second.motion)
+            radii["cam.second_base_radius"] = roller.prime_radius[:, :1] - roller.size
+        return numbers | radii
 
     def limit(self, row: AnyLimit) -> Array:
         """Values of a limit (m,), SI; NaN without one."""

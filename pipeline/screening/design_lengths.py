@@ -86,14 +86,15 @@ class LineFactors(NamedTuple):
 class FollowerTurning(NamedTuple):
     """What turns the followers of designs across the plane of the cam, arrays (m, n).
 
-    shaft: slope of the camshaft at the cam, rad, as of `LineTilt`; shaft_compliance: of
-    it per moment there, rad/(N m); held: couple that the follower holds without a tilt, N m; twist:
-    of an arm under a contact beside its middle, or of a stem by `beside`, rad; beside: couple of a
-    second roller on the pin about the first, N m
+    shaft: slope of the camshaft at the cam, rad, as of `LineTilt`; shaft_compliance: of it per
+    moment there, rad/(N m); base_radius: of the base circle of the disc, m; held: couple that the
+    follower holds without a tilt, N m; twist: of an arm under a contact beside its middle, or of a
+    stem by `beside`, rad; beside: couple of a second roller on the pin about the first, N m
     """
 
     shaft: Array
     shaft_compliance: Value
+    base_radius: Value
     held: Array
     twist: Array
     beside: Array
@@ -103,6 +104,7 @@ def turning_of(
     designs: DesignValues,
     shaft: Array,
     shaft_compliance: Value,
+    base_radius: Value,
     force: Array,
     rubbing: tuple[Array, Array],
     pivot: Array,
@@ -114,6 +116,7 @@ def turning_of(
     ----------
     shaft : array (m, n)                 slope of the camshaft at the cam, rad
     shaft_compliance : float or (m, n)   of it per moment there, rad/(N m)
+    base_radius : float or (m, n)        of the base circle of the disc, m
     force, pivot : array (m, n)          normal force, and load of an arm on its pivot, N
     rubbing : two arrays (m, n)          normal loads of guides A and B, N
     beyond : float or (m, n)             distance of the roller that carries from the first on a
@@ -125,7 +128,8 @@ def turning_of(
     on_arm = designs.machine.arm is not None
     twist = follower.turned(loads, designs.stem_offset + (beyond if on_arm else 0.0))
     beside = couple_of_second(force, beyond)
-    turning = FollowerTurning(shaft, shaft_compliance, follower.held(loads), twist, beside)
+    held = follower.held(loads)
+    turning = FollowerTurning(shaft, shaft_compliance, base_radius, held, twist, beside)
     if on_arm:
         return turning
     return turning._replace(twist=twist + turning.beside * _tilt_compliance(designs, turning))
@@ -288,7 +292,7 @@ def _tilt(designs: DesignValues, turning: FollowerTurning) -> LineTilt:
         turning.shaft,
         parallelism=designs.value(f"limits.{AXIS_PARALLELISM.id}"),
         run_out=designs.value(f"limits.{CAM_RUN_OUT.id}"),
-        base_radius=designs.value("cam.prime_radius") - designs.numbers["follower.surface"],
+        base_radius=turning.base_radius,
         clearance=designs.value(f"limits.{ROLLER_CLEARANCE.id}"),
         bearing_length=width,
         guides=designs.tilting.within(_spacing(designs)),

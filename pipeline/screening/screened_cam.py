@@ -380,8 +380,8 @@ class ScreenedCam(CarriedCam):
     def _turning(self) -> FollowerTurning:
         pivot = np.zeros(self.normal.shape) if self.pivoted is None else self.pivot_load
         return turning_of(
-            *(self.block, self.shaft_tilt, self.shaft_compliance, self.normal, self.rubbing, pivot),
-            np.abs(self.beyond),
+            *(self.block, self.shaft_tilt, self.shaft_compliance, self.base_radius),
+            *(self.normal, self.rubbing, pivot, np.abs(self.beyond)),
         )
 
     @cached_property

@@ -21,8 +21,6 @@ OWN = {
     # places of the first disc and its arm, and masses of their parts
     *("arm_gap", "arm_cam_gap", "fork_gap", "fork_shaft_gap", "gear_gap", "second_track_gap"),
     *("follower_mass", "arm_fatigue_roller"),
-    # the ring of the seat has the radius of the first disc
-    *("cam_slip", "fit_yield"),
 }
 """Checks of what the case states of the first disc alone."""
 
@@ -45,7 +43,6 @@ def named():
         'roller_radius = "22 mm"': 'roller_radius = "25 mm"',
         'swing = "with"': 'swing = "with"\nplane_offset = "20 mm"',
         "positions = 720": "positions = 240",
-        "[limits]": '[limits]\ncam_run_out = "0 um"',  # on the radius of the first disc
     })  # fmt: skip
 
 
