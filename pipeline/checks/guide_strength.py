@@ -66,7 +66,7 @@ ARM_LENGTH = "follower.arm.length"
 Side = Literal["A", "B"]
 Place = Literal["A", "B", "pivot"]
 GUIDES: tuple[Side, ...] = ("A", "B")
-TILTED = ", with those of the greatest moment of the contact, which tilts the pin"
+TILTED = ", the pin tilted by the greatest moment of the contact"
 """Words of the pushes on the bush of a pivot."""
 PLACES: tuple[Place, ...] = (*GUIDES, "pivot")
 """Guides of a stem, and the pivot of an arm, which has a bush, too."""
@@ -419,10 +419,9 @@ PV: Mapping[Place, Measure] = {side: _pv_in(side) for side in PLACES}
 
 def _pv_of_reaction(side: Place, cycle: Cycle) -> float:
     """PV value by the net reaction, in which loads on opposite sides of the bore cancel, Pa m/s."""
-    machine, guide = cycle.machine, guide_of(cycle.machine, side)
+    guide, arm = guide_of(cycle.machine, side), cycle.machine.arm if side == "pivot" else None
+    share = 1.0 if arm is None else 0.5 * guide.diameter / arm.length
     rubbed = np.mean(np.abs(_reaction(cycle, side) * cycle.loads.velocity))
-    on_pin = side == "pivot" and machine.arm is not None
-    share = 0.5 * guide.diameter / machine.arm.length if on_pin and machine.arm else 1.0
     return float(rubbed) * share / guide.projected_area
 
 
