@@ -623,7 +623,7 @@ def _ring_fatigue(at: JudgedRoller) -> Declaration:
     ring, fatigue = _Ring(at), at.key("ring.fatigue_bending")
     return check(
         id=f"{at.name}_ring_fatigue",
-        title=f"Bending fatigue of the {'' if at.first else 'second '}roller's outer ring",
+        title=f"Bending fatigue of the {at.roller}'s outer ring",
         unit="MPa",
         source=Source("fatigue strength in bending", confirmed=True),
         method="stress at the groove of the turning ring, finite elements on balls without tension,"
@@ -633,9 +633,7 @@ def _ring_fatigue(at: JudgedRoller) -> Declaration:
         needs="roller",
         closed_by=at.closed_by,
         part="roller_bearing",
-        kept_as="normal force at the bending fatigue of the roller's outer ring"
-        if at.first
-        else "",
+        kept_as=f"normal force at the bending fatigue of the {at.roller}'s outer ring",
         formula="s_a/(1 - s_m/R_m) <= s_W; s_a, s_m: amplitude and mean of the stress at the groove"
         f" per newton, times the {at.greatest}, R_m, s_W: tensile and"
         " fatigue strength of the ring. A ring in a roller of its own is held by it: not judged.",

@@ -130,6 +130,11 @@ class JudgedRoller(NamedTuple):
         """Dotted key of a number of the bearing."""
         return f"{self.table}.{name}"
 
+    @property
+    def roller(self) -> str:
+        """The roller in words."""
+        return self.name.replace("_", " ")
+
     def roller_in(self, case: Case) -> Roller:
         """The roller of a case."""
         return case.roller if self.first else on_second_track(case.roller, case.cam)
@@ -410,7 +415,7 @@ def _static_safety(at: JudgedRoller) -> Declaration:
         title=f"Static safety factor of {at.bearing}",
         method=f"static rating over the {at.force}",
         closed_by=at.closed_by,
-        kept_as="static load rating of the roller" if at.first else "",
+        kept_as=f"static load rating of the {at.roller}",
         formula=f"C0/N >= S; C0: static rating, N: {at.greatest}, S: limits.roller_static_safety",
         symbols={"N": "normal_force", "C0": key},
         reason="beyond it the balls dent the raceways",
@@ -493,7 +498,7 @@ def _load_share(at: JudgedRoller) -> Declaration:
         title=f"Greatest load over dynamic rating of {at.bearing}",
         method=f"{at.force} over the dynamic rating",
         closed_by=at.closed_by,
-        kept_as="share of the dynamic load rating of the roller" if at.first else "",
+        kept_as=f"share of the dynamic load rating of the {at.roller}",
         formula=f"N/C <= x; N: {at.greatest}, C: dynamic rating, x: limits.roller_load_share",
         symbols={"N": "normal_force", "C": key},
         reason="beyond it the balls yield in their raceways and no rating life is valid",
@@ -530,7 +535,7 @@ def _rating_life(
         title=f"L10 rating life of {at.bearing}",
         method=method,
         closed_by=at.closed_by,
-        kept_as="dynamic load rating of the roller" if at.first else "",
+        kept_as=f"dynamic load rating of the {at.roller}",
         formula=f"(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the {mean}, n: its"
         f" mean speed, L: limits.roller_life. Over the load cases {BY_DUTY}.",
         symbols=symbols,
@@ -583,7 +588,7 @@ def _modified_rating_life(at: JudgedRoller, symbols: Mapping[str, str]) -> Decla
         method="a1 a_ISO (C / P)^3 million revolutions, the damage of the positions of a turn"
         " added; infinite at rest",
         closed_by=at.closed_by,
-        kept_as="dynamic load rating of the roller at its modified life" if at.first else "",
+        kept_as=f"dynamic load rating of the {at.roller} at its modified life",
         formula="a1 a_ISO (C/P_m)^3 10^6/n >= L; a1 = 0.05 + 0.95 (ln(1/R)/ln(1/0.9))^(1/1.5): of"
         f" the reliability R, limits.roller_reliability, C, P_m, n: as of {at.name}_life, a_ISO: of"
         " the viscosity ratio and of e_C P_u/P, mean over the damage of the turn, e_C: of"
@@ -630,11 +635,11 @@ def _speed(at: JudgedRoller, radius: str) -> Declaration:
     return _of_roller(
         ROLLER_SPEED_SHARE,
         id=f"{at.name}_speed",
-        title=f"Maximum {'' if at.first else 'second '}roller speed vs. limiting speed",
+        title=f"Maximum {at.roller} speed vs. limiting speed",
         unit="rpm",
         method="rolling without slip: w (|dP/dtheta| - r) / r",
         closed_by=at.closed_by,
-        kept_as="limiting speed of the roller" if at.first else "",
+        kept_as=f"limiting speed of the {at.roller}",
         formula=f"w |(|P'| - r)/r| <= x n_g; P': pitch curve by cam angle, r: {radius}, n_g:"
         " limiting speed, x: limits.roller_speed_share",
         symbols={
@@ -677,7 +682,7 @@ def _outer_ring(at: JudgedRoller, name: str, words: str, symbol: str, breaks: st
         source=Source(f"{symbol} of a track roller", confirmed=True),
         method=f"{at.force} over the turn",
         closed_by=at.closed_by,
-        kept_as=f"maximum {rated} load of the roller's outer ring" if at.first else "",
+        kept_as=f"maximum {rated} load of the {at.roller}'s outer ring",
         formula=f"N <= {symbol}; N: {at.greatest}, {symbol}: maximum {words} load of an outer ring"
         " without a housing",
         symbols={"N": "normal_force", symbol: key},
@@ -713,7 +718,7 @@ def _lubrication(at: JudgedRoller, name: str) -> Declaration:
         needs="roller",
         closed_by=at.closed_by,
         part="roller_bearing",
-        kept_as="mean speed of the roller at the least viscosity ratio" if at.first else "",
+        kept_as=f"mean speed of the {at.roller} at the least viscosity ratio",
         formula="v/v1 >= k; v1 = a n^b / sqrt(D): rated viscosity of ISO 281, n: mean speed of the"
         f" roller in rpm{at.spin}, D: pitch diameter of its balls in mm, a, b: 45000 and -0.83"
         " below 1000 rpm, else 4500 and -0.5, v: viscosity in operation, both in mm2/s, k:"
