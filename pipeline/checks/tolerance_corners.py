@@ -82,10 +82,10 @@ def _limits_of_fit(case: Case, ranges: _Ranges) -> Iterator[Corner]:
     for itself; the statistical sum is that of the sample. What narrows it at some angles and widens
     it at others is at both its ends. None where a single tolerance moves it.
     """
-    moved = [label for label in case.cam.deviations if label in ranges]
-    if len(moved) < 2:
+    toleranced = [label for label in case.cam.deviations if label in ranges]
+    if len(toleranced) < 2:
         return
-    either = [label for label in moved if label not in NARROWING]
+    either = [label for label in toleranced if label not in NARROWING]
     clear = case.cam.clearance > 0.0
     for narrow in (True, False):
         extreme = "minimum" if narrow is clear else "maximum"
@@ -261,7 +261,7 @@ def _ranges(case: Case) -> _Ranges:
         "crank inertia": {"inertia": around(inertia)},
         "phase": {"phase": (-tolerances.phase, tolerances.phase)},
         "line profile": {"profile": (-0.5 * profile, 0.5 * profile)},
-        **{name: dict(moved) for name, moved in case.cam.deviations.items()},
+        **{name: dict(ends) for name, ends in case.cam.deviations.items()},
     }
     return {
         label: bounds

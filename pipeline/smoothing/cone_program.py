@@ -331,8 +331,8 @@ def _solved(
     """Solution of the cone program of `solved`, with the same arguments, with all of `norms` in it;
     None where the solver finds none.
     """
-    moved, forces = slope.size, 0 if idle is None else idle.level.size
-    size = moved + forces
+    steps, forces = slope.size, 0 if idle is None else idle.level.size
+    size = steps + forces
     costs = list(dict.fromkeys(row.name for row in rows if row.cost))
     names = costs + list(dict.fromkeys(r.name for r in rows if r.elastic and not r.cost))
     if any(norm.ceiling is not None for norm in norms):
@@ -356,8 +356,8 @@ def _solved(
             columns = np.array([[bounded + k, bounded - 1]])
             program.rows_at_most([[1.0, -1.0]], columns, norm.ceiling)
     every = np.arange(bounded)[:, None]
-    program.rows_at_most(1.0, every[:moved], box[1])
-    program.rows_at_most(-1.0, every[:moved], -box[0])
+    program.rows_at_most(1.0, every[:steps], box[1])
+    program.rows_at_most(-1.0, every[:steps], -box[0])
     program.rows_at_most(-1.0, every[size + 1 + len(costs) :], 0.0)
     if reach is not None:
         rows_of = reach.slopes.shape[0]
@@ -365,10 +365,10 @@ def _solved(
         if reach.still is not None:
             program.zero(reach.still)
     if idle is not None:
-        program.rows_at_most(-1.0, every[moved:size], 0.0)
+        program.rows_at_most(-1.0, every[steps:size], 0.0)
         program.rows_at_most(
             np.hstack([idle.entries, np.full((forces, 1), -1.0)]),
-            np.hstack([idle.columns, every[moved:size]]),
+            np.hstack([idle.columns, every[steps:size]]),
             -idle.level,
         )
     for k, norm in enumerate(norms):
@@ -380,7 +380,7 @@ def _solved(
     parts = np.split(duals, np.cumsum([row.level.size for row in rows]))
     cones = iter(parts[-1])
     return ConeSolution(
-        step=values[:moved],
+        step=values[:steps],
         ripple=float(values[size]),
         slack={name: float(values[size + 1 + k]) for k, name in enumerate(names)},
         rows=parts[:-1],
