@@ -374,7 +374,9 @@ class Case(Displayed, Section):
 
     @property
     def bearings(self) -> Mapping[str, Bearing]:
-        """Described bearings of rollers by the dotted name of their table."""
+        """Described bearings of rollers by the dotted name of their table; none of a face."""
+        if self.roller_given is None:
+            return {}
         described, second = {Bearing.table: self.roller.bearing}, self.cam.on_pin
         if second is not None and second.bearing is not None:
             described[SECOND_BEARING] = on_second_track(self.roller, self.cam).bearing

@@ -74,7 +74,7 @@ from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.pivot import Pivot
 from camwright.pipeline.follower.pivot_forces import FRICTION, ArmPivot
 from camwright.pipeline.follower.rocker import Rocker, RockerOutput
-from camwright.pipeline.follower.roller import Roller
+from camwright.pipeline.follower.roller import Roller, on_second_track
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem
 from camwright.pipeline.torque.period import Period
@@ -382,7 +382,7 @@ class Machine(Displayed):
         if second is None or not second.own_disc:
             return self
         least = float(second.track(contour.pitch).contour.radius_min().value)
-        roller = replace(self.roller, radius=second.radius)
+        roller = on_second_track(self.roller, self.cam)
         cam = replace(self.cam, prime_radius=least + second.radius)
         return replace(self, follower=roller, cam=cam)
 

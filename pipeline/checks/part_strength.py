@@ -50,7 +50,7 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import pin_strength
 from camwright.pipeline.follower.bearing_ring import goodman
 from camwright.pipeline.follower.camshaft_loads import Camshaft
-from camwright.pipeline.follower.roller import Roller
+from camwright.pipeline.follower.roller import Roller, on_second_track
 from camwright.pipeline.follower.roller_parts import Fork, Pin
 
 
@@ -533,7 +533,7 @@ def _of_second(machine: Machine, masses: Mapping[str, float]) -> dict[str, float
     if second is None:
         return {}
     roller = machine.roller
-    added = {"second roller": replace(roller, radius=second.radius).drawn_mass}
+    added = {"second roller": on_second_track(roller, machine.cam).drawn_mass}
     if roller.pin is None or "pin" not in masses:
         return added
     longer = max(float(second.beyond(roller.radius)), 0.0)

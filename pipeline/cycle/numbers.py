@@ -284,51 +284,33 @@ def _ball_circle(numbers: Numbers) -> Value | None:
     return numbers.get("roller.bearing.ring.pitch_diameter") if stated is None else stated
 
 
-def _cleanliness_load(numbers: Numbers) -> Value | None:
-    """Contamination factor times fatigue load limit of the roller bearing, e_C P_u, N; None unless
-    cleanliness and fatigue load limit are known.
-    """
-    case = numbers.case
-    cleanliness = None if case is None else value_of(case, "roller.bearing.contamination")
-    limit = numbers.get("roller.bearing.fatigue_load_limit")
-    if cleanliness is None or limit is None:
-        return None
-    circle = float(numbers["roller.bearing.pitch_diameter"])
-    return limit * contamination_factor(cleanliness, circle)
-
-
-def _own_of_second(numbers: Numbers) -> Bearing | None:
-    """Own bearing of a second roller on the pin of the first; None where it is like the first."""
-    case = numbers.case
-    second = None if case is None else case.cam.on_pin
-    if case is None or second is None or second.bearing is None:
-        return None
-    return second.bearing.beside(case.roller.bearing)
+def _bearing(table: str, numbers: Numbers) -> Bearing | None:
+    """Bearing of a roller by its table; None where the case has none there."""
+    return None if numbers.case is None else numbers.case.bearings.get(table)
 
 
 def _of_second(name: str, field: str, numbers: Numbers) -> Value | None:
-    """Number of the bearing of such a roller by its key; field: of its own bearing."""
-    bearing = _own_of_second(numbers)
+    """Number of the bearing of a second roller on the pin of the first, by its key; field: of its
+    own bearing.
+    """
+    bearing = _bearing(SECOND_BEARING, numbers)
     if bearing is None:
         return numbers.get(f"{Bearing.table}.{name}")
     stated: Value | None = getattr(bearing, field)
     return stated
 
 
-def _cleanliness_of_second(numbers: Numbers) -> Value | None:
-    """As `_cleanliness_load`, of the bearing of such a roller."""
-    bearing = _own_of_second(numbers)
-    if bearing is None:
-        return numbers.get("roller.bearing.cleanliness_load")
-    if (
-        bearing.contamination is None
-        or bearing.fatigue_load_limit is None
-        or bearing.ball_circle is None
-    ):
-        return None
-    return bearing.fatigue_load_limit * contamination_factor(
-        bearing.contamination, bearing.ball_circle
+def _cleanliness_load(table: str, numbers: Numbers) -> Value | None:
+    """Contamination factor times fatigue load limit of the bearing of a roller, e_C P_u, N; None
+    unless cleanliness, fatigue load limit and pitch diameter are known.
+    """
+    bearing = _bearing(table, numbers) or _bearing(Bearing.table, numbers)
+    limit, circle = (
+        numbers.get(f"{table}.{name}") for name in ("fatigue_load_limit", "pitch_diameter")
     )
+    if bearing is None or bearing.contamination is None or limit is None or circle is None:
+        return None
+    return limit * contamination_factor(bearing.contamination, float(circle))
 
 
 def _waviness(numbers: Numbers) -> Value | None:
@@ -492,9 +474,11 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
         )
     },
     f"{SECOND_BEARING}.pitch_diameter": partial(_of_second, "pitch_diameter", "ball_circle"),
-    f"{SECOND_BEARING}.cleanliness_load": _cleanliness_of_second,
     "spring.link.body": _link_body,
     "roller.bearing.pitch_diameter": _ball_circle,
-    "roller.bearing.cleanliness_load": _cleanliness_load,
+    **{
+        f"{table}.cleanliness_load": partial(_cleanliness_load, table)
+        for table in (Bearing.table, SECOND_BEARING)
+    },
 }
 """Numbers that follow from others, unless they are stated themselves."""
