@@ -139,6 +139,16 @@ def in_steps(numbers: Numbers) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def pressed(numbers: Numbers) -> dict[str, Any]:
+    """Solved forces and preload of both discs of a pair."""
+    solution = made.preloaded()
+    cam = solution.cams[solution.cycles[0]]
+    return {
+        name: getattr(cam, name)
+        for name in ("jet", "normal", "axial", "motion", "squeeze", "on_bodies", "speed")
+    }
+
+
 OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
     "arm_yield": on_arm,
     "rocker_yield": on_arm,
@@ -156,6 +166,7 @@ OTHER: dict[str, Callable[[Numbers], dict[str, Any]]] = {
     ),
     "concave_radius": hollow,
     "groove_wall": in_groove,
+    "preload_waviness": pressed,
     **dict.fromkeys(
         (
             f"second_roller_{each}"

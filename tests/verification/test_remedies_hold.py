@@ -130,8 +130,8 @@ def test_two_workers_find_the_same_remedies(trial: Trial, texts: dict[str, str])
 
 
 FEEBLE = {
-    "wear": {"limits.target_life": "100000 h"},
-    "pressure": {"follower.pivot.bush.pressure_limit": "1 MPa"},
+    "wear": {"limits.target_life": "50000 h"},
+    "pressure": {"follower.pivot.bush.pressure_limit": "9 MPa"},
     "section": {
         "follower.arm.depth": "14 mm", "follower.arm.bore": "10 mm", "follower.arm.hub": "20 mm",
     },
@@ -139,7 +139,7 @@ FEEBLE = {
 """Values of the first case of an arm with which its pivot wears or is pressed too much, or its
 section is too weak."""
 STRENGTHENED = {
-    "wear": {"pivot_wear": "follower.pivot.bush.wear_rate"},
+    "wear": {"pivot_wear": "follower.pivot.bush.length"},
     "pressure": {"pivot_pressure": "follower.pivot.bush.length"},
     "section": {"arm_fatigue_pivot": "follower.arm.depth", "arm_yield": "follower.arm.depth"},
 }
