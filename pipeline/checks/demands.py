@@ -13,6 +13,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN
+from camwright.pipeline.checks.extremes import on_both_tracks
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.cycle.numbers import Numbers
 
@@ -53,13 +54,13 @@ class PerLoad(NamedTuple):
 
 
 def normal_force(cam: LoadedCam) -> Array:
-    """Measure: normal force between cam and follower, N."""
-    return cam.normal
+    """Measure: normal force between cam and follower, N, of preloaded discs the greater of both."""
+    return on_both_tracks(cam, lambda each: each.normal)
 
 
 def force_over(cam: LoadedCam, limit: float) -> Array:
     """Normal force over its limit, N, with the weight of the checks that grow with it."""
-    return cam.force_weight * cam.normal / limit
+    return cam.force_weight * normal_force(cam) / limit
 
 
 def cam_torque(cam: LoadedCam) -> Array:

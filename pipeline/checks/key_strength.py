@@ -34,7 +34,13 @@ from camwright.pipeline.checks.check import (
     check,
 )
 from camwright.pipeline.checks.demands import CAM_TORQUE, PerLoad, rating_over, seat_torque
-from camwright.pipeline.checks.extremes import NOWHERE, Extreme, row_of, worst_measure
+from camwright.pipeline.checks.extremes import (
+    NOWHERE,
+    Extreme,
+    on_both_tracks,
+    row_of,
+    worst_measure,
+)
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.cam_body import CamBody, ParallelKey
 from camwright.pipeline.contact.tiers import Tier
@@ -476,7 +482,8 @@ def _loose_root(
     pulsating stress, Pa, as amplitude "a" and mean "m", and factors of its strength; wall, m.
     """
     cycle, k = row_of(solution.cycles, worst)
-    torque, force = abs(cycle.loads.seat_torque[k]), abs(cycle.loads.normal_force[k])
+    force = on_both_tracks(cycle, lambda each: np.abs(each.loads.normal_force))[k]
+    torque = abs(cycle.loads.seat_torque[k])
     counted = min(wall, float(root.thick))
     stress = root.by_torque * torque + root.by_force * force * (root.thick / counted)
     half = float(0.5 * np.ravel(stress)[0])
@@ -593,7 +600,8 @@ def keyway_root(cam: LoadedCam) -> Array:
     root = keyway_root_of(cam.numbers)
     wall = np.asarray(cam.least_radius - root.held_radius)
     counted = np.where(np.real(wall) < root.thick, wall, root.thick)
-    used: Array = root.used_by(magnitude(cam.seat_torque), magnitude(cam.normal), counted)
+    force = on_both_tracks(cam, lambda each: magnitude(each.normal))
+    used: Array = root.used_by(magnitude(cam.seat_torque), force, counted)
     applicable = (np.real(wall) >= root.thin) & np.isfinite(used)
     return np.where(applicable, 1.0 / np.where(np.real(used) > TINY, used, TINY), np.nan)
 

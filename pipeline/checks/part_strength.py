@@ -37,8 +37,15 @@ from camwright.pipeline.checks.check import (
     check,
     of_key,
 )
+from camwright.pipeline.checks.contact_strength import with_its_track
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, force_over, normal_force
-from camwright.pipeline.checks.extremes import Measure, cam_of, cycle_of, worst_case
+from camwright.pipeline.checks.extremes import (
+    Measure,
+    cam_of,
+    cycle_of,
+    on_both_tracks,
+    worst_case,
+)
 from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.checks.roller_bearing import FIRST_ROLLER, SECOND_ROLLER, JudgedRoller
 from camwright.pipeline.contact.tiers import Tier
@@ -82,7 +89,8 @@ def _of_force(stress: Stress) -> PerLoad:
 
 def _level_force(stress: Stress, moment: Measure = lambda cam: cam.follower_moment) -> Measure:
     """Measure of the force in the middle of the roller that gives the same stress of a part as the
-    contact with its moment, of two rollers on a pin about the first one.
+    contact with its moment, of two rollers on a pin about the first one; of preloaded discs on that
+    track which the cam is seen from.
     """
 
     def level_force(cam: LoadedCam) -> Array:
@@ -91,6 +99,28 @@ def _level_force(stress: Stress, moment: Measure = lambda cam: cam.follower_mome
         return stress(force, moment(cam), numbers) / stress(1.0, 0.0, numbers)
 
     return level_force
+
+
+def _of_either(force: Measure) -> Measure:
+    """Measure of a force on one track, of preloaded discs the greater of both."""
+    return lambda cam: on_both_tracks(cam, force)
+
+
+def _with_its_disc(
+    force: Measure, remark: Callable[[Demand, Solution], Demand], *names: str
+) -> Callable[[Demand, Solution], Demand]:
+    """Remark with the force of the disc that is pressed harder by `force`, and with two names the
+    moment of its contact, by their names in the formula.
+    """
+    columns = (lambda cycle: cycle.loads.normal_force), (lambda cycle: cycle.follower_moment)
+
+    def with_its_disc(demand: Demand, solution: Solution) -> Demand:
+        return with_its_track(
+            remark(demand, solution), solution, lambda cycle: force(cam_of(solution, cycle)),
+            dict(zip(names, columns, strict=False)),
+        )  # fmt: skip
+
+    return with_its_disc
 
 
 def _on_pin(cam: LoadedCam) -> Array:
@@ -120,6 +150,7 @@ def _pin_in_words(demand: Demand, solution: Solution) -> Demand:
 
 
 _of_bending = _of_force(_bending)
+_BENDING = _level_force(_bending, _on_pin)
 _ON_ROLLER = {"N": "normal_force", "C": "follower_moment"}
 _ROLLER_LOAD = (
     "N, C: force and moment of the contact on the middle of the roller, by its ends, tilt and axial"
@@ -163,11 +194,11 @@ roller_pin = check(
     value=_of_bending.value,
     bound=_of_bending.bound,
     allowed=_bending_allowed,
-    remark=_pin_in_words,
+    remark=_with_its_disc(_BENDING, _pin_in_words, "N", "C"),
     deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(_level_force(_bending, _on_pin))
+)(_of_either(_BENDING))
 
 
 _PIN_FIBRES = 180  # around the pin; between two of them the stress differs by 1e-4 at most
@@ -269,6 +300,7 @@ def _shear_allowed(numbers: Numbers) -> Allowed:
 
 
 _of_shear = _of_force(_shear)
+_SHEAR = _level_force(_shear, _on_pin)
 roller_pin_shear = check(
     PIN_SHARE,
     id="roller_pin_shear",
@@ -300,11 +332,11 @@ roller_pin_shear = check(
     value=_of_shear.value,
     bound=_of_shear.bound,
     allowed=_shear_allowed,
-    remark=_with_card_of_pin,
+    remark=_with_its_disc(_SHEAR, _with_card_of_pin, "N", "C"),
     deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(_level_force(_shear, _on_pin))
+)(_of_either(_SHEAR))
 
 
 def _seat(force: Value, moment: Value, numbers: Numbers) -> Array:
@@ -323,6 +355,7 @@ def _share_of_tensile(row: Limit, cards: Sequence[Material], numbers: Numbers) -
 
 
 _of_seat = _of_force(_seat)
+_SEAT = _level_force(_seat)
 roller_pin_pressure = check(
     PIN_PRESSURE_SHARE,
     id="roller_pin_pressure",
@@ -360,11 +393,11 @@ roller_pin_pressure = check(
     allowed=lambda numbers: _share_of_tensile(
         PIN_PRESSURE_SHARE, (_described(numbers)[1].material,), numbers
     ),
-    remark=_with_card_of_pin,
+    remark=_with_its_disc(_SEAT, _with_card_of_pin, "N", "C"),
     deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(_level_force(_seat))
+)(_of_either(_SEAT))
 
 
 def _fork_and_pin(roller: Roller) -> tuple[Fork, Pin] | None:
@@ -411,6 +444,7 @@ def _cheek_in_words(demand: Demand, solution: Solution) -> Demand:
 
 
 _of_cheek = _of_force(_cheek)
+_CHEEK = _level_force(_cheek, _on_pin)
 cheek_pressure = check(
     PIN_PRESSURE_SHARE,
     id="cheek_pressure",
@@ -450,11 +484,11 @@ cheek_pressure = check(
     bound=_of_cheek.bound,
     allowed=_cheek_allowed,
     needed=(Pin.table,),
-    remark=_cheek_in_words,
+    remark=_with_its_disc(_CHEEK, _cheek_in_words, "N", "C"),
     deviation=0.005,
     bounded="line",
     kept=Kept(group=NORMAL_FORCE),
-)(_level_force(_cheek, _on_pin))
+)(_of_either(_CHEEK))
 
 
 @check(
@@ -747,7 +781,7 @@ bore_pressure = check(
     value=_of_bore.value,
     bound=_of_bore.bound,
     allowed=_bore_allowed,
-    remark=_with_cards_of_bore,
+    remark=_with_its_disc(lambda cam: cam.normal, _with_cards_of_bore, "F_n"),
     deviation=0.005,
     kept=Kept(force_over, group=NORMAL_FORCE, unit="N", needs="face"),
 )(normal_force)

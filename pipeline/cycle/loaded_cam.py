@@ -959,7 +959,7 @@ class CarriedCam(LoadedCam):
 
     facing: CarriedCam | None = field(default=None, repr=False)
 
-    @property
+    @cached_property
     def on_other_track(self) -> Self | None:
         """Contact and normal force are those of that track, the rest is of both."""
         if self.squeeze is None or not self.pulls:

@@ -266,7 +266,7 @@ def headline(solution: Solution) -> HeadlineRecord:
         "pitch_radius_of_curvature_min_mm": _MM
         * min(each.contour.least_convex_pitch_radius().value for each in solution.discs),
         "normal_force_min_N": min(map(_least_force, solution.cycles)),
-        "normal_force_max_N": over(lambda c: c.loads.normal_force),
+        "normal_force_max_N": over(lambda c: on_both_tracks(c, _normal_force)),
         "p0_max_MPa": contact(lambda h: h.p0, _MPA),
         "p0_hertz_max_MPa": contact(lambda h: h.p0_hertz, _MPA),
         "half_width_max_mm": contact(lambda h: h.half_width, _MM),
@@ -281,6 +281,11 @@ def headline(solution: Solution) -> HeadlineRecord:
         else None,
         "residual_equilibrium_max": _residual_max(solution.cycles),
     }
+
+
+def _normal_force(cycle: Cycle) -> Array:
+    """Normal force on the track that a cycle is seen from (n,), N."""
+    return cycle.loads.normal_force
 
 
 def _least_force(cycle: Cycle) -> float:
@@ -331,7 +336,7 @@ def figures(trial: Trial) -> CamFigures:
                 "speed_rpm": in_unit(cycle.machine.crank_speed, "rpm"),
                 "cam_speed_rpm": in_unit(cycle.machine.cam_speed, "rpm"),
                 "normal_force_min_N": _least_force(cycle) and trough(loads.normal_force),
-                "normal_force_max_N": peak(loads.normal_force) if whole else None,
+                "normal_force_max_N": peak(on_both_tracks(cycle, _normal_force)) if whole else None,
                 "drive_torque_min_Nm": trough(loads.cam_torque) if whole else None,
                 "drive_torque_max_Nm": peak(loads.cam_torque) if whole else None,
                 "p0_hertz_max_MPa": peak(p0_hertz, _MPA) if whole else None,

@@ -29,6 +29,7 @@ from camwright.pipeline.case.case_values import quantity_of, value_of
 from camwright.pipeline.case.lift_section import LiftPoints, LiftSegments
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.case.load_case_torque import has_torque
+from camwright.pipeline.checks.demands import normal_force
 from camwright.pipeline.checks.extremes import on_both_tracks
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.contact.tiers import Tier
@@ -417,7 +418,7 @@ HEADLINE = (
     _Headline("torque_ripple", "Torque ripple with the cam", "N m", "greatest", "ripple", _ripple),
     _Headline(
         "contact_force", "Maximum contact force", "N", "greatest", "force",
-        lambda _, cam: sampled_greatest(cam.normal),
+        lambda _, cam: sampled_greatest(normal_force(cam)),
     ),
     _Headline(
         "pressure_angle_max", "Maximum pressure angle", "deg", "greatest", "shape",

@@ -345,7 +345,7 @@ def weights_of(solved: Solution, ratings: Ratings) -> Weights:
 
 LOADED_SHARE = 0.05  # of the maximum: least load of a meaningful ratio
 _GROUPS: Mapping[str, Callable[[Cycle], Array]] = {
-    NORMAL_FORCE: lambda cycle: cycle.loads.normal_force,
+    NORMAL_FORCE: lambda cycle: on_both_tracks(cycle, lambda one: one.loads.normal_force),
     PRESSURE: lambda cycle: on_both_tracks(cycle, middle_pressure),
 }
 """Load of a group at each cam angle of a cycle (n,), N or Pa; of preloaded discs the greater

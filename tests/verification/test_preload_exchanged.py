@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.checks.demands import normal_force
+from camwright.pipeline.checks.extremes import cam_of
 from camwright.pipeline.cycle.certificate_angles import length_loads
 from camwright.pipeline.follower import disc_preload
 from camwright.pipeline.follower.disc_preload import DiscPreload
@@ -120,3 +122,13 @@ def test_the_contacts_of_either_disc_are_certified_by_their_own():
         depths = [[body.depth for body in each.pair.bodies] for each in (load, same)]
         assert depths[0] == pytest.approx(depths[1], rel=1e-6)
         assert depths[0][1] == pytest.approx(1e-3 * ((25.0 if load.second else 26.0) - 11.5))
+
+
+def test_the_parts_of_either_disc_bear_its_own_normal_force():
+    """By its leverage the disc with less force along the travel can press its roller harder."""
+    solution = trials()[0].solution
+    for cycle in solution.cycles:
+        sizes = cycle.loads.normal_force, cycle.loads.idle_force
+        assert (sizes[1] > sizes[0]).any()
+        judged = normal_force(cam_of(solution, cycle))
+        assert judged == pytest.approx(np.maximum(*sizes), rel=1e-12)
