@@ -16,12 +16,7 @@ from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.smoothing.constraints import CONSTRAINTS
 from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.smoothing.scenario import (
-    PRELOADED,
-    TWO_ROLLERS,
-    Correction,
-    DesignVariables,
-)
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 ROOT = Path(__file__).parents[1]
@@ -36,7 +31,7 @@ def of_an_arm(constraint):
 
 OF_ROLLER = tuple(
     each for each in CONSTRAINTS
-    if "face" not in each.needs and each.needs not in (PRELOADED, TWO_ROLLERS)
+    if "face" not in each.needs and each.needs not in ("preload", "rollers")
     and not of_an_arm(each)
 )  # fmt: skip
 """Constraints of a cam under a roller on a stem."""

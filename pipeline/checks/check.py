@@ -62,6 +62,9 @@ Page = Literal[
 """Parts of the mechanism in the order of the flow of force; "": of evidence."""
 Kind = Literal["", "roller", "face", "round", "swung_face", "stem", "arm"]
 """Needed of a check: roller, face, round surface of either, face of an arm, stem, arm; "": none."""
+ClosedBy = Literal[
+    "", "force", "form", "plate", "groove", "rollers", "conjugate", "preload", "yoke"
+]
 EVERY = "all, standstill and over-speed included"
 BY_DUTY = (
     "by load_case.duty, 1/L = sum q_i/L_i with q_i the shares; without a duty the worst load case"
@@ -201,8 +204,8 @@ class Kept(NamedTuple):
     falls : float        power of a limit with a unit with which the utilisation falls; negative: it
                          rises, and the limit is not relaxed
     unloaded : bool      the utilisation is that of the shape of the cam, of a measure of its loads
-    needs : str          kind of follower with which it is the constraint of its group; "": the
-                         check that names the group is; "two_rollers": two in a groove
+    needs : str          kind of follower, or closure of its cam, with which it is the constraint
+                         of its group; "": the check that names the group is
     """
 
     use: Callable[[LoadedCam, float], Array | None] | None = None
@@ -214,7 +217,7 @@ class Kept(NamedTuple):
     unit: str = ""
     falls: float = 1.0
     unloaded: bool = False
-    needs: Kind | Literal["two_rollers"] = ""
+    needs: Kind | ClosedBy = ""
 
 
 class Stroke(NamedTuple):
@@ -307,11 +310,8 @@ class Measured(NamedTuple):
         return measure(cam) / limit if self.worst == "greatest" else 1.0 + limit - measure(cam)
 
 
-ClosedBy = Literal[
-    "", "force", "form", "plate", "groove", "rollers", "conjugate", "preload", "yoke"
-]
-HELD = ("form", *TWO_TRACKS)
-"""Of them those of a cam that pulls its follower."""
+HELD = ("form", "preload", *TWO_TRACKS)
+"""Of `ClosedBy` those of a cam that pulls its follower."""
 
 
 Along = Callable[[Solution, Cycle], Array]

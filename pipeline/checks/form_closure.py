@@ -327,7 +327,7 @@ def _of_turns(
     symbols={
         **dict.fromkeys("fP", f"{STATED} [N]"),
         "T": "cam.profile_tolerance",
-        "i": "cam.conjugate.interference",
+        "i": INTERFERENCE,
         "c": f"limits.{CONTACT_FORCE_MARGIN.id}",
     },
     reason="A roller without load stops and lands with a blow.",
@@ -336,10 +336,10 @@ def _of_turns(
     " interference less by the width of the profile tolerance",
     lift_can_help=True,
     needs="roller",
-    closed_by="conjugate",
-    values=(*given.LOADS, "cam.conjugate.interference", "cam.profile_tolerance"),
+    closed_by="preload",
+    values=(*given.LOADS, INTERFERENCE, "cam.profile_tolerance"),
     levers=(
-        levers.one("cam.conjugate.interference"),
+        levers.one(INTERFERENCE),
         *(levers.one(each, -1) for each in ("cam.profile_tolerance", "cam.conjugate.wear_depth")),
         levers.MASS,
         *levers.GENTLER,
@@ -409,11 +409,9 @@ def _preload_words(solution: Solution) -> str:
     " tolerance; of finite elements with their ratio to Hertz on the disc at the nominal preload",
     lift_can_help=True,
     needs="roller",
-    closed_by="conjugate",
-    values=(
-        *given.LOADS, *given.CONTACT, "cam.conjugate.interference", "cam.profile_tolerance",
-    ),
-    levers=(levers.one("cam.conjugate.interference", -1),),
+    closed_by="preload",
+    values=(*given.LOADS, *given.CONTACT, INTERFERENCE, "cam.profile_tolerance"),
+    levers=(levers.one(INTERFERENCE, -1),),
     page="Contact",
     kept_as="contact pressure of both discs at the greatest preload",
 )  # fmt: skip

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -195,11 +195,6 @@ class JudgedRoller(NamedTuple):
         """
         return -_greatest([-each.turning for each in self.rollers(cam)])
 
-    @property
-    def kept_with(self) -> Literal["", "two_rollers"]:
-        """See `Kept.needs`."""
-        return "" if self.first else "two_rollers"
-
     def kept_force(self, *, limits: bool = False) -> Kept:
         """Form of a limit of the normal force, of a group of one measure; limits: the constraint of
         the group.
@@ -211,7 +206,7 @@ class JudgedRoller(NamedTuple):
                 else Kept(group=NORMAL_FORCE)
             )
         group = f"{self.name}_static"
-        return Kept(group=group, unit="N", needs=self.kept_with) if limits else Kept(group=group)
+        return Kept(group=group, unit="N", needs=self.closed_by) if limits else Kept(group=group)
 
     def lever(self, rating: str, *, inverse: bool = False) -> Lever:
         """Lever of a rating; inverse: the utilisation is inverse to it."""
@@ -551,7 +546,7 @@ def _rating_life(
         remark=partial(_with_damage, at=at),
         deviation=0.03,
         bounded="surge",
-        kept=Kept(power=1.0 / BALL_LIFE_EXPONENT, unit="N", needs=at.kept_with),
+        kept=Kept(power=1.0 / BALL_LIFE_EXPONENT, unit="N", needs=at.closed_by),
     )(at.damage)
 
 
@@ -620,7 +615,7 @@ def _modified_rating_life(at: JudgedRoller, symbols: Mapping[str, str]) -> Decla
             partial(_modified_kept, at=at),
             power=1.0 / BALL_LIFE_EXPONENT,
             unit="N",
-            needs=at.kept_with,
+            needs=at.closed_by,
         ),
     )(at.modified_damage)
 
@@ -659,7 +654,7 @@ def _speed(at: JudgedRoller, radius: str) -> Declaration:
             demand, figures=(at.bearing_in(solution.case).source,)
         ),
         deviation=0.0002,
-        kept=Kept(unit="rpm", needs=at.kept_with),
+        kept=Kept(unit="rpm", needs=at.closed_by),
     )(at.fastest)
 
 
@@ -748,7 +743,7 @@ def _lubrication(at: JudgedRoller, name: str) -> Declaration:
         remark=partial(_with_line_of_viscosity, at=at),
         deviation=0.0001,
         kept=Kept(
-            partial(_film_kept, at=at), power=-1.0, unit="rpm", falls=-1.0, needs=at.kept_with
+            partial(_film_kept, at=at), power=-1.0, unit="rpm", falls=-1.0, needs=at.closed_by
         ),
     )(at.slowest)
 

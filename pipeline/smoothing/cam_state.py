@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Generic, Literal, NamedTuple, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ from camwright.pipeline.case.limits import (
     RETURN_PRESSURE_ANGLE,
     AnyLimit,
 )
-from camwright.pipeline.checks.check import Declaration, Kept, Kind, Stroke
+from camwright.pipeline.checks.check import ClosedBy, Declaration, Kept, Kind, Stroke
 from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.checks.form_closure import INTERFERENCE
 from camwright.pipeline.contact.traction import Drag
@@ -509,7 +509,7 @@ class Constraint(Generic[State]):
     utilisation : callable   cam, limit -> (n,), or a `Mean` of the turn; None: does not apply
     row : Limit              row of the table of limits; None: a part sets the limit
     kept : Kept              unit and slope of a limit of a part, how far that of a row is relaxed
-    needs : str              kind of follower; "": any
+    needs : str              kind of follower, or closure of the cam; "": any
     stroke : str             key of the limit of one stroke of the follower; "": of the whole turn
     discs : bool             whether it holds on each of two discs
     """
@@ -519,7 +519,7 @@ class Constraint(Generic[State]):
     utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
     row: AnyLimit | None = None
     kept: Kept = field(default=Kept(), repr=False)
-    needs: Kind | Literal["preloaded", "two_rollers"] = ""
+    needs: Kind | ClosedBy = ""
     stroke: str = ""
     discs: bool = False
 

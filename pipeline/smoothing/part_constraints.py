@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Literal
 
 import numpy as np
 
@@ -24,7 +23,7 @@ from camwright.pipeline.checks import (
     key_strength,
     roller_bearing,
 )
-from camwright.pipeline.checks.check import Declaration, Kept
+from camwright.pipeline.checks.check import ClosedBy, Declaration, Kept
 from camwright.pipeline.checks.contact_strength import line_pressure
 from camwright.pipeline.checks.guide_strength import Side, table_of
 from camwright.pipeline.checks.roller_bearing import FIRST_ROLLER, STANDSTILL
@@ -39,17 +38,16 @@ from camwright.pipeline.smoothing.cam_state import (
     duty_shares,
     where_applies,
 )
-from camwright.pipeline.smoothing.scenario import PRELOADED
 
 
 def _of(
     declared: Declaration,
     utilisation: Callable[[ScenarioCam, float], Array | Mean | None],
     unit: str = "",
-    needs: Literal["", "preloaded"] = "",
+    needs: ClosedBy = "",
 ) -> Constraint[ScenarioCam]:
     """Constraint of a check without a measure, at its row; unit: of a limit that a part sets;
-    needs: kind of follower, see `Ratings.kinds`, if not that of the check.
+    needs: closure, see `Ratings.kinds`, in place of the kind of follower of the check.
     """
     row, rule = None if unit else declared.limit, Kept(unit=unit)
     key = declared.id if row is None else row.id
@@ -183,7 +181,7 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
     _of(jump_and_jamming.elastic_contact, _elastic_contact),
     _of(key_strength.keyway_root, _keyway_root),
     _of(roller_bearing.grease_life, _grease_life, "N"),
-    _of(form_closure.preload_least, _preload_least, "-", PRELOADED),
-    _of(form_closure.preload_pressure, _preload_pressure, "MPa", PRELOADED),
+    _of(form_closure.preload_least, _preload_least, "-", "preload"),
+    _of(form_closure.preload_pressure, _preload_pressure, "MPa", "preload"),
 )
 """Limits of the parts on the loads of the cam in one scenario."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Final
 
 import numpy as np
 
@@ -99,15 +98,13 @@ class Ratings:
     def kinds(self) -> frozenset[str]:
         """Words for the kind of follower by which checks and constraints are selected: of a roller
         "roller", "round"; of a face "face", and on an arm "swung_face", of a curved one "round" as
-        well; of either "stem" or "arm", of preloaded rollers `PRELOADED`, of two in a groove
-        `TWO_ROLLERS`. See `FollowerKind`.
+        well; of either "stem" or "arm". See `FollowerKind`; of a roller those of the closure of its
+        cam, too, see `CamBody.closed_by`.
         """
         body = "stem" if self.numbers.get("follower.arm.length") is None else "arm"
         if self.numbers.get("follower.face.width") is None:
-            pressed = () if self.compliances is None else (PRELOADED,)
-            case = self.numbers.case
-            two = () if case is None or case.cam.on_pin is None else (TWO_ROLLERS,)
-            return frozenset({"roller", "round", body, *pressed, *two})
+            closed = () if self.numbers.case is None else self.numbers.case.cam.closed_by
+            return frozenset({"roller", "round", body, *closed})
         shapes = {"radius": {"round", "swung_face"}, "offset": {"swung_face"}}
         stated = (words for name, words in shapes.items()
                   if self.numbers.get(f"follower.face.{name}") is not None)  # fmt: skip
@@ -133,11 +130,6 @@ class Ratings:
             return None
         return 0.5 * width - abs(self.offset)
 
-
-PRELOADED: Final = "preloaded"
-"""Kind of follower whose two rollers are pressed by an interference of their discs."""
-TWO_ROLLERS: Final = "two_rollers"
-"""Kind of follower with two rollers on one pin, each on a wall of its own."""
 
 _FACTORS = (
     "contact", "pressure_weight", "force_weight", "guide_a", "guide_b", "rubbing_a", "rubbing_b",
