@@ -355,7 +355,8 @@ def preload_least(solution: Solution) -> Demand | None:
         if pressed is None:
             return None
         squeeze, first, second = pressed
-        return np.minimum(first, second) / squeeze.preload - _tolerance_over_interference(cycle)
+        lost = cycle.machine.cam.profile_tolerance / squeeze.interference
+        return np.asarray(np.minimum(first, second) / squeeze.preload - lost)
 
     worst = _of_turns(solution, left, -1.0)
     if worst is None:
@@ -370,16 +371,6 @@ def preload_least(solution: Solution) -> Demand | None:
     at = Extreme(value, cycle.load_case, float(cycle.theta[k]))
     limit = solution.machine.limits[CONTACT_FORCE_MARGIN]
     return Demand(value, limit, at, note=_preload_words(solution), stated=stated)
-
-
-def _tolerance_over_interference(cycle: Cycle) -> Array:
-    """Width of the profile tolerance over the interference that deviations leave (n,)."""
-    machine, loads = cycle.machine, cycle.loads
-    preload = machine.disc_preload
-    if preload is None or loads.second is None:
-        return np.full(loads.theta.size, np.nan)
-    track = loads.second.track(cycle.contour.pitch)
-    return machine.cam.profile_tolerance / preload.left(track, loads.theta)
 
 
 def _preload_words(solution: Solution) -> str:

@@ -190,7 +190,7 @@ class _PressedWaves(NamedTuple):
             square = rigid / (amplitude * squeeze.stiffness)
             grown = np.sqrt((1.0 - square) ** 2 + (2.0 * damping) ** 2 * square)
             inertia = inertia + share * along * rigid / grown
-        lost = squeeze.preload * numbers["cam.profile_tolerance"] / numbers[INTERFERENCE]
+        lost = squeeze.preload * numbers["cam.profile_tolerance"] / squeeze.interference
         return cls(inertia, shares, (forces[0] - lost, forces[1] - lost), squeeze.preload)
 
     @property

@@ -451,6 +451,7 @@ def _ring(
     if machine.cam.on_pin is not None:
         roller = on_second_track(machine.roller, machine.cam)
         other = of(roller.ring(contact_width, machine.spring.preload))
-        if other is not None:
-            values = np.where(wall < 0.0, other, np.nan if values is None else values)
+        if not (values is None and other is None):
+            here, there = (np.nan if each is None else each for each in (values, other))
+            values = np.where(wall < 0.0, there, here)
     return (None, None, None) if values is None else (values[0], values[1], values[2])

@@ -28,23 +28,23 @@ class Squeezed(NamedTuple):
     share : float or array (n,)   b, of the axial force that the first bears
     stiffness : float or array (n,)   of both tracks together against the follower mass, along the
                                   travel of the first roller, N/m
+    interference : float or array (n,)   that presses them, m
     """
 
     preload: Array
     share: Value
-    stiffness: Value = np.inf
+    stiffness: Value
+    interference: Value
 
     @classmethod
     def joined(cls, every: Sequence[Squeezed]) -> Squeezed:
         """Preloads of several motions, one after another."""
-        shares = [np.broadcast_to(each.share, each.preload.shape) for each in every]
-        return cls(np.concatenate([each.preload for each in every]), np.concatenate(shares))
+        of_all = zip(*(np.broadcast_arrays(*each) for each in every), strict=True)
+        return cls(*map(np.concatenate, of_all))
 
     def part(self, at: NDArray[np.intp]) -> Squeezed:
         """Preload at the positions of these numbers."""
-        shape = self.preload.shape
-        others = (np.broadcast_to(each, shape)[at] for each in (self.share, self.stiffness))
-        return Squeezed(self.preload[at], *others)
+        return Squeezed(*(each[at] for each in np.broadcast_arrays(*self)))
 
     def forces(self, axial: Array) -> tuple[Array, Array]:
         """Forces (n,) of the first and of the second track at axial forces (n,), N, >= 0."""
@@ -107,7 +107,7 @@ def squeezed(
     far = far + bent_back
     both = near + far
     stiffness = both / (near * far - bent_back * both)
-    return Squeezed(np.asarray(closed / both), far / both, stiffness)
+    return Squeezed(np.asarray(closed / both), far / both, stiffness, interference)
 
 
 def _product(one: Pushing, other: Pushing) -> Value:

@@ -345,7 +345,7 @@ class _BothTracks:
 
     @property
     def bracket(self) -> tuple[Array, Array, Array]:
-        preload, share, _ = self.squeeze
+        preload, share, *_ = self.squeeze
         most = (np.abs(self.force) + preload / (share * (1.0 - share))) / JAM_FLOOR
         return np.zeros_like(most), most, self.on_points
 

@@ -375,7 +375,7 @@ def _body_stresses(solution: Solution, loaded: Sequence[Cycle]) -> BodyStresses:
         stress = _MPA * float(worst.contact.von_mises[k])
         depth = _MM * float(worst.contact.von_mises_depth[k])
     rings = [
-        float(np.max(amplitude + np.abs(mean)))
+        float(np.fmax.reduce(amplitude + np.abs(mean)))
         for cycle in loaded
         if (amplitude := cycle.parts.ring_amplitude) is not None
         and (mean := cycle.parts.ring_mean) is not None

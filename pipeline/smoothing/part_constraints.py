@@ -152,10 +152,10 @@ def _preload_least(at: ScenarioCam, limit: float) -> Array | None:
     """Utilisation of the least force on the disc that bears less: 1 plus `limit` less that force
     over the preload, less the profile tolerance over the interference; None without a preload.
     """
-    squeeze, numbers = at.squeeze, at.numbers
+    squeeze = at.squeeze
     if squeeze is None:
         return None
-    lost = numbers["cam.profile_tolerance"] / numbers[form_closure.INTERFERENCE]
+    lost = at.numbers["cam.profile_tolerance"] / squeeze.interference
     first, second = squeeze.forces(at.axial)
     least = np.where(np.real(first) < np.real(second), first, second)
     return np.asarray(1.0 + limit + lost - least / squeeze.preload)

@@ -20,8 +20,11 @@ from camwright.geometry.track_deviation import TrackDeviation
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import Corner, machines
+from camwright.pipeline.checks.manufacture import preload_waviness
 from camwright.pipeline.checks.tolerance_corners import POSITIONS, corners_of, outcomes
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.crossover_history import impacts
+from camwright.pipeline.cycle.solution import solved_turns, turns_of
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.workshop_files import measured_surface, real_cam
@@ -293,6 +296,27 @@ def test_profile_tolerance_is_judged_against_the_interference_left():
     pressed = np.minimum(*here.forces(loads.axial_force)) - here.preload + there.preload
     least = (pressed / here.preload).min()
     assert tried.demands["preload_least"] == pytest.approx(least, rel=1e-6)
+
+
+def test_waves_are_judged_against_the_force_that_the_profile_tolerance_leaves():
+    """On worn discs: the inertia of the waves by a tolerance of next to nothing, over the force of
+    an interference less by the stated one.
+    """
+    case = with_tolerances("preloaded_arm")
+    contour, states = case.contour(given_lift(case)), machines(case)[:1]
+    turns = turns_of((states[0].at_corner(Corner("less", wear_depth=2e-6)),), contour, POSITIONS)
+    ((cycle, cam),) = solved_turns(case, contour, turns, Tier.SCREENING).cams.items()
+    squeeze, preload = cam.squeeze, cycle.machine.disc_preload
+    narrow = replace(preload, interference=preload.interference - case.cam.profile_tolerance)
+    lost = squeeze.preload - narrow.at(cycle.loads.second.track(contour.pitch), cycle.theta).preload
+    forces, shares = squeeze.forces(cam.axial), (squeeze.share, 1.0 - squeeze.share)
+    height = cam.numbers["cam.waviness"]
+    still = cam.numbers | {"cam.profile_tolerance": 1e-12, "cam.waviness": height}
+    exact = preload_waviness.measure(replace(cam, numbers=still))
+    inertia = exact * np.minimum(*(f / b for f, b in zip(forces, shares, strict=True)))
+    used = [share * inertia / (force - lost) for force, share in zip(forces, shares, strict=True)]
+    judged = preload_waviness.measure(cam)
+    assert judged == pytest.approx(np.maximum(*used), rel=1e-6)
 
 
 def made(contour, theta):

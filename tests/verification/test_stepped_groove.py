@@ -313,6 +313,20 @@ def test_the_second_roller_by_the_data_of_its_own_bearing():
     assert judged["second_roller_ring_fatigue"] == pytest.approx(stress, rel=1e-9)
     for name in ("roller_life", "roller_static", "roller_speed", "bearing_lubrication"):
         assert judged[name] == pytest.approx(STEPPED.check(name).demand, rel=1e-9), name
+    bent = cycle.parts.ring_amplitude
+    assert bent == pytest.approx(
+        cycle.loads.normal_force
+        * np.where(cycle.loads.wall < 0.0, ring.stress_amplitude, bent[0] / force[0]),
+        rel=1e-9,
+    )
+
+
+def test_a_solid_second_roller_has_no_stress_of_the_first_ring():
+    cycle, _ = STEPPED.running
+    pulled = cycle.loads.wall < 0.0
+    for values in (cycle.parts.ring_amplitude, cycle.parts.ring_mean, cycle.parts.ring_correction):
+        assert (np.isnan(values) == pulled).all()
+    assert 0 < pulled.sum() < pulled.size
 
 
 def test_the_second_roller_stands_on_its_own_pin():
