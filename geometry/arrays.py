@@ -78,6 +78,14 @@ def uniform_turn(count: int) -> Array:
     return readonly(np.arange(count) * (FULL_TURN / count))
 
 
+def greatest_of(first: Array, *others: Array) -> Array:
+    """Greatest (...) of arrays by their real parts; NaN where any is."""
+    most = first
+    for other in others:
+        most = np.where(np.isnan(most) | (np.real(most) >= np.real(other)), most, other)
+    return most
+
+
 def distinct(values: ArrayLike) -> Array:
     """Distinct values in ascending order; the input holds no NaN.
 

@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from camwright.geometry import extrema
-from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.arrays import FULL_TURN, Array, greatest_of
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import TIE, first_greatest, first_least
 from camwright.geometry.second_track import CamDisc
@@ -73,8 +73,7 @@ def on_both_tracks(seen: Seen, measure: Callable[[Seen], Array]) -> Array:
     here, other = measure(seen), seen.on_other_track
     if other is None:
         return here
-    there = measure(other)
-    return np.where(np.isnan(here) | (np.real(here) >= np.real(there)), here, there)
+    return greatest_of(here, measure(other))
 
 
 def pressed_row(

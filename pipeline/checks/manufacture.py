@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array, Value
+from camwright.geometry.arrays import FULL_TURN, Array, Value, greatest_of
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.follower_path import Motion
@@ -255,8 +255,7 @@ def preload_waviness(cam: LoadedCam) -> Array:
     waves = _PressedWaves.of(cam)
     if waves is None:
         return np.full(np.shape(cam.normal), np.nan)
-    first, second = waves.used
-    return np.where(np.real(first) > np.real(second), first, second)
+    return greatest_of(*waves.used)
 
 
 @check(

@@ -6,7 +6,7 @@ duty of the load cases; without one that in the worst load case, run all the tim
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from camwright.geometry.arrays import FULL_TURN, Array, Value, Values
+from camwright.geometry.arrays import FULL_TURN, Array, Value, Values, greatest_of
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.levers import Lever
@@ -172,7 +172,7 @@ class JudgedRoller(NamedTuple):
         Of two preloaded rollers at each angle the greater one, so that neither lives shorter.
         """
         rollers = self.rollers(cam)
-        return _greatest([wear(not_negative(each.force), each.spin) for each in rollers])
+        return greatest_of(*(wear(not_negative(each.force), each.spin) for each in rollers))
 
     def modified_damage(self, cam: LoadedCam) -> Array:
         """|n| (P/C)^3/a_ISO, rad/s; NaN where the viscosity ratio is outside of ISO 281."""
@@ -182,18 +182,18 @@ class JudgedRoller(NamedTuple):
             within = np.real(kappa) >= bearing_life.LEAST_VISCOSITY_RATIO
             return _damage_rate(cam, roller, np.where(within, kappa, np.nan), self)
 
-        return _greatest([rate(each) for each in self.rollers(cam)])
+        return greatest_of(*(rate(each) for each in self.rollers(cam)))
 
     def fastest(self, cam: LoadedCam) -> Array:
         """Speed on the pin where it carries, rad/s; of two preloaded ones the higher."""
-        return _greatest([each.carries * magnitude(each.spin) for each in self.rollers(cam)])
+        return greatest_of(*(each.carries * magnitude(each.spin) for each in self.rollers(cam)))
 
     def slowest(self, cam: LoadedCam) -> Array:
         """Speed on the pin in its mean, of two preloaded ones the lower at each angle, rad/s.
 
         Measure: roller speed; demand: viscosity ratio at its mean.
         """
-        return -_greatest([-each.turning for each in self.rollers(cam)])
+        return -greatest_of(*(-each.turning for each in self.rollers(cam)))
 
     def kept_force(self, *, limits: bool = False) -> Kept:
         """Form of a limit of the normal force, of a group of one measure; limits: the constraint of
@@ -245,14 +245,6 @@ def _cube(numbers: Numbers, at: JudgedRoller) -> Value:
     return numbers[at.key("C")] ** BALL_LIFE_EXPONENT * MILLION_TURNS
 
 
-def _greatest(every: Sequence[Array]) -> Array:
-    """Greatest (...) of the values of each roller."""
-    most = every[0]
-    for other in every[1:]:
-        most = np.where(np.real(other) > np.real(most), other, most)
-    return most
-
-
 def _with_damage(demand: Demand, solution: Solution, at: JudgedRoller) -> Demand:
     """Demand of the rating life with the shares of the load cases in the damage, and the bearing
     card.
@@ -289,7 +281,7 @@ def _modified_kept(cam: LoadedCam, limit: float, at: JudgedRoller) -> Array | No
         kappa = _viscosity_ratio(roller.mean, cam.numbers, at)
         return _damage_rate(cam, roller, np.where(np.real(kappa) > least, kappa, least), at)
 
-    return _greatest([rate(each) for each in at.rollers(cam)]) / limit
+    return greatest_of(*(rate(each) for each in at.rollers(cam))) / limit
 
 
 def _damage_rate(cam: LoadedCam, roller: TurningRoller, kappa: Array, at: JudgedRoller) -> Array:
@@ -479,8 +471,8 @@ def roller_misalignment(cam: LoadedCam) -> Array:
     guides = numbers.known_case.guides.tilt_at(numbers["guides.spacing"])
     parallel, run_out = numbers.limit(AXIS_PARALLELISM), numbers.limit(CAM_RUN_OUT)
     discs = zip(cam.shaft_tilts, cam.base_radii, strict=True)
-    return _greatest(
-        [magnitude(tilt) + (parallel + run_out / (2.0 * base) + guides) for tilt, base in discs]
+    return greatest_of(
+        *(magnitude(tilt) + (parallel + run_out / (2.0 * base) + guides) for tilt, base in discs)
     )
 
 

@@ -3,6 +3,7 @@
 One machine, described twice: its checks, forces and certified contacts are the same.
 """
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -12,8 +13,10 @@ import pytest
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.checks.demands import normal_force
 from camwright.pipeline.checks.extremes import cam_of
+from camwright.pipeline.checks.roller_bearing import roller_modified_life
 from camwright.pipeline.cycle.certificate_angles import length_loads
 from camwright.pipeline.follower import disc_preload
+from camwright.pipeline.follower.bearing_life import rated_viscosity
 from camwright.pipeline.follower.disc_preload import DiscPreload
 from camwright.pipeline.preview import preview_case
 
@@ -132,3 +135,15 @@ def test_the_parts_of_either_disc_bear_its_own_normal_force():
         assert (sizes[1] > sizes[0]).any()
         judged = normal_force(cam_of(solution, cycle))
         assert judged == pytest.approx(np.maximum(*sizes), rel=1e-12)
+
+
+def test_an_oil_too_thin_for_the_slower_roller_leaves_no_modified_life():
+    """Whichever of both it is: by ISO 281 there is none below a viscosity ratio of 0.1."""
+    for trial in trials():
+        cam = next(iter(trial.solution.cams.values()))
+        means, key = [float(np.ravel(each.mean)[0]) for each in cam.rollers], "roller.bearing."
+        assert max(means) > 1.02 * min(means)
+        circle = float(cam.numbers[f"{key}pitch_diameter"])
+        rated = rated_viscosity(np.sqrt(np.prod(means)) * 30.0 / np.pi, circle)
+        thin = cam.numbers | {f"{key}viscosity": 0.1 * rated, f"{key}cleanliness_load": 100.0}
+        assert np.isnan(roller_modified_life.measure(replace(cam, numbers=thin))).all()
