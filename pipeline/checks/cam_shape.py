@@ -244,7 +244,7 @@ undercut = check(
     symbols={
         "r": "roller.radius",
         "kappa_p": "pitch_curvature",
-        "?": "follower.kind roller",
+        "?": "follower.face None",
     },
     reason="At zero the cam has a cusp; below, the follower does not follow the lift.",
     method="least 1 - roller radius x pitch curvature, refined between samples",
@@ -420,7 +420,7 @@ def least_concave_radius(case: Case) -> float | None:
         "v": "pitch_speed",
         "r": "roller.radius",
         "kappa_p": "pitch_curvature",
-        "?": "follower.kind roller",
+        "?": "follower.face None",
     },
     reason="Decides where the case sets the limit: its value depends on the grinding machine.",
     load_cases=NONE,

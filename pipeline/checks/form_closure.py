@@ -34,8 +34,10 @@ from camwright.pipeline.checks import value_groups as given
 from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check
 from camwright.pipeline.checks.extremes import (
     Extreme,
+    cam_of,
     cycle_of,
     on_both_tracks,
+    row_of,
     worst_case,
 )
 from camwright.pipeline.checks.flat_face_sliding import bulk_allowed, heat_missing
@@ -125,8 +127,24 @@ def _wall_allowed(numbers: Numbers) -> Allowed:
 
 
 def _of_wall(demand: Demand, solution: Solution) -> Demand:
+    """Demand with the source of the material and the radius of the outer wall at its angle."""
     card = solution.machine.cam.material
-    return replace(demand, figures=(f"{card.name}: {card.source}",))
+    judged = replace(demand, figures=(f"{card.name}: {card.source}",))
+    if demand.at is None or not demand.at.load_case:
+        return judged
+    cycle, k = row_of(solution.cycles, demand.at)
+    return replace(judged, stated={"P": float(_outer_radius(cam_of(solution, cycle))[k])})
+
+
+def _outer_radius(cam: LoadedCam) -> Array:
+    """Radius of the outer wall (..., n), m, of two rollers that of the widest step at or below the
+    second.
+    """
+    path, second = round_of(cam.motion), cam.numbers.known_case.cam.on_pin
+    point = path.contact_point
+    if second is not None:
+        point = path.inside(-cam.numbers.of_part(second).rim_distance(cam.numbers["roller.radius"]))
+    return np.asarray(np.sqrt(point[0] ** 2 + point[1] ** 2))
 
 
 @check(
@@ -162,11 +180,7 @@ def _of_wall(demand: Demand, solution: Solution) -> Demand:
 ).measured("angles", allowed=_wall_allowed, remark=_of_wall, deviation=0.02)
 def groove_wall(cam: LoadedCam) -> Array:
     """Bending stress at the root of the rim, Pa; infinite without a rim, 0 on the inner wall."""
-    numbers, path = cam.numbers, round_of(cam.motion)
-    second, point = numbers.known_case.cam.on_pin, path.contact_point
-    if second is not None:
-        point = path.inside(-numbers.of_part(second).rim_distance(numbers["roller.radius"]))
-    thick = numbers["cam.groove.outer_radius"] - np.sqrt(point[0] ** 2 + point[1] ** 2)
+    thick = cam.numbers["cam.groove.outer_radius"] - _outer_radius(cam)
     left = np.where(thick > 0.0, thick, np.nan)
     stress = np.where(thick > 0.0, 6.0 * PLATE_MOMENT * cam.normal / left**2, np.inf)
     return np.where(cam.wall < 0.0, stress, 0.0 * cam.normal)

@@ -809,7 +809,8 @@ def torque_reversals(solution: Solution) -> Demand:
     worst = worst_case(solution.cycles, lambda cycle: float(len(cycle.parts.reversals)))
     slopes = [abs(one.slope) for cycle in solution.cycles for one in cycle.parts.reversals]
     steepest = max(slopes, default=0.0)
-    note = f"backlash is crossed; steepest {steepest:.1f} N m/rad" if worst.value > 0 else ""
+    slope = f"{steepest:.1f}" if steepest >= 0.1 else f"{steepest:.2g}"
+    note = f"backlash is crossed; steepest {slope} N m/rad" if worst.value > 0 else ""
     return Demand(worst.value, 0.0, worst, note=note)
 
 

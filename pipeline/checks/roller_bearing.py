@@ -63,7 +63,7 @@ from camwright.pipeline.contact.cam_body import SECOND_BEARING
 from camwright.pipeline.contact.rolling_bearing import Bearing
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, TurningRoller, not_negative
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, TurningRoller, not_negative, round_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import bearing_life
@@ -92,11 +92,6 @@ def _cube_mean(rating: str, force: str) -> dict[str, str]:
     """Symbols C, P_m, n of a rating life: key of the rating, and an expression of the force."""
     mean = f"(mean(({force})^3 |roller_speed|)/mean(|roller_speed|))^(1/3) [N]"
     return {"C": rating, "P_m": mean, "n": "mean(|roller_speed|)/(2 pi) [1/s]"}
-
-
-_PRESSED = "cam.conjugate.interference None"
-_ALONE = {"?": f"cam.groove.second.radius None; {_PRESSED}"}
-"""Symbols of a formula that holds for one roller on all tracks."""
 
 
 class JudgedRoller(NamedTuple):
@@ -251,7 +246,43 @@ def _with_damage(demand: Demand, solution: Solution, at: JudgedRoller) -> Demand
     """
     life = partial(_life, at=at)
     notes = [] if demand.value is None else _damage_note(solution, at.damage, life)
-    return at.with_card(replace(demand, note="; ".join(notes)), solution)
+    stated = _of_two_rollers(demand, solution, at)
+    return at.with_card(replace(demand, note="; ".join(notes), stated=stated), solution)
+
+
+def _of_two_rollers(demand: Demand, solution: Solution, at: JudgedRoller) -> dict[str, float]:
+    """Cube mean "P_m", N, and mean speed "n", 1/s, of a roller beside another one, in place of
+    columns of the cycle, which are of the roller that carries; empty for one roller.
+    """
+    if not at.first or demand.at is None or not demand.at.load_case:
+        return {}
+    cycle = cycle_of(solution.cycles, demand.at)
+    cam = cam_of(solution, cycle)
+    speed = float(np.squeeze(at.rollers(cam)[0].mean))
+    if len(cam.rollers) == 1 or not speed > 0.0:
+        return {}
+    force = (mean_of(solution, at.damage, cycle) / speed) ** (1.0 / BALL_LIFE_EXPONENT)
+    return {"P_m": force, "n": speed / FULL_TURN}
+
+
+def _with_speed(demand: Demand, solution: Solution, at: JudgedRoller) -> Demand:
+    """Demand of the speed with the source of the bearing, and pitch speed and radius of the faster
+    of two preloaded rollers.
+    """
+    noted = replace(demand, figures=(at.bearing_in(solution.case).source,))
+    conjugate = solution.machine.cam.conjugate
+    if conjugate is None or not conjugate.interference:
+        return noted
+    if demand.at is None or not demand.at.load_case:
+        return noted
+    cycle, k = row_of(solution.cycles, demand.at)
+    motions = [round_of(each.motion) for each in cam_of(solution, cycle).on_bodies]
+    every = [
+        [float(np.broadcast_to(part, cycle.theta.shape)[k]) for part in parts]
+        for parts in ((each.rolling, each.path_speed, each.size) for each in motions)
+    ]
+    _, speed, radius = max(every, key=lambda each: abs(each[0]))
+    return replace(noted, stated={"P'": speed, "r": radius})
 
 
 def _modified_life(worst: Value, numbers: Numbers) -> Value:
@@ -305,13 +336,15 @@ def _with_modified_damage(demand: Demand, solution: Solution, at: JudgedRoller) 
     elif demand.value is not None:
         notes = _damage_note(solution, at.modified_damage, _modified_life)
     figures = limits.source(ROLLER_RELIABILITY), bearing_life.SOURCE, *at.figures(solution)
-    noted = replace(demand, note="; ".join(notes), figures=figures)
+    stated = _of_two_rollers(demand, solution, at)
+    noted = replace(demand, note="; ".join(notes), figures=figures, stated=stated)
     if demand.value is None or demand.at is None:
         return noted
     cycle = cycle_of(solution.cycles, demand.at)
     plain, used = (mean_of(solution, each, cycle) for each in (at.damage, at.modified_damage))
     rating = float(solution.numbers[at.key("C")]) ** BALL_LIFE_EXPONENT
-    return replace(noted, stated={"a_ISO": plain / rating / used} if used > 0.0 else {})
+    modified = {"a_ISO": plain / rating / used} if used > 0.0 else {}
+    return replace(noted, stated=stated | modified)
 
 
 def _viscosity_ratio(mean: Value, numbers: Numbers, at: JudgedRoller) -> Array:
@@ -337,7 +370,7 @@ def _with_line_of_viscosity(demand: Demand, solution: Solution, at: JudgedRoller
     cycle = cycle_of(solution.cycles, demand.at)
     speed = mean_of(solution, at.slowest, cycle) / factor("rpm")
     line = bearing_life.viscosity_line(speed)
-    mean = {"n": speed} if solution.machine.cam.clearance > 0.0 else {}
+    mean = {"n": speed} if solution.machine.cam.pulls else {}
     return replace(noted, stated=dict(zip("ab", line, strict=True)) | mean)
 
 
@@ -542,14 +575,15 @@ def _rating_life(
     )(at.damage)
 
 
-_ON_FIRST = _cube_mean(FIRST_ROLLER.key("C"), _SURGED) | _ALONE
+_ON_FIRST = _cube_mean(FIRST_ROLLER.key("C"), _SURGED)
 _ON_SECOND = _cube_mean(SECOND_ROLLER.key("C"), f"0.5 (1 - wall) ({_SURGED})")
 """Dynamic rating, cube mean of the force and mean speed of a roller in the symbols of a formula."""
 roller_life = _rating_life(
     FIRST_ROLLER,
     method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force,"
     " surge of a coil spring included",
-    mean="normal force over the revolutions of the roller",
+    mean="normal force over the revolutions of the roller, of two in a groove on its own wall, of"
+    " two preloaded ones of that with the greater damage at each angle",
     symbols=_ON_FIRST,
     reason="the bearing has to last; a clean bearing that lasts longer is not credited",
 )
@@ -631,10 +665,10 @@ def _speed(at: JudgedRoller, radius: str) -> Declaration:
         " limiting speed, x: limits.roller_speed_share",
         symbols={
             "w": "cam.speed",
-            "P'": "pitch_speed",
-            "r": "surface_radius",
+            "P'": "pitch_speed [mm/rad]",
+            "r": "surface_radius [mm]",
             "n_g": key,
-            "?": f"follower.kind roller; {_PRESSED}",
+            "?": "follower.kind roller",
         },
         reason="beyond it seals and grease overheat",
         values=(key, "limits.overspeed"),
@@ -642,9 +676,7 @@ def _speed(at: JudgedRoller, radius: str) -> Declaration:
     ).measured(
         "angles",
         allowed=of_key(key, ROLLER_SPEED_SHARE),
-        remark=lambda demand, solution: replace(
-            demand, figures=(at.bearing_in(solution.case).source,)
-        ),
+        remark=partial(_with_speed, at=at),
         deviation=0.0002,
         kept=Kept(unit="rpm", needs=at.closed_by),
     )(at.fastest)
@@ -711,7 +743,6 @@ def _lubrication(at: JudgedRoller, name: str) -> Declaration:
         " below 1000 rpm, else 4500 and -0.5, v: viscosity in operation, both in mm2/s, k:"
         " limits.viscosity_ratio",
         symbols={
-            **(_ALONE if at.first else {}),
             "v": f"1000000 {viscosity}",
             "D": f"1000 {circle}",
             "n": "60 mean(|roller_speed|)/(2 pi)" if at.first else f"{STATED} [rpm]",
@@ -792,7 +823,6 @@ def _grease(at: JudgedRoller, name: str) -> Declaration:
         f" {at.key('relubrication_interval')}. Oil has no such life. Over the load cases"
         f" {BY_DUTY}.",
         symbols={
-            **(_ALONE if at.first else {}),
             "h": "3600 [s]",
             "x": "[-]",
             "D": f"{STATED} [mm]",
@@ -844,14 +874,12 @@ def _grease(at: JudgedRoller, name: str) -> Declaration:
                 note = "outside the range of the estimate"
             elif all(cycle.machine.duty is None for cycle in solution.cycles):
                 cam = cam_of(solution, cycle_of(solution.cycles, worst))
+                turning = (_greased(cam, each, at) for each in at.rollers(cam))
+                shortest = min(turning, key=lambda each: float(each.life.item()))
                 known = {"D": float(_greased_diameter(solution.numbers, at))}
-                roller, fitted = at.rollers(cam)[0], solution.machine.cam
-                of = cam.normal, cam.turning
-                if fitted.on_pin is not None:
-                    of = roller.force, roller.turning
-                known["P"] = float(np.ravel(equivalent_load(*of))[0])
-                if fitted.clearance > 0.0:
-                    known["n"] = float(np.ravel(roller.mean)[0]) / factor("rpm")
+                known["P"] = float(shortest.load.item())
+                if solution.machine.cam.pulls:
+                    known["n"] = float(shortest.speed.item())
         return Demand(worst.value, target, worst, missing, note=note, figures=figures, stated=known)
 
     return demand
@@ -872,16 +900,27 @@ def greased(cam: LoadedCam, at: JudgedRoller) -> Array:
         return np.array([bearing.grease_life])
     if rating is None or temperature is None:
         return np.array([np.nan])
-    lives = list[Array]()
-    for roller in at.rollers(cam):
-        force = cam.normal if len(cam.rollers) == 1 else roller.force
-        loads_finite = np.isfinite(force).all(axis=-1, keepdims=True)
-        load = equivalent_load(np.where(loads_finite, force, 0.0), roller.turning)[..., None]
-        share = np.where(loads_finite, load, np.nan) / rating
-        speed = np.asarray(roller.mean / factor("rpm"))
-        diameter = _greased_diameter(numbers, at)
-        lives.append(bearing_life.grease_life(speed, diameter, share, temperature))
-    return np.asarray(np.min(lives, axis=0))
+    return np.asarray(np.min([_greased(cam, each, at).life for each in at.rollers(cam)], axis=0))
+
+
+class _Greased(NamedTuple):
+    """Life of grease in a roller, s, equivalent load, N, and mean speed, rpm: (1,) or (m, 1)."""
+
+    life: Array
+    load: Array
+    speed: Array
+
+
+def _greased(cam: LoadedCam, roller: TurningRoller, at: JudgedRoller) -> _Greased:
+    """Estimate for the grease in a roller; its life is NaN where a force is not finite."""
+    force = cam.normal if len(cam.rollers) == 1 else roller.force
+    loads_finite = np.isfinite(force).all(axis=-1, keepdims=True)
+    load = equivalent_load(np.where(loads_finite, force, 0.0), roller.turning)[..., None]
+    share = np.where(loads_finite, load, np.nan) / cam.numbers[at.key("C")]
+    speed, diameter = np.asarray(roller.mean / factor("rpm")), _greased_diameter(cam.numbers, at)
+    degrees = at.bearing_in(cam.numbers.known_case).temperature
+    life = bearing_life.grease_life(speed, diameter, share, np.nan if degrees is None else degrees)
+    return _Greased(life, load, speed)
 
 
 def _greased_diameter(numbers: Numbers, at: JudgedRoller) -> Value:

@@ -139,6 +139,7 @@ class Sheet:
     result : float         demand by the formula, in the unit of the record; None: the demand is a
                            result of a solver, or its formula is none of numbers: it is stated
     bound : SheetBound     limit by the formula; None: its symbols are not all keys of the case
+    reason : str           why there are no steps, in words
     """
 
     record: CheckRecord
@@ -148,6 +149,7 @@ class Sheet:
     steps: tuple[SheetStep, ...] = ()
     result: float | None = None
     bound: SheetBound | None = None
+    reason: str = ""
 
     @property
     def is_stated(self) -> bool:
@@ -258,12 +260,12 @@ class SheetRun:
             known = ", ".join(sorted(self.records))
             raise InputError("--check", name, f"a check of the run: {known}")
         record, declared = self.records[name], DECLARED.get(name)
-        if declared is None:  # of a run by another version
-            return Sheet(record, "")
-        if not declared.symbols or record["demand"] is None or not self._holds(declared):
-            return Sheet(record, declared.formula)
+        if declared is None:
+            return Sheet(record, "", reason="a check of another version")
         evaluation = _Evaluation(self, record, declared)
-        return Sheet(record, declared.formula) if evaluation.lacks else evaluation.sheet()
+        if reason := self._without(record, declared) or evaluation.lacks:
+            return Sheet(record, declared.formula, reason=reason)
+        return evaluation.sheet()
 
     def governing(self, most: int = 12) -> tuple[str, ...]:
         """Ids of the required checks of the design with the greatest utilisations."""
@@ -275,16 +277,25 @@ class SheetRun:
         ranked = sorted(required, key=lambda each: -(RecordedCheck(each).utilisation or 0.0))
         return tuple(each["id"] for each in ranked[:most])
 
-    def _holds(self, declared: Declaration) -> bool:
-        """Whether the formula of a check applies to the case as it stands: not where load cases
-        have duties that the formula would have to sum, nor to another kind of part than it is
-        stated for.
+    def _without(self, record: CheckRecord, declared: Declaration) -> str:
+        """Why the formula of a check does not apply to the case as it stands, in words; "" where it
+        does: load cases have duties that the formula would have to sum, or a part is of another
+        kind than it is stated for.
         """
+        if record["demand"] is None:
+            return "the demand is not known"
+        if not declared.symbols:
+            return "a rule in words"
         by_duty = declared.measured is not None and declared.measured.reduce in BY_DUTY
         if by_duty and any(each.duty is not None for each in self.machines.values()):
-            return False
-        only = [each.split(" ") for each in declared.symbols.get(ONLY, "").split("; ") if each]
-        return all(str(value_of(self.case, key)) == word for key, word in only)
+            return "the load cases are summed by their duty"
+        for each in filter(None, declared.symbols.get(ONLY, "").split("; ")):
+            key, word = each.split(" ")
+            if str(value := value_of(self.case, key)) != word:
+                given = value if isinstance(value, str) else "none" if value is None else "given"
+                only = "none" if word == "None" else word
+                return f"the formula holds for {key} = {only}, which is {given} here"
+        return ""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -311,12 +322,15 @@ class _Evaluation:
     digits: int = DIGITS[0]
 
     @property
-    def lacks(self) -> bool:
-        """Whether the case leaves out a key of the symbols, or the record a stated number."""
+    def lacks(self) -> str:
+        """Which keys of the symbols the case leaves out, and which stated numbers the record, in
+        words; "" where none.
+        """
         used = {name for tree in self.trees.values() for name in formula.names(tree)}
         places = {name: each.partition(" [")[0] for name, each in self.declared.symbols.items()
                   if name in used and not each.startswith(_DEFINED)}  # fmt: skip
-        return any(self._lacks(text, name) for name, text in places.items())
+        missing = [name for name, text in places.items() if self._lacks(text, name)]
+        return f"this run has no number of {', '.join(missing)}" if missing else ""
 
     def _lacks(self, text: str, name: str) -> bool:
         """Whether the value of a symbol of the formula is missing: a key of the case without a
@@ -327,7 +341,7 @@ class _Evaluation:
         text : str   where the symbol has its value, as declared
         name : str   the symbol
         """
-        if text == STATED:
+        if text == STATED or name in self._stated:
             return name not in self._stated
         keys = {each for each in formula.names(formula.parsed(text)) if "." in each}
         return any(self._numbers.get(key) is None for key in keys)

@@ -18,8 +18,6 @@ from camwright.pipeline.results.check_report import (
 
 STATED = "one number of a solver or a count, stated with its error bar; its use is evaluated"
 """Words on a demand that is one stated number."""
-IN_WORDS = "a rule in words, or a form that does not hold for this case: not evaluated"
-"""Words on a demand without an evaluation."""
 
 
 def demand_words(record: CheckRecord) -> str:
@@ -47,7 +45,7 @@ def outcome_words(sheet: Sheet) -> str:
     if not sheet.agrees:
         return f"DISAGREES with the {sheet.differs_in} of the check"
     if not sheet.steps:
-        return IN_WORDS
+        return f"not evaluated: {sheet.reason}"
     return STATED if sheet.is_stated else "agrees"
 
 
