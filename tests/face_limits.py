@@ -117,7 +117,7 @@ def utilisations(problem, cam, item):
     at = follower_at(problem, cam, item, fix)
     force, radius, arms = at.axial, cam.radius, size(cam.arm)
     line = force / p.contact_width
-    loads = [force * at.load(k, fix_k) for k, fix_k in enumerate((fix.rubbing_a, fix.rubbing_b))]
+    loads = [force * at.load(k, fix_k) for k, fix_k in enumerate((fix.worn_a, fix.worn_b))]
     pushes = [force * at.load(k, fix_k) for k, fix_k in enumerate((fix.guide_a, fix.guide_b))]
     edges = [force * at.load(k, fix_k) for k, fix_k in enumerate((fix.edge_a, fix.edge_b))]
     hot = [
@@ -168,8 +168,8 @@ def utilisations(problem, cam, item):
         "elastic_contact": kept(soft, at.least),
         "jump": -at.inertia / at.spring / limit["jump"],
         "jump_speed": -item.mass * p.jump_speed**2 * cam.s2 / at.spring,
-        "jam_index": at.jam / limit["jam_index"],
-        "jam_index_friction_max": at.jam_worst / limit["jam_index"],
+        "jam_index": at.jam * fix.jam_tilted / limit["jam_index"],
+        "jam_index_friction_max": at.jam_worst * fix.jam_tilted / limit["jam_index"],
         "profile_waviness": 1 + (waves / limit["waviness"] - force) / force,
         "key_pressure": size(at.torque) / p.cam_torque,
         "gear_bending": size(at.torque + p.shaft_drag) / p.tooth_torque,

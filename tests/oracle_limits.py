@@ -71,11 +71,11 @@ def jump_speed(at):
 
 
 def jam_index(at):
-    return at.jam / at.p.jam_index
+    return at.jam * at.fix.jam_tilted / at.p.jam_index
 
 
 def jam_index_friction_max(at):
-    return at.jam_worst / at.p.jam_index
+    return at.jam_worst * at.fix.jam_tilted / at.p.jam_index
 
 
 def roller_static(at):
@@ -106,11 +106,11 @@ def _rubbing_power(at):
 
 
 def guide_pv_a(at):
-    return _rubbing_power(at) * at.at_a * at.fix.rubbing_a / at.p.guide_area_a / at.p.guide_pv_a
+    return _rubbing_power(at) * at.at_a * at.fix.worn_a / at.p.guide_area_a / at.p.guide_pv_a
 
 
 def guide_pv_b(at):
-    return _rubbing_power(at) * at.at_b * at.fix.rubbing_b / at.p.guide_area_b / at.p.guide_pv_b
+    return _rubbing_power(at) * at.at_b * at.fix.worn_b / at.p.guide_area_b / at.p.guide_pv_b
 
 
 ROTHBART = "Rothbart, Cam Design Handbook (2004), ch. 6"

@@ -43,7 +43,7 @@ SCENARIO = (
 CORRECTION = (
     "contact", "pressure_weight", "force_weight", "guide_a", "guide_b", "rubbing_a", "rubbing_b",
     "jam", "edge_a", "edge_b", "hot_a", "hot_b", "surge", "swept_surge", "elastic", "swept_speed",
-    "elastic_speed", "rolling", "least_lift",
+    "elastic_speed", "rolling", "least_lift", "worn_a", "worn_b", "jam_tilted",
 )  # fmt: skip
 """Results of finite elements, surge and heat on the last cam, constants of a synthesis."""
 FREE = ("rate", "preload", "prime_radius")

@@ -72,12 +72,12 @@ def guide_temperature_b(at):
 
 
 def guide_wear_a(at):
-    worn = at.side * at.velocity * at.at_a * at.fix.rubbing_a / at.p.guide_area_a
+    worn = at.side * at.velocity * at.at_a * at.fix.worn_a / at.p.guide_area_a
     return worn / at.p.guide_wear_pv_a
 
 
 def guide_wear_b(at):
-    worn = at.side * at.velocity * at.at_b * at.fix.rubbing_b / at.p.guide_area_b
+    worn = at.side * at.velocity * at.at_b * at.fix.worn_b / at.p.guide_area_b
     return worn / at.p.guide_wear_pv_b
 
 

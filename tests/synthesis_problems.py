@@ -158,6 +158,7 @@ def with_corrections(problem, seed):
         **{name: np.full(turn.size, value) for name, value in single.items()},
         **{name: about(1.1, 0.2) for name in ("pressure_weight", "force_weight")},
         **{name: about(1.1, 0.2) for name in ("bush_rubbing", "bush_bearing")},
+        **{name: about(1.1, 0.2) for name in ("worn_a", "worn_b", "jam_tilted")},
     )
     scenarios = tuple(
         changed(item, correction=correction, viscous_damping=3.0) for item in problem.scenarios

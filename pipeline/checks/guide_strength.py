@@ -68,6 +68,8 @@ Place = Literal["A", "B", "pivot"]
 GUIDES: tuple[Side, ...] = ("A", "B")
 TILTED = ", the pin tilted by the greatest moment of the contact"
 """Words of the pushes on the bush of a pivot."""
+ACROSS = ", with the pushes of the couple across the plane of the cam"
+"""Words of the pushes on a guide of a stem."""
 PLACES: tuple[Place, ...] = (*GUIDES, "pivot")
 """Guides of a stem, and the pivot of an arm, which has a bush, too."""
 
@@ -461,7 +463,7 @@ def _guide_pv(side: Place) -> Declaration:
             confirmed=False,
         ),
         method="mean |R v| over the turn over diameter x length; R: sum of the loads on both sides"
-        f" of the bore{TILTED if side == 'pivot' else ''}",
+        f" of the bore{TILTED if side == 'pivot' else ACROSS}",
         lift_can_help=True,
         tier=Tier.SCREENING,
         error="sampling" if side == "pivot" else "guides",
@@ -669,7 +671,7 @@ def _guide_temperature(side: Place) -> Declaration:
         unit="degC",
         source=Source("temperature limit of the bush, source of the material", confirmed=True),
         method="ambient plus mean friction power at the greatest friction times the thermal"
-        f" resistance of wall and housing, steady state{TILTED if side == 'pivot' else ''}",
+        f" resistance of wall and housing, steady state{TILTED if side == 'pivot' else ACROSS}",
         lift_can_help=True,
         part=seat.part,
         kept_as=f"friction power of {seat.words} at its greatest temperature",

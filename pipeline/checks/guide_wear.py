@@ -25,6 +25,7 @@ from camwright.pipeline.checks.check import (
     of_row,
 )
 from camwright.pipeline.checks.guide_strength import (
+    ACROSS,
     ARM_LENGTH,
     PV,
     SEATS,
@@ -170,11 +171,6 @@ def seizure_temperature(guide: Guide, stem: Material) -> float | None:
     return ROOM + (guide.clearance - cold) / (warm - cold) if warm > cold else None
 
 
-def _of_pushes(side: Place) -> str:
-    """Words of the load that wears the bush of a pivot."""
-    return f"; by the pushes on both sides of the bore{TILTED}" if side == "pivot" else ""
-
-
 def _guide_wear(side: Place) -> Declaration:
     """Check of the wear depth of a bush at the target life."""
     seat = SEATS[side]
@@ -204,7 +200,8 @@ def _guide_wear(side: Place) -> Declaration:
         id=seat.named("wear"),
         title=f"Wear depth of {seat.words} at target life",
         method="wear rate times mean pressure times sliding distance, over the load cases by their"
-        f" duty; without a duty all of the life in the worst load case{_of_pushes(side)}",
+        f" duty; without a duty all of the life in the worst load case; by the pushes on both"
+        f" sides of the bore{TILTED if side == 'pivot' else ACROSS}",
         lift_can_help=True,
         tier=Tier.SCREENING,
         part=seat.part,

@@ -34,12 +34,14 @@ from camwright.pipeline.checks.check import (
 )
 from camwright.pipeline.checks.extremes import (
     Extreme,
+    cam_of,
     cycle_of,
     greatest,
     least,
     row_of,
     worst_measure,
 )
+from camwright.pipeline.checks.guide_strength import ACROSS
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle, least_spring_force
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
@@ -147,7 +149,7 @@ def _on_points(demand: Demand, solution: Solution) -> Demand:
     JAM_INDEX,
     title="Maximum jam index",
     method="greatest friction of both guides over the axial cam force on the rise; guides of finite"
-    " length with clearance",
+    f" length with clearance{ACROSS}",
     lift_can_help=True,
     tier=Tier.SCREENING,
     part="guides",
@@ -169,7 +171,7 @@ def _on_points(demand: Demand, solution: Solution) -> Demand:
 ).measured("angles", remark=_on_points, deviation=0.01, kept=Kept(factor_max=FACTOR_MAX))
 def jam_index(cam: LoadedCam) -> Array:
     """Guide friction over axial cam force on the rise."""
-    return outward(cam, cam.jam)
+    return outward(cam, np.asarray(cam.jam * cam.jam_tilted))
 
 
 def outward(cam: LoadedCam, index: Array) -> Array:
@@ -188,7 +190,8 @@ def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
     if not loads.lift_slope[k] > 0.0:
         return demand
     rubbed = (loads.friction_force_a[k], mu_a), (loads.friction_force_b[k], mu_b)
-    pushes = [float(force) / mu if mu else 0.0 for force, mu in rubbed]
+    tilted = cam_of(solution, cycle).jam_tilted[k]
+    pushes = [float(force) / mu * float(tilted) if mu else 0.0 for force, mu in rubbed]
     stated = {"mu_A": mu_a, "mu_B": mu_b, "R_A": pushes[0], "R_B": pushes[1]}
     return replace(demand, stated=stated | {"F_a": float(loads.stem_force[k] * loads.wall[k])})
 
@@ -196,7 +199,7 @@ def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
 def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     """No constraint where the maximum friction is not known."""
     worst = cam.jam_worst
-    return None if worst is None else outward(cam, worst) / limit
+    return None if worst is None else outward(cam, np.asarray(worst * cam.jam_tilted)) / limit
 
 
 @check(
@@ -204,7 +207,7 @@ def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     id="jam_index_friction_max",
     title="Maximum jam index at maximum friction",
     method="greatest friction of both guides over the axial cam force on the rise, at the maximum"
-    " friction coefficients",
+    f" friction coefficients{ACROSS}",
     lift_can_help=True,
     tier=Tier.SCREENING,
     moved_by_tolerance=False,
@@ -227,7 +230,9 @@ def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
 def jam_index_friction_max(cam: LoadedCam) -> Array:
     """Jam index at the maximum friction coefficients of both guides."""
     worst = cam.jam_worst
-    return np.full_like(cam.jam, np.nan) if worst is None else outward(cam, worst)
+    if worst is None:
+        return np.full_like(cam.jam, np.nan)
+    return outward(cam, np.asarray(worst * cam.jam_tilted))
 
 
 def _speed_of_jump(worst: Value, numbers: Numbers) -> Value:

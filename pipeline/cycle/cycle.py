@@ -279,6 +279,29 @@ class Cycle(Tabled):
         return np.hypot(loads[0], others[0]), np.hypot(loads[1], others[1])
 
     @property
+    def guide_rubbing(self) -> tuple[Array, Array]:
+        """`rubbing_load_a` and `_b` of the guides (n,), N, with those across the cam's plane."""
+        guides, across = self.guides, self.sideways
+        loads = guides.rubbing_load_a, guides.rubbing_load_b
+        if across is None:
+            return loads
+        others = across.rubbing_load_a, across.rubbing_load_b
+        return np.hypot(loads[0], others[0]), np.hypot(loads[1], others[1])
+
+    @property
+    def hot_friction(self) -> tuple[Array, Array]:
+        """Friction forces of guides A and B at maximum friction (n,), N, with those of the pushes
+        across the cam's plane.
+        """
+        worst, across = self.turn.friction.greatest, self.sideways
+        forces = worst.friction_force_a, worst.friction_force_b
+        if across is None:
+            return forces
+        mu_a, mu_b = self.machine.guide_friction.greatest
+        others = mu_a * across.rubbing_load_a, mu_b * across.rubbing_load_b
+        return np.hypot(forces[0], others[0]), np.hypot(forces[1], others[1])
+
+    @property
     def guide_lines(self) -> tuple[Array, Array]:
         """Greatest line loads in guides A and B (n,), N/m, with those across the cam's plane."""
         guides, across = self.guides, self.sideways
@@ -386,6 +409,7 @@ class Cycle(Tabled):
             self.pair.width,
             self.shaft,
             self.guide_lines,
+            self.hot_friction,
             self.follower_moment,
         )
         if self.pivot is None:
@@ -582,10 +606,10 @@ class Cycle(Tabled):
             ): guides.statics_b,
             Column(
                 "guide_normal_load_A", "N", "Sum of the normal forces on both sides of guide A"
-            ): guides.rubbing_load_a,
+            ): self.guide_rubbing[0],
             Column(
                 "guide_normal_load_B", "N", "Sum of the normal forces on both sides of guide B"
-            ): guides.rubbing_load_b,
+            ): self.guide_rubbing[1],
             Column("spring_force", "N", "Spring force"): loads.spring_force,
             Column("inertia_force", "N", "Inertia force of the follower"): loads.inertia_force,
             Column(

@@ -757,8 +757,22 @@ class LoadedCam:
 
     @cached_property
     def rubbing(self) -> OfGuides:
-        """Sum of the pushes on both sides of a guide, N."""
+        """Sum of the pushes on both sides of a guide, N, those across the cam's plane included."""
         return OfGuides(*(self.axial * each for each in self.rubbing_share))
+
+    @property
+    def jam_tilted(self) -> Value:
+        """Jam index under a couple across the cam's plane, too, over that without; here of none."""
+        return 1.0
+
+    def friction_over(self, plane: OfGuides) -> Array:
+        """Friction of both guides by `rubbing` over that by their pushes in the cam's plane alone,
+        N; 1 without these.
+        """
+        numbers = self.numbers
+        on_a, on_b = numbers["guides.a.friction"], numbers["guides.b.friction"]
+        both, part = (on_a * each.a + on_b * each.b for each in (self.rubbing, plane))
+        return np.divide(both, part, out=np.ones_like(both), where=part != 0.0)
 
     @cached_property
     def bearing(self) -> OfGuides:

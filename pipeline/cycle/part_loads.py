@@ -166,6 +166,7 @@ def part_loads(
     contact_width: float,
     shaft: ShaftLoads | None,
     guide_lines: tuple[Array, Array],
+    hot: tuple[Array, Array],
     moment: Array,
 ) -> PartLoads:
     """Loads of all parts over a turn.
@@ -175,6 +176,7 @@ def part_loads(
     shaft : ShaftLoads      of the turn; None without a camshaft
     contact_width : float   of the line contact, m
     guide_lines : pair      greatest line loads in guides A and B (n,), N/m
+    hot : pair              friction forces of guides A and B at maximum friction (n,), N
     moment : array (n,)     of the contact about the middle of the follower, N m
     """
     machine, loads, guides = turn.machine, turn.loads, turn.guides
@@ -192,8 +194,8 @@ def part_loads(
         guide_edge_pressure_b=edge_pressure_of(machine, pair.b)(guide_lines[1]),
         heat_a=friction_power(nominal[0] * guides.rubbing_load_a, loads.velocity),
         heat_b=friction_power(nominal[1] * guides.rubbing_load_b, loads.velocity),
-        heat_max_a=locked + friction_power(worst.friction_force_a, worst.velocity),
-        heat_max_b=locked + friction_power(worst.friction_force_b, worst.velocity),
+        heat_max_a=locked + friction_power(hot[0], worst.velocity),
+        heat_max_b=locked + friction_power(hot[1], worst.velocity),
         friction=friction,
         viscous_force=loads.viscous_force,
         reversals=torque_reversals(

@@ -300,8 +300,12 @@ class SolvedCam(ForcesCam):
 
     @property
     def rubbing(self) -> OfGuides:
+        return OfGuides(*self.cycle.guide_rubbing)
+
+    @cached_property
+    def jam_tilted(self) -> Array:
         guides = self.cycle.guides
-        return OfGuides(guides.rubbing_load_a, guides.rubbing_load_b)
+        return self.friction_over(OfGuides(guides.rubbing_load_a, guides.rubbing_load_b))
 
     @property
     def bearing(self) -> OfGuides:

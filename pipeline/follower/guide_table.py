@@ -270,16 +270,14 @@ def _table(kind: type[GuideTable], stem: Stem, guides: GuidePair) -> GuideTable:
     return kind(stem, guides)
 
 
-def bearing_under_couple(
-    stem: Stem, guides: GuidePair, couple: Array, spacing: Array
-) -> tuple[Array, Array]:
-    """Bearing loads of guides A and B (...), N, under a couple on the stem (...), N m, alone.
+def loads_under_couple(stem: Stem, guides: GuidePair, couple: Array, spacing: Array) -> GuideLoads:
+    """Loads of the guides (...), N, under a couple on the stem (...), N m, alone.
 
     spacing : array (...)   of the guides, m
     """
     table, load = _table(MomentTable, stem, guides), couple / spacing
     ratios = table.ratios(load, table.between(np.full(load.shape, _COUPLE_ALONE), spacing))
-    return ratios.bearing_a * load, ratios.bearing_b * load
+    return GuideLoads(*(ratio * load for ratio in ratios))
 
 
 @dataclass(frozen=True, eq=False)

@@ -83,7 +83,9 @@ MODEL_LIMITS = (
     ModelLimit(
         "Guide friction is Coulomb friction with constant coefficients, and viscous drag where the"
         " case states it, in equilibrium with guides of finite length and clearance. The couple of"
-        " the friction forces about the stem axis is left out."
+        " the friction forces about the stem axis is left out. PV value, wear, heat and jam index"
+        " of the guides are with the pushes across the plane of the cam, of a forced tilt and of a"
+        " second roller, as the root of both squares; the friction in the loads is without them."
     ),
     ModelLimit(
         "An arm is a straight bar of one rectangular section, which its hubs do not stiffen;"

@@ -35,7 +35,7 @@ from camwright.pipeline.follower.follower_forces import (
     wall_of,
 )
 from camwright.pipeline.follower.friction_coupling import balanced
-from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany, bearing_under_couple
+from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany, loads_under_couple
 from camwright.pipeline.follower.pivot_forces import ArmPivot, PivotBalance, Pressed, Pull
 from camwright.pipeline.screening.design_lengths import (
     DesignValues,
@@ -266,11 +266,16 @@ class ScreenedCam(CarriedCam):
 
     @cached_property
     def hot(self) -> OfGuides | None:
-        pressed = self._pressed_worst
+        pressed, greatest = self._pressed_worst, self._friction("friction_greatest")
         if pressed is None:
-            return super().hot
-        pairs = zip(self._friction("friction_greatest"), pressed.rubbing, strict=True)
-        return OfGuides(*(most * share * pressed.loads.force for most, share in pairs))
+            forces = super().hot
+        else:
+            pairs = zip(greatest, pressed.rubbing, strict=True)
+            forces = OfGuides(*(most * share * pressed.loads.force for most, share in pairs))
+        if forces is None or (across := self._across) is None:
+            return forces
+        on_a, on_b = greatest.a * across.rubbing_a, greatest.b * across.rubbing_b
+        return OfGuides(np.hypot(forces.a, on_a), np.hypot(forces.b, on_b))
 
     def _settled(self, friction: OfGuides) -> OfGuides:
         """Summed normal loads of guides A and B over the axial force, of m designs at n cam angles
@@ -319,24 +324,43 @@ class ScreenedCam(CarriedCam):
         return self.supports.loads(self.stem_force)
 
     @cached_property
-    def rubbing(self) -> OfGuides:
-        return OfGuides(self.guides.rubbing_a, self.guides.rubbing_b)
-
-    @cached_property
-    def bearing(self) -> OfGuides:
-        """Bearing loads of guides A and B (m, n), N, with the couple of the line of contact on the
-        stem.
+    def _across(self) -> GuideLoads | None:
+        """Loads of the guides (m, n), N, across the cam's plane, under the couple of the line of
+        contact and of a second roller on the stem; None without one.
         """
-        guides, block = self.guides, self.block
+        block = self.block
         couple = forced_part(block, self._turning, self.follower_moment) + self._turning.beside
         couple = couple * np.cos(self.motion.pressure_angle)
         if not couple.any():
-            return OfGuides(guides.bearing_a, guides.bearing_b)
+            return None
         spacing = np.broadcast_to(self.numbers["guides.spacing"], couple.shape)
-        machine = block.machine
-        across = bearing_under_couple(machine.stem, machine.guides, couple, spacing)
+        return loads_under_couple(block.machine.stem, block.machine.guides, couple, spacing)
+
+    @property
+    def _in_plane(self) -> OfGuides:
+        """Pushes on both sides of guides A and B (m, n), N, in the cam's plane."""
+        return OfGuides(self.guides.rubbing_a, self.guides.rubbing_b)
+
+    @cached_property
+    def rubbing(self) -> OfGuides:
+        plane, across = self._in_plane, self._across
+        if across is None:
+            return plane
+        return OfGuides(np.hypot(plane.a, across.rubbing_a), np.hypot(plane.b, across.rubbing_b))
+
+    @cached_property
+    def jam_tilted(self) -> Array:
+        return self.friction_over(self._in_plane)
+
+    @cached_property
+    def bearing(self) -> OfGuides:
+        """With the couple of the line of contact on the stem."""
+        guides, across = self.guides, self._across
+        if across is None:
+            return OfGuides(guides.bearing_a, guides.bearing_b)
         return OfGuides(
-            np.hypot(guides.bearing_a, across[0]), np.hypot(guides.bearing_b, across[1])
+            np.hypot(guides.bearing_a, across.bearing_a),
+            np.hypot(guides.bearing_b, across.bearing_b),
         )
 
     @cached_property
@@ -381,7 +405,7 @@ class ScreenedCam(CarriedCam):
         pivot = np.zeros(self.normal.shape) if self.pivoted is None else self.pivot_load
         return turning_of(
             *(self.block, self.shaft_tilt, self.shaft_compliance, self.base_radius),
-            *(self.normal, self.rubbing, pivot, np.abs(self.beyond)),
+            *(self.normal, self._in_plane, pivot, np.abs(self.beyond)),
         )
 
     @cached_property

@@ -271,7 +271,12 @@ class ScenarioCam(CarriedCam):
 
     @cached_property
     def rubbing(self) -> OfGuides:
-        return self._loads(lambda cam: cam.rubbing_share)
+        fix = self.fix
+        return self._loads(lambda cam: cam._corrected(fix.worn_a, fix.worn_b))
+
+    @property
+    def jam_tilted(self) -> Array:
+        return self.fix.jam_tilted
 
     @cached_property
     def bearing(self) -> OfGuides:

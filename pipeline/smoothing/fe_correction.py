@@ -382,6 +382,8 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
     ]
     worst, friction = cycle.parts.friction.greatest, machine.guide_friction.greatest
     (line_a, line_b), (push_a, push_b) = cycle.guide_lines, cycle.guide_pushes
+    plane, worn = (guides.rubbing_load_a, guides.rubbing_load_b), cycle.guide_rubbing
+    (mu_a, mu_b), (hot_a, hot_b) = machine.guide_friction.nominal, cycle.hot_friction
     surge, spacing = cycle.parts.surge_force, machine.guides.spacing
     of_guides = _Statics.of(cycle.loads, spacing, (guides.statics_a, guides.statics_b))
     hot = _Statics.of(worst, spacing, (worst.reaction_a, worst.reaction_b))
@@ -394,11 +396,14 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
         guide_b=of_guides.correction(1, push_b / left[1][0]),
         rubbing_a=of_guides.correction(0, guides.rubbing_load_a),
         rubbing_b=of_guides.correction(1, guides.rubbing_load_b),
+        worn_a=of_guides.correction(0, worn[0]),
+        worn_b=of_guides.correction(1, worn[1]),
+        jam_tilted=_ratio(mu_a * worn[0] + mu_b * worn[1], mu_a * plane[0] + mu_b * plane[1]),
         jam=_ratio(worst.jam_index, worst.jam_index_statics),
         edge_a=of_guides.correction(0, line_a * machine.guides.a.length / left[0][1]),
         edge_b=of_guides.correction(1, line_b * machine.guides.b.length / left[1][1]),
-        hot_a=hot.correction(0, _over(worst.friction_force_a, friction[0])),
-        hot_b=hot.correction(1, _over(worst.friction_force_b, friction[1])),
+        hot_a=hot.correction(0, _over(hot_a, friction[0])),
+        hot_b=hot.correction(1, _over(hot_b, friction[1])),
         bush_rubbing=of_bush[0],
         bush_bearing=of_bush[1],
         surge=np.zeros(cycle.theta.size) if surge is None else surge,

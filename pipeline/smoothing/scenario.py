@@ -133,7 +133,8 @@ class Ratings:
 
 _FACTORS = (
     "contact", "pressure_weight", "force_weight", "guide_a", "guide_b", "rubbing_a", "rubbing_b",
-    "jam", "edge_a", "edge_b", "hot_a", "hot_b", "bush_rubbing", "bush_bearing",
+    "jam", "edge_a", "edge_b", "hot_a", "hot_b", "worn_a", "worn_b", "jam_tilted",
+    "bush_rubbing", "bush_bearing",
 )  # fmt: skip
 
 
@@ -157,7 +158,8 @@ class Correction:
     edge_a, edge_b : array      greatest over mean line load of the guides, over the share of the
                                 greatest line load left at the temperature
     hot_a, hot_b : array        normal loads of the guides at maximum friction
-    bush_rubbing, bush_bearing : array   as of `LoadedCam`
+    worn_a, worn_b : array      `rubbing_*` with the pushes across the cam's plane
+    jam_tilted, bush_rubbing, bush_bearing : array   as of `LoadedCam`
     surge : array               force of the surge at the speed of the load case, N
     swept_surge, elastic : array   change of the spring force, N, by the surge, and with an elastic
                                 stem, at the speeds with the least contact force
@@ -179,6 +181,9 @@ class Correction:
     edge_b: Array
     hot_a: Array
     hot_b: Array
+    worn_a: Array
+    worn_b: Array
+    jam_tilted: Array
     bush_rubbing: Array
     bush_bearing: Array
     surge: Array
@@ -196,7 +201,7 @@ class Correction:
         return cls(
             contact=one, pressure_weight=one, force_weight=one, guide_a=one, guide_b=one,
             rubbing_a=one, rubbing_b=one, jam=one, edge_a=one, edge_b=one, hot_a=one, hot_b=one,
-            bush_rubbing=one, bush_bearing=one,
+            worn_a=one, worn_b=one, jam_tilted=one, bush_rubbing=one, bush_bearing=one,
             lever=zero, surge=zero, swept_surge=zero, elastic=zero, swept_speed=zero,
             elastic_speed=zero, rolling=zero, least_lift=zero,
         )  # fmt: skip

@@ -65,6 +65,7 @@ LOADED = {
     "surged": by_hand.surged_force(),
     "torque": by_hand.DRIVE,
     "jam": 0.2 + 0.1 * made.WAVE,
+    "jam_tilted": 1.0,
     "bush_rubbing": 1.2,
     "jam_worst": 0.3 + 0.1 * made.WAVE,
     "p0": PRESSURE,
