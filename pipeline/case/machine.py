@@ -293,9 +293,10 @@ class Machine(Displayed):
     def _arm_bars(self) -> tuple[ArmBar, ...]:
         """Each arm as a beam; () where it is not described."""
         output, pair = 0.0 if self.output is None else self.output.reduced_mass, self.cam.conjugate
+        length = None if pair is None else pair.arm_length
         return ArmBar.each(
             *(self.arm, self.follower, self.mass - output, self.spring.link),
-            None if pair is None else pair.arm_length,
+            None if length is None else (length, on_second_track(self.roller, self.cam)),
         )
 
     @property

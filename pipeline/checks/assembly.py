@@ -711,10 +711,12 @@ def cheek_to_cam(numbers: Numbers) -> Value:
 def _in_fork(numbers: Numbers) -> Gaps:
     """Gaps of cheeks and bridge from roller and cam, m."""
     inner, radius, width = _inner_face(numbers), numbers["roller.radius"], numbers["roller.width"]
-    to_cam = np.where(0.5 * numbers[_HEIGHT] > radius, cheek_to_cam(numbers), np.inf)
+    other = numbers.get("cam.conjugate.roller_radius")
+    other = radius if other is None else other
+    least, largest = np.minimum(radius, other), np.maximum(radius, other)
+    to_cam = np.where(0.5 * numbers[_HEIGHT] > least, cheek_to_cam(numbers), np.inf)
     groove = numbers.known_case.cam.groove
     nearest: Value = inner
-    largest: Value = radius
     if groove is not None:
         second = groove.second and numbers.of_part(groove.second)
         to_cam = np.asarray(inner - numbers.of_part(groove).middle(radius, width, second))
@@ -734,10 +736,11 @@ def _in_fork(numbers: Numbers) -> Gaps:
     tier=Tier.SCREENING,
     formula="min(f - w/2, l - r, f - step(h/2 - r) (b/2 + x)) >= g; f: inner face of a cheek from"
     " the middle of the roller, (span - cheek_width)/2 of a straddled pin, span of an overhung one,"
-    " w, r: width and radius of the roller, l: roller.fork.cheek_length, h: cheek_height, beside"
-    " the cam where h/2 > r, b: width of the cam, x: roller.axial_offset, g: limits.assembly_gap",
+    " w, r: width and radius of the roller, of a pair the worse, l: roller.fork.cheek_length, h:"
+    " cheek_height, beside the cam where h/2 > r, b: width of the cam, x: roller.axial_offset, g:"
+    " limits.assembly_gap",
     symbols={
-        "?": "roller.pin.mounting straddled; cam.groove None",
+        "?": "roller.pin.mounting straddled; cam.groove None; cam.conjugate None",
         "h": "roller.fork.cheek_height",
         "f": "(roller.pin.span - roller.fork.cheek_width)/2 [mm]",
         "w": "roller.width",

@@ -233,40 +233,43 @@ class ArmBar:
         end: FollowerKind,
         mass: Value,
         link: SpringLink | None,
-        second: Value | None = None,
+        second: tuple[Value, FollowerKind] | None = None,
     ) -> tuple[ArmBar, ...]:
         """Bar of an arm of a follower with the roller or face `end`, and of the second arm of
         conjugate discs; () of a stem, and of an arm without section or material.
 
-        The second is like the first but for its length, and no spring acts on it. Each swings
-        the mass at its own end, the rest of the moment of inertia is that of both bars.
+        The second is like the first but for its length and roller, and no spring acts on it. Each
+        swings the mass at its own end, the rest of the moment of inertia is that of both bars.
 
         Parameters
         ----------
         end : FollowerKind   roller or face on the arm
         mass : float         that moves with it, kg
         link : SpringLink    None: of another spring
-        second : float       length of a second arm, m; None: without one
+        second : tuple       length, m, and roller of a second arm; None: without one
         """
         if arm is None or arm.width is None or arm.depth is None or arm.material is None:
             return ()
-        masses = sum(each for each in end.moving.masses.values() if each is not None)
         pin, fork = end.parts.get("pin"), end.parts.get("fork")
-        lengths: list[tuple[Value, Value, Value]] = [(arm.length, arm.held(link), 1.0)]
+        arms: list[tuple[Value, FollowerKind, Value]] = [(arm.length, end, arm.held(link))]
         if second is not None:
-            lengths.append((second, 0.0, second / arm.length))
-        square, cube = (sum(ratio**power for *_, ratio in lengths) for power in (2, 3))
-        ends = np.minimum(square * masses / mass, 1.0)
+            arms.append((*second, 0.0))
+        ratios = [length / arm.length for length, *_ in arms]
+        swung = [
+            ratio**2 * sum(part for part in each.moving.masses.values() if part is not None)
+            for ratio, (_, each, _) in zip(ratios, arms, strict=True)
+        ]
+        most, cube = np.maximum(mass, sum(swung)), sum(ratio**3 for ratio in ratios)
         return tuple(
             cls(
                 *(length, arm.width, arm.depth, arm.material, arm, held),
-                ends * ratio**2 / square,
-                (1.0 - ends) * ratio**3 / cube,
+                at_end / most,
+                (1.0 - sum(swung) / most) * ratio**3 / cube,
                 pin if isinstance(pin, Pin) else None,
                 fork if isinstance(fork, Fork) else None,
                 "pin" in end.parts,
             )
-            for length, held, ratio in lengths
+            for ratio, at_end, (length, _, held) in zip(ratios, swung, arms, strict=True)
         )
 
     @property

@@ -320,9 +320,12 @@ def test_each_arm_is_bent_by_its_own_contact_and_mass(name, distance):
     cycle, machine, track = running(name)
     solution, loads, path = trial(name).solution, cycle.loads, cycle.contour.pitch
     lengths, at, bent = (path.arm.length, track.contour.pitch.arm.length), loads.theta, []
-    ends = sum(mass for mass in machine.roller.moving.masses.values())
+    roller, radius = machine.roller, track.contour.require_roller().roller_radius
+    ring = np.pi * roller.width * roller.material.density  # per square of the radius
+    first = sum(mass for mass in roller.moving.masses.values())
+    ends = first, first + ring * (radius**2 - roller.radius**2)
     places = [length * (np.arange(2000) + 0.5) / 2000 for length in lengths]
-    left = machine.mass * lengths[0] ** 2 - ends * sum(length**2 for length in lengths)
+    left = machine.mass * lengths[0] ** 2 - np.dot(ends, np.square(lengths))
     lump = left / sum(
         length * np.sum(place**2) for length, place in zip(lengths, places, strict=True)
     )
@@ -337,7 +340,7 @@ def test_each_arm_is_bent_by_its_own_contact_and_mass(name, distance):
         pushed = normal * (centre - contact) / contour.require_roller().roller_radius
         moment = -arm.sense * (reach[0] * pushed[1] - reach[1] * pushed[0])
         beyond = np.maximum(places[number] - distance, 0.0) * places[number]
-        swung = ends * (length - distance) * length + lump * length * np.sum(beyond)
+        swung = ends[number] * (length - distance) * length + lump * length * np.sum(beyond)
         wanted = moment - (turned if number == 0 else -turned) * swung
         bar, forces = bars_of(solution.numbers)[number], arm_forces(cam_of(solution, cycle), number)
         bent.append(bar.bending(distance, forces))

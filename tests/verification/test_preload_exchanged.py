@@ -24,8 +24,8 @@ FILE = Path(__file__).parents[1] / "data" / "preloaded_arm.toml"
 DISTANCE, FIRST, SECOND, BETWEEN, STROKE, PRIME = 100.0, 90.0, 85.0, 79.0, 5.5, 64.0  # mm, deg
 OWN = {
     # places of the first disc and its arm, and masses of their parts
-    *("arm_gap", "arm_cam_gap", "fork_gap", "fork_shaft_gap", "gear_gap", "second_track_gap"),
-    *("follower_mass", "arm_fatigue_roller"),
+    *("arm_gap", "arm_cam_gap", "fork_shaft_gap", "gear_gap", "second_track_gap"),
+    "follower_mass",
 }
 """Checks of what the case states of the first disc alone."""
 
