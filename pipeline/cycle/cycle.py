@@ -31,6 +31,7 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.finite_length.length_certificate import EndCorrection
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
+from camwright.pipeline.cycle.contact_setup import CarryingWall
 from camwright.pipeline.cycle.crossover_history import Flights, WallImpact, flights, landed
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
 from camwright.pipeline.cycle.length_history import LengthHistory, TurnOfLine, length_histories
@@ -338,6 +339,18 @@ class Cycle(Tabled):
         of_both = {"shaft": self.shaft, "pin_slope": self.pin_slope}
         other.results.update({**of_both, "on_other_track": self})
         return other
+
+    @property
+    def pressed_harder(self) -> Cycle:
+        """The cycle with contact and bodies of the preloaded disc with the greater Hertz pressure
+        at each angle; of other cams itself.
+        """
+        if self.idle is None:
+            return self
+        other = self.idle.p0_hertz > self.contact.p0_hertz
+        wall = CarryingWall(self.theta, np.where(other, -1.0, 1.0) * self.loads.wall)
+        contact, pair = self.contact.where(other, self.idle), replace(self.pair, wall=wall)
+        return replace(self, contact=contact, pair=pair, idle=None)
 
     def on_each_disc(self, measure: Callable[[Cycle], Array]) -> tuple[Array, ...]:
         """Measure (n,) of the cycle on each of preloaded discs over the turn; of others as it

@@ -64,7 +64,8 @@ def write_fields(
     """Write the field files of a trial: stress of both bodies over the turn, and arrays that turn
     them; none if the contour encloses no body.
 
-    The load case is that with the maximum contact pressure.
+    The load case is that with the maximum contact pressure; of preloaded discs that which is
+    pressed harder is shown at each angle.
 
     Parameters
     ----------
@@ -76,7 +77,7 @@ def write_fields(
     if final.mesh is None:
         return
     chosen = hardest(final.cycles)
-    cycle = final.cycles[chosen]
+    cycle = final.cycles[chosen].pressed_harder
     bodies = cycle.bodies or CycleBodies.meshed(cycle.pair)
     write_atomic(folder / TURN, npz_bytes(turn_view(cycle.pair, bodies, cycle)))
     if shown is Shown.NONE:
@@ -149,7 +150,7 @@ def hardest(cycles: Sequence[Cycle]) -> int:
     """
     whole = [cycle.end is None for cycle in cycles]
     counted = whole if any(whole) else [True] * len(cycles)
-    pressures = [cycle.contact.p0_hertz.max() for cycle in cycles]
+    pressures = [cycle.pressed_harder.contact.p0_hertz.max() for cycle in cycles]
     return first_greatest(np.where(counted, pressures, -np.inf))
 
 

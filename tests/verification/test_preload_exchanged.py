@@ -147,3 +147,15 @@ def test_an_oil_too_thin_for_the_slower_roller_leaves_no_modified_life():
         rated = rated_viscosity(np.sqrt(np.prod(means)) * 30.0 / np.pi, circle)
         thin = cam.numbers | {f"{key}viscosity": 0.1 * rated, f"{key}cleanliness_load": 100.0}
         assert np.isnan(roller_modified_life.measure(replace(cam, numbers=thin))).all()
+
+
+def test_the_stress_field_shows_the_disc_that_is_pressed_harder():
+    """Contact and bodies by angle: relative radius of the track with the greater pressure."""
+    cycle = trials()[0].solution.cycles[0]
+    shown, (here, there) = cycle.pressed_harder, (cycle.contact, cycle.idle)
+    other = there.p0_hertz > here.p0_hertz
+    assert other.any() and not other.all()
+    assert shown.contact.p0_hertz == pytest.approx(np.maximum(here.p0_hertz, there.p0_hertz))
+    radius = np.where(other, there.relative_radius, here.relative_radius)
+    assert shown.pair.relative_radius(cycle.theta) == pytest.approx(radius, rel=1e-9)
+    assert (shown.pair.wall(cycle.theta) != cycle.loads.wall).sum() == other.sum()
