@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -243,7 +244,8 @@ def beside_first(machine: Machine, loads: Loads) -> Array:
     return couple_of_second(loads.normal_force, beyond_first(machine, loads))
 
 
-class BushLoad(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class BushLoad:
     """Load of an arm on the bush of its pivot (..., n), in the plane of the contact normal and
     beside.
 
@@ -284,7 +286,7 @@ class BushLoad(NamedTuple):
         pressed, aside = along * cos + across * sin, across * cos - along * sin
         return cls(bush, np.abs(pressed), couple, aside / bush.length)
 
-    @property
+    @cached_property
     def pressed(self) -> PressedBush:
         """Pin in the bush, in the plane of the contact normal."""
         return pressed_bush(self.bush, self.force, self.couple)
