@@ -92,7 +92,9 @@ def squeezed(
 ) -> Squeezed:
     """Preload (...) of an interference, m, on the compliances of both rollers.
 
-    Both forces bend the camshaft: opposite ones bend it back, each at the disc of the other.
+    Both forces bend the camshaft: opposite ones bend it back, each at the disc of the other. NaN
+    where one bends it there by more than the other roller and its disc yield under their own force:
+    an axial force would press both.
 
     first : Pushing    of the first track
     touch : Touch      of the second track
@@ -107,7 +109,9 @@ def squeezed(
     far = far + bent_back
     both = near + far
     stiffness = both / (near * far - bent_back * both)
-    return Squeezed(np.asarray(closed / both), far / both, stiffness, interference)
+    apart = (np.real(np.asarray(near)) > 0.0) & (np.real(np.asarray(far)) > 0.0)
+    preload = np.where(apart, closed / both, np.nan)
+    return Squeezed(preload, far / both, stiffness, interference)
 
 
 def _product(one: Pushing, other: Pushing) -> Value:
@@ -143,11 +147,15 @@ class DiscPreload:
         Raises
         ------
         InputError
-            If deviations leave no interference.
+            If deviations leave no interference, or the camshaft bends too much, see `squeezed`.
         """
         left = self.left(track, theta)
         if not float(np.min(left)) > 0.0:
             shown = units.shown(float(np.min(left)), "mm")
             raise InputError("cam.conjugate.interference", shown, "> 0 mm at every angle")
         first = track.first.slide(theta, 0.0)
-        return squeezed(left, self.compliances, first, track.touch(theta), track.leverage)
+        squeeze = squeezed(left, self.compliances, first, track.touch(theta), track.leverage)
+        if np.isnan(squeeze.preload).any():
+            bent = "bent at one disc by the other more than by its own"
+            raise InputError("camshaft", bent, "stiffer, or the discs nearer to a bearing")
+        return squeeze

@@ -342,3 +342,23 @@ def test_the_pressure_of_an_undercut_disc_is_not_known():
     checks = {each.id: each for each in preview_case(parse_case(text), corners=False).checks}
     assert checks["undercut"].status == "fail"
     assert checks["preload_pressure"].status == "not_evaluated"
+
+
+@pytest.mark.parametrize(("diameter", "refused"), [(30, False), (20, True)])
+def test_discs_on_a_soft_end_of_the_camshaft_are_refused(diameter, refused):
+    """30 mm beyond the bearing a shaft of 20 mm bends at the first disc by a force at the second
+    more than disc and roller yield under their own: both forces would grow with an axial one.
+    """
+    text = FILE.read_text(encoding="utf-8")
+    text = text.replace('cam_position = "35 mm"', 'cam_position = "134 mm"')
+    before, shaft = text.split("[camshaft]\n")
+    shaft = shaft.replace('diameter = "30 mm"', f'diameter = "{diameter} mm"', 1)
+    case = parse_case(f"{before}[camshaft]\n{shaft}")
+    machine, contour = machines(case)[0], case.contour(given_lift(case))
+    theta, track = uniform_turn(72), machine.cam.second.track(contour.pitch)
+    if refused:
+        with pytest.raises(InputError, match="camshaft"):
+            machine.disc_preload.at(track, theta)
+    else:
+        squeeze = machine.disc_preload.at(track, theta)
+        assert ((squeeze.share > 0.8) & (squeeze.share < 1.0)).all()
