@@ -197,7 +197,7 @@ def rolling_history(
     Without the meshed bodies the stresses are those of half-planes, and there is no bore stress.
     """
     contour, theta, follower = pair.contour, loads.theta, machine.follower
-    motion = follower.motion(contour, contact, loads, machine.cam_speed)
+    motion = follower.motion(contour, contact, loads, machine.cam_speed, idle)
     shear = mises = None
     if motion.traction_share is not None and follower.friction is not None:
         more = rolling_increase(pair.cam.poisson, follower.friction, motion.traction_share)

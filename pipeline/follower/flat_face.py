@@ -243,7 +243,12 @@ class FollowerFace(Part):
         return FaceBody(self.width, self.thickness, held, elastic, self.radius, part=part)
 
     def motion(
-        self, contour: Contour, contact: ContactHistory, loads: Loads, speed: float
+        self,
+        contour: Contour,
+        contact: ContactHistory,
+        loads: Loads,
+        speed: float,
+        idle: ContactHistory | None = None,  # noqa: ARG002
     ) -> SurfaceMotion:
         """Sliding of the face; see `FollowerKind`."""
         motion, force = face_motion(contour.pitch, speed, loads.theta), loads.normal_force

@@ -198,7 +198,12 @@ class FollowerKind(Protocol):
         ...
 
     def motion(
-        self, contour: Contour, contact: ContactHistory, loads: Loads, speed: float
+        self,
+        contour: Contour,
+        contact: ContactHistory,
+        loads: Loads,
+        speed: float,
+        idle: ContactHistory | None = None,
     ) -> SurfaceMotion:
         """Motion of the surfaces in the contact.
 
@@ -206,5 +211,6 @@ class FollowerKind(Protocol):
         ----------
         loads : Loads        at equal cam angles of a turn
         speed : float        of the cam, rad/s
+        idle : ContactHistory   on the track that bears less, of preloaded discs
         """
         ...

@@ -312,7 +312,12 @@ class Roller(Part):
         return RollerBody(self.radius, self.hub_radius, Elastic(self.material.E, self.material.nu))
 
     def motion(
-        self, contour: Contour, contact: ContactHistory, loads: Loads, speed: float
+        self,
+        contour: Contour,
+        contact: ContactHistory,
+        loads: Loads,
+        speed: float,
+        idle: ContactHistory | None = None,
     ) -> SurfaceMotion:
         """Rolling of the roller on the cam over the turn: with creep, or without a friction
         coefficient free of slip. See `FollowerKind`.
@@ -323,10 +328,15 @@ class Roller(Part):
         contact : ContactHistory   pressures and half-widths
         loads : Loads              normal force
         speed : float              of the cam, rad/s
+        idle : ContactHistory      on the track that bears less, of preloaded discs
         """
         rollers, force = self._rollers(contour, loads, speed), loads.normal_force
         motion = _carrying(rollers, [each.motion for each in rollers])
-        driven = _carrying(rollers, [self._driven(each, contact, speed) for each in rollers])
+        less = contact if idle is None else idle
+        driven = _carrying(
+            rollers,
+            [self._driven(each, less.where(each.carries, contact), speed) for each in rollers],
+        )
         loaded = force > (NO_FORCE if loads.held else 0.0)  # no quotient where the track changes
         demand = np.abs(driven.demand) / np.where(loaded, force, np.nan)
         if self.friction is None:
