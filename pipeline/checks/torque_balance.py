@@ -40,7 +40,7 @@ from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.numbers import Numbers, disc_radius
 from camwright.pipeline.cycle.solution import Solution
 
 # rad: truncation and round-off of a chord along the tangent are below 1e-9.
@@ -506,7 +506,12 @@ def stated_temperatures(numbers: Numbers) -> dict[str, float]:
 
 
 def box_area(across: Value, numbers: Numbers) -> Value:
-    """Outer area of the box around a cam, twice its greatest radius across, and follower, m^2."""
+    """Outer area of the box around a cam and its follower, m^2.
+
+    across : of the contour, m; of a groove that of its disc counts, of two discs the greater one.
+    """
+    disc = disc_radius(numbers)
+    across = across if disc is None else 2.0 * disc
     height = across + float(numbers.get("follower.stem_length") or 0.0)
     return housing_area(across, height, numbers["cam.width"])
 

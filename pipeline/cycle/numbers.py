@@ -361,12 +361,19 @@ def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
     if shaft is None:
         return None
     if thick:
-        stated, of_discs = (
-            numbers.get(key) for key in ("cam.groove.outer_radius", "cam.greatest_radius")
-        )
-        disc = of_discs if stated is None else stated
+        disc = disc_radius(numbers)
         outer = outer + numbers["spring.travel_max"] if disc is None else disc
     return FittedRing(numbers["cam.bore_radius"], outer, case.cam.material, shaft)
+
+
+def disc_radius(numbers: Numbers) -> Value | None:
+    """Radius of the disc around a groove, or greatest of the contours of a cam that no coil spring
+    closes, m; None of another cam, whose contour has it.
+    """
+    stated, of_discs = (
+        numbers.get(key) for key in ("cam.groove.outer_radius", "cam.greatest_radius")
+    )
+    return of_discs if stated is None else stated
 
 
 def least_interference(numbers: Numbers) -> Value | None:

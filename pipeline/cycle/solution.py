@@ -145,6 +145,11 @@ class Solution(Displayed):
         return min(float(each.contour.radius_min().value) for each in self.discs)
 
     @property
+    def pressure_angle_max(self) -> float:
+        """Maximum pressure angle on all discs, rad."""
+        return max(float(each.contour.pressure_angle_max().value) for each in self.discs)
+
+    @property
     def greatest_radius(self) -> float:
         """Maximum radius of all discs, m: of their contours, or of the disc around a groove."""
         groove = self.machine.cam.groove

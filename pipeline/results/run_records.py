@@ -262,7 +262,7 @@ def headline(solution: Solution) -> HeadlineRecord:
         "torque_p2p_after_Nm": None if after is None else float(np.ptp(after)),
         "torque_mean_Nm": None if design is None else design.mean,
         "lift_max_mm": _MM * contour.lift.highest.value,
-        "pressure_angle_max_deg": _steepest(solution),
+        "pressure_angle_max_deg": float(np.degrees(solution.pressure_angle_max)),
         "pitch_radius_of_curvature_min_mm": _MM
         * min(each.contour.least_convex_pitch_radius().value for each in solution.discs),
         "normal_force_min_N": min(map(_least_force, solution.cycles)),
@@ -294,13 +294,6 @@ def _least_force(cycle: Cycle) -> float:
     if cycle.machine.disc_preload is None and np.ptp(loads.wall) > 0.0:
         return 0.0
     return float(loads.normal_force.min())
-
-
-def _steepest(solution: Solution) -> float:
-    """Maximum pressure angle on all discs, deg."""
-    return max(
-        float(np.degrees(each.contour.pressure_angle_max().value)) for each in solution.discs
-    )
 
 
 def figures(trial: Trial) -> CamFigures:
@@ -345,7 +338,7 @@ def figures(trial: Trial) -> CamFigures:
         )
     return {
         "lift_max_mm": _MM * trial.lift.highest.value,
-        "pressure_angle_max_deg": _steepest(solution),
+        "pressure_angle_max_deg": float(np.degrees(solution.pressure_angle_max)),
         "convex_radius_min_mm": _MM / convex if convex > 0.0 else None,
         "cam_radius_max_mm": _MM * solution.greatest_radius,
         "load_cases": rows,

@@ -282,6 +282,8 @@ def test_the_second_roller_by_the_data_of_its_own_bearing():
     """
     trial = with_own_bearing()
     judged = {each.id: each.demand for each in trial.checks}
+    (told,) = (str(each.source) for each in trial.checks if each.id == "second_roller_life")
+    assert "15.9 mm wide, computed as wide as roller.width = 17.5 mm" in told
     films, lives, greases, fastest, most = [], [], [], 0.0, 0.0
     for cycle in trial.cycles:
         pace = np.hypot(*cycle.contour.pitch.velocity(cycle.theta))

@@ -28,6 +28,7 @@ from camwright.pipeline.case.cards.provenance import (
 from camwright.pipeline.case.cards.spring_selection import put_force, put_spring
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import UNSTATED, put_sources
+from camwright.pipeline.contact.cam_body import SECOND_BEARING
 
 _RANGE = ("diameter_least", "diameter_most", "temperature_most")
 KINDS = ("materials", "bushes", "oils", "wires", "gas_springs", "bearings")
@@ -84,6 +85,8 @@ def _fill_places(case: Tables, folder: Path | None) -> None:
         elif kind == "bearings":
             words = bearing_keys(words)
             part = read_part(BearingCard, without_provenance(card), f"cards.{name}")
+            if field == SECOND_BEARING:
+                raw = _beside(part, case, raw)
             card = tables_of(part.bearing)
         own, stated = dict(table), card["source"] if kind == "oils" else raw
         table.update(without_provenance(card))
@@ -100,6 +103,18 @@ def _fill_places(case: Tables, folder: Path | None) -> None:
         if kind == "bushes":
             material = _entry(table, "material", field)
             _with_material(case, material, cards["materials"])
+
+
+def _beside(card: BearingCard, case: Tables, source: TomlValue) -> TomlValue:
+    """Source of the bearing of the second roller, which says where its width is not that of the
+    rollers: both have one line of contact and one mass by `roller.width`.
+    """
+    roller = case.get("roller")
+    width = roller.get("width") if isinstance(roller, dict) else None
+    if width is None or math.isclose(units.parse(width, "mm", "roller.width"), card.width):
+        return source
+    note = f"; {units.shown(card.width, 'mm')} wide, computed as wide as roller.width = {width}"
+    return cast("TomlValue", reworded(source, lambda text: text + note))
 
 
 def known_cards(folder: Path | None) -> Cards:
@@ -177,7 +192,7 @@ def _places(case: Tables) -> Iterator[tuple[str, str, Tables]]:
         "spring.design": "wires",
         "spring.gas": "gas_springs",
         "roller.bearing": "bearings",
-        "cam.groove.second.bearing": "bearings",
+        SECOND_BEARING: "bearings",
     }
     for field, kind in kinds.items():
         table: TomlValue | None = case

@@ -64,9 +64,9 @@ def _changed(before: Judgement, after: Judgement) -> list[str]:
 
 def _figures(judgement: Judgement) -> tuple[tuple[str, str, float | None], ...]:
     """Figures with label and unit."""
-    figures, contour = headline(judgement.solved), judgement.solved.contour
+    figures = headline(judgement.solved)
     return (
         ("ripple", "N m", figures["torque_std_after_Nm"]),
         ("p0", "MPa", figures["p0_max_MPa"]),
-        ("cam radius", "mm", in_unit(contour.radius_max().value, "mm")),
+        ("cam radius", "mm", in_unit(judgement.solved.greatest_radius, "mm")),
     )
