@@ -1,4 +1,4 @@
-"""Checks of the assembly of a second track: gaps of disc, roller, arm and faces over the turn."""
+"""Check of the assembly of a second track: gaps of disc, roller, arm and faces over the turn."""
 
 from __future__ import annotations
 
@@ -22,10 +22,11 @@ from camwright.pipeline.checks.arm_assembly import (
 )
 from camwright.pipeline.checks.assembly import aside, one, room_beside_shaft, shaft_radius
 from camwright.pipeline.checks.check import NONE, STATED, Demand, check
-from camwright.pipeline.contact.cam_body import CamConjugate
+from camwright.pipeline.contact.cam_body import CamConjugate, CamGroove
 from camwright.pipeline.cycle.arm_bodies import (
     ARM_DEPTH,
     ARM_WIDTH,
+    HUB,
     SPRING,
     SwungBody,
     swung_bodies,
@@ -192,12 +193,29 @@ def _in_yoke(solution: Solution) -> Iterator[tuple[str, PartGap]]:
     yield "face to camshaft", PartGap(least - radius, (0.0, radius), -np.inf)
 
 
+def _over_groove(solution: Solution, groove: CamGroove) -> Iterator[tuple[str, PartGap]]:
+    """Gaps of arm and hub of a roller in a groove to the disc around it, whose face is between
+    them; of a stem none, which `fork_gap` judges.
+    """
+    numbers, case = solution.numbers | with_swing(solution.cams.values()), solution.case
+    roller, bodies = case.roller, swung_bodies(numbers)
+    face, radius = groove.middle(roller.radius, roller.width, groove.second), groove.outer_radius
+    for name in ("arm", HUB):
+        if name in bodies:
+            body = bodies[name]
+            away = body.beside[0] - body.beside[1] - face
+            plane = body.from_disc(0.0, 0.0, radius)
+            yield f"{name} to disc", PartGap(plane, (body.half, radius), away)
+
+
 def gaps_of(solution: Solution) -> dict[str, PartGap]:
-    """Gaps of a second disc with its follower, or of the faces of a yoke, by the names of both
-    parts; {} of one track and of a groove.
+    """Gaps of a second disc with its follower, of the faces of a yoke, or of an arm to the disc of
+    its groove, by the names of both parts; {} of one track and of a stem over a groove.
     """
     cam = solution.machine.cam
-    if cam.second is None or cam.groove is not None:
+    if cam.groove is not None:
+        return dict(_over_groove(solution, cam.groove))
+    if cam.second is None:
         return {}
     if cam.conjugate is None:
         return dict(_in_yoke(solution))
@@ -210,25 +228,30 @@ def gaps_of(solution: Solution) -> dict[str, PartGap]:
     formula="max(d - h - r, a) >= g; of the nearest pair: d: least distance over the turn of roller"
     " centre or centre line of an arm from the axis of the camshaft or the contour of the other"
     " disc, or of a disc from the machine shaft, or of the centre lines of both arms, h: radius of"
-    " roller or cheeks, half of the depth of the arm, r: radius of the shaft, the disc or none, or"
-    " as h of the other arm, a: gap of the two along the camshaft, that in the plane where they"
-    " have none, g: limits.assembly_gap",
+    " roller or cheeks, half of the depth of the arm or of its hub, r: radius of shaft or disc,"
+    " none or as h of the other arm, a: gap of the two along the camshaft, over a groove from"
+    " the face of its disc, that in the plane where they have none, g: limits.assembly_gap",
     symbols=dict.fromkeys("dhra", f"{STATED} [mm]"),
     reason="A second disc, roller, arm or face within camshaft, bearing, gear or the other disc"
     " cannot be assembled.",
     method="second disc and follower beside bearings and gear along the camshaft; rollers, with"
     " their forks, and arms from the other disc over the turn, from 720 angles and points, or along"
-    " the camshaft; rollers and forks from the other arm; second roller and faces from the shaft",
+    " the camshaft; rollers and forks from the other arm; second roller and faces from the shaft;"
+    " arm and hub from the disc of a groove",
     lift_can_help=True,
     moved_by_tolerance=False,
     closed_by="form",
     load_cases=NONE,
-    levers=(levers.one("cam.conjugate.spacing"), levers.PRIME),
+    levers=(
+        levers.one("cam.conjugate.spacing"),
+        levers.one("follower.arm.plane_offset"),
+        levers.PRIME,
+    ),
     page="Camshaft",
 )
 def second_track_gap(solution: Solution) -> Demand | None:
-    """Least gap of a second disc with its follower, or of the faces of a yoke, m; None of a groove,
-    whose roller has no other part.
+    """Least gap, m, of a second disc with its follower, of the faces of a yoke, or of an arm to the
+    disc of its groove; None of a stem over a groove.
     """
     limit, pairs = solution.machine.limits[ASSEMBLY_GAP], gaps_of(solution)
     if not pairs:

@@ -177,7 +177,7 @@ class Roller(Part):
             return self.mass
         inside = self.hub_radius if self.pin is None else 0.5 * self.pin.diameter
         area = np.pi * (self.radius**2 - inside**2)
-        return float(self.material.density * self.width * area)
+        return self.material.density * self.width * area
 
     @property
     def parts(self) -> Mapping[str, Part | None]:

@@ -135,9 +135,7 @@ MODEL_LIMITS = (
         " The moment of inertia of two arms is shared as that of two bars of one section with equal"
         " ends; the couples of both contacts on the pin of their pivot add up by their sizes. The"
         " frame of a yoke around its cam is not in the case: neither its strength nor its room is"
-        " judged. The gaps of an arm from its cam know the inner wall of a groove, not the disc"
-        " around it: an arm or hub in the plane of the roller is within that disc, and no check"
-        " tells it."
+        " judged."
     ),
     ModelLimit(
         "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference"

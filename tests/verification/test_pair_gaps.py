@@ -150,6 +150,23 @@ def test_the_check_names_what_is_within_the_bearing():
     assert check.note == "second roller to bearing 2"
 
 
+def test_an_arm_over_a_groove_is_before_the_face_of_its_disc():
+    """The disc of 112 mm reaches beyond the pivot at 100 mm, whose hub has 36 mm; its face is
+    18 - 0.4 - 17.5/2 mm from the middle of the roller.
+    """
+    case = read_case(DATA / "groove_arm.toml")
+    pairs = gaps_of(preview_case(case, corners=False).solution)
+    assert list(pairs) == ["arm to disc", "hub to disc"]
+    assert 1e3 * float(pairs["hub to disc"].plane) == pytest.approx(100.0 - 18.0 - 112.0)
+    for pair in pairs.values():
+        assert 1e3 * float(pair.axial) == pytest.approx(20.0 - 10.0 - 0.3 - 8.85)
+    within = with_values(case, {"follower.arm.plane_offset": "19 mm"})
+    check = next(each for each in preview_case(within, corners=False).checks
+                 if each.id == "second_track_gap")  # fmt: skip
+    assert check.status == "fail"
+    assert check.demand == pytest.approx(-0.15e-3)
+
+
 def test_the_faces_of_a_yoke_clear_the_shaft():
     """Base circle 35 mm, shaft 30 mm in diameter."""
     assert gaps("yoke_pump") == {"face to camshaft": (pytest.approx(20.0), -np.inf)}
