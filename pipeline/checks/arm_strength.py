@@ -40,7 +40,7 @@ from camwright.pipeline.follower.arm import FollowerArm
 from camwright.pipeline.follower.arm_beam import ArmBar, ArmForces, ArmSection, SectionLoads
 from camwright.pipeline.follower.camshaft_loads import Surface
 from camwright.pipeline.follower.rocker import Rocker
-from camwright.pipeline.follower.roller import Roller, on_second_track
+from camwright.pipeline.follower.roller import on_second_track
 from camwright.pipeline.follower.second_arm import SecondArmBar
 from camwright.pipeline.follower.shaft_strength import (
     reliability_factor,
@@ -103,13 +103,11 @@ def bars_of(numbers: Numbers) -> tuple[ArmBar, ...]:
     link = None if link is None else numbers.of_part(link)
     output = 0.0 if case.output is None else case.output.reduced_mass
     mass, length = numbers["follower.mass"] - output, numbers.get("cam.conjugate.arm_length")
-    end, second = case.facing, None
-    if isinstance(end, Roller):
-        end = numbers.of_part(end)
+    roller, second = numbers.of_part(case.roller), None
     if length is not None:
         radius = {"radius": numbers["cam.conjugate.roller_radius"]}
-        roller = on_second_track(numbers.of_part(case.roller), case.cam)
-        second = length, roller.of_many(radius)
+        second = length, on_second_track(roller, case.cam).of_many(radius)
+    end = roller if case.follower.face is None else case.facing
     return ArmBar.each(arm, end, mass, link, second)
 
 
