@@ -103,12 +103,13 @@ def bars_of(numbers: Numbers) -> tuple[ArmBar, ...]:
     link = None if link is None else numbers.of_part(link)
     output = 0.0 if case.output is None else case.output.reduced_mass
     mass, length = numbers["follower.mass"] - output, numbers.get("cam.conjugate.arm_length")
+    if case.facing.slides:
+        return ArmBar.each(arm, case.facing, mass, link)
     roller, second = numbers.of_part(case.roller), None
     if length is not None:
         radius = {"radius": numbers["cam.conjugate.roller_radius"]}
         second = length, on_second_track(roller, case.cam).of_many(radius)
-    end = roller if case.follower.face is None else case.facing
-    return ArmBar.each(arm, end, mass, link, second)
+    return ArmBar.each(arm, roller, mass, link, second)
 
 
 def bar_of(numbers: Numbers) -> ArmBar | None:
