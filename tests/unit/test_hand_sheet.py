@@ -233,14 +233,14 @@ def test_the_sheets_of_the_redesigned_case_give_its_demands(tmp_path):
 
 OVERHUNG = {"cheek_pressure", "fork_gap", "roller_pin", "roller_pin_shear"}
 """Checks whose formula holds for a pin held at both ends."""
-BY_ARM = {"pressure_angle", "roller_speed"}
-"""Checks whose formula holds on a straight path."""
+BY_ARMS = {"pressure_angle", "roller_speed", "fork_gap"}
+"""Checks whose formula holds on a straight path, or with one roller."""
 ON_FACE = {"curvature_rate", "film_ratio", "gear_gap", "tool_gouge", "undercut"}
 """Checks whose formula needs a radius, depth or roughness of a roller, or a tool."""
 HELD = {
     "data/stepped_groove": OVERHUNG, "motions/feeder-groove": OVERHUNG,
-    "data/preloaded_feeder": OVERHUNG, "motions/placer-preloaded": BY_ARM,
-    "motions/transfer-conjugate": BY_ARM, "motions/pump-yoke": ON_FACE,
+    "data/preloaded_feeder": OVERHUNG, "motions/placer-preloaded": BY_ARMS,
+    "motions/transfer-conjugate": BY_ARMS, "motions/pump-yoke": ON_FACE,
 }  # fmt: skip
 """Cams that hold their follower, and the checks whose formula does not hold for them."""
 

@@ -382,6 +382,9 @@ def test_the_gx120_on_a_linked_spring_passes_as_far_as_a_preview_judges(clearanc
     """
     whole = (Path(__file__).parents[2] / "cases" / "gx120-arm.toml").read_text(encoding="utf-8")
     whole = whole.replace('clearance = "0.03 mm"', f'clearance = "{clearance}"')
+    # Cooled, so that the expansion of the bush does not end the lift before the wire.
+    whole = whole.replace('housing_resistance = "2 K/W" ', 'housing_resistance = "0.5 K/W" ')
+    assert "0.5 K/W" in whole
     spring, rest = whole[whole.index("[spring]") :].split("[spring.design]", 1)
     linked_spring = """[spring]
 travel_max = "11 mm"
