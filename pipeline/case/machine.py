@@ -287,10 +287,10 @@ class Machine(Displayed):
     @property
     def arm_bar(self) -> ArmBar | None:
         """Arm as a beam, the first of two; None of a stem, and of an arm that is not described."""
-        return next(iter(self._arm_bars), None)
+        return next(iter(self.arm_bars), None)
 
     @property
-    def _arm_bars(self) -> tuple[ArmBar, ...]:
+    def arm_bars(self) -> tuple[ArmBar, ...]:
         """Each arm as a beam; () where it is not described."""
         output, pair = 0.0 if self.output is None else self.output.reduced_mass, self.cam.conjugate
         length = None if pair is None else pair.arm_length
@@ -457,7 +457,7 @@ class Machine(Displayed):
         the second arm, or the stem on to that roller; None: of the first.
         """
         parts, held = self.follower.elastic(self.contact_width, self.spring.preload)
-        reach, bars = self.overhang_at_max_lift + self.guides.spacing - held, self._arm_bars
+        reach, bars = self.overhang_at_max_lift + self.guides.spacing - held, self.arm_bars
         beyond, spacing = (0.0, 0.0) if pair is None else (pair.distance or 0.0, pair.spacing)
         members = {
             **parts,

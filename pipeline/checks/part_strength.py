@@ -525,8 +525,9 @@ def follower_mass(solution: Solution) -> Demand:
     note = f"at least {shown(total, 'g')}: {parts}" if missing else parts
     named = {"pin": "m_p", "fork": "m_f", "stem": "m_s", "arm": "m_s", "spring": "m_c"}
     stated = dict.fromkeys(named.values(), 0.0)
-    stated |= {named[name]: mass for name, mass in masses.items() if name in named}
-    stated["m_r"] = sum(mass for name, mass in masses.items() if name not in named)
+    stated["m_r"] = 0.0
+    for name, mass in masses.items():
+        stated[named.get(name.removeprefix("second "), "m_r")] += mass
     value = None if missing else total
     return Demand(value, allowed, missing=missing, note=note, stated=stated)
 
@@ -560,10 +561,20 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
 
 
 def _of_second(machine: Machine, masses: Mapping[str, float]) -> dict[str, float]:
-    """Masses of a second roller on the pin of the first, and of the pin up to it, kg; {} without
-    one.
+    """Masses of a second roller on the pin of the first, and of the pin up to it, kg, or of its
+    own pin, fork and arm, on that reduced to the first roller; {} without one.
     """
-    second = machine.cam.on_pin
+    second, pair = machine.cam.on_pin, machine.cam.conjugate
+    if pair is not None:
+        moving = on_second_track(machine.roller, machine.cam).moving
+        of_parts = dict(moving.masses)
+        for bar in machine.arm_bars[1:]:
+            of_parts["arm"] = bar.mass_at_end(moving.inset)
+        arm, length = machine.arm, pair.arm_length
+        ratio = 1.0 if arm is None or length is None else length / arm.length
+        return {
+            f"second {name}": ratio**2 * mass for name, mass in of_parts.items() if mass is not None
+        }
     if second is None:
         return {}
     roller = machine.roller

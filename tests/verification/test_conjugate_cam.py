@@ -30,6 +30,7 @@ from camwright.pipeline.checks.arm_strength import arm_forces, bars_of
 from camwright.pipeline.checks.contact_strength import conforming_sentence
 from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.extremes import cam_of
+from camwright.pipeline.checks.part_strength import moving_masses
 from camwright.pipeline.contact.closed_form import in_full
 from camwright.pipeline.contact.hertz import line_contact
 from camwright.pipeline.contact.pin_in_hole import persson_contact_angle, persson_pressure
@@ -886,3 +887,23 @@ def test_the_figures_of_a_pair_are_the_worst_of_both_discs(name):
     assert 1e-3 * shown["convex_radius_min_mm"] == pytest.approx(min(least), rel=2e-3)
     assert 1e-3 * shown["cam_radius_max_mm"] == pytest.approx(max(reach), rel=1e-6)
     assert least[1] < least[0] or reach[1] > reach[0]  # the second disc is one of the worst
+
+
+def test_the_mass_of_a_pair_is_that_of_both_rollers_with_their_parts():
+    """On a stem twice those of one, on arms the second ones reduced to the first roller by the
+    square of the lengths: a ring of steel about its pin among them.
+    """
+    for name, ratio in (("conjugate_feeder", 1.0), ("conjugate_arm", 85.0 / 90.0)):
+        case = read_case(DATA / f"{name}.toml")
+        solution = preview_case(case, corners=False).solution
+        masses, missing = moving_masses(solution)
+        assert not missing
+        radius, pin = case.cam.conjugate.roller_radius, case.roller.pin.diameter
+        ring = np.pi * (radius**2 - 0.25 * pin**2) * case.roller.width
+        ring *= ratio**2 * case.roller.material.density
+        assert masses["second roller"] == pytest.approx(ring)
+        assert masses["second pin"] == pytest.approx(ratio**2 * masses["pin"])
+        assert masses["second fork"] == pytest.approx(ratio**2 * masses["fork"])
+        demand = next(one for one in preview_case(case, corners=False).checks
+                      if one.id == "follower_mass").demand  # fmt: skip
+        assert demand == pytest.approx(sum(masses.values()))
