@@ -292,9 +292,9 @@ class SheetRun:
         for each in filter(None, declared.symbols.get(ONLY, "").split("; ")):
             key, word = each.split(" ")
             if str(value := value_of(self.case, key)) != word:
-                given = value if isinstance(value, str) else "none" if value is None else "given"
+                here = value if isinstance(value, str) else "none" if value is None else "stated"
                 only = "none" if word == "None" else word
-                return f"the formula holds for {key} = {only}, which is {given} here"
+                return f"the formula holds for {key} = {only}, which is {here} here"
         return ""
 
 
